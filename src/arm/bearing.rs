@@ -18,11 +18,11 @@ pub struct Bearing {
     pub tilt_stiffness_nm_per_rad: Option<f64>,
     /// Largest moment across the axis that the vendor permits while the joint turns \[N m\]; `None` means unknown.
     pub permissible_moment_nm: Option<f64>,
-    /// Mass of the bearing if it is a separate part, not contained in the mass of the gear \[kg\]. It is a point on
-    /// the axis, inboard of the springs.
+    /// Mass of the bearing if it is a separate part, not contained in the mass of the gear \[kg\]. It is a point mass
+    /// on the axis of the joint, inboard of its springs.
     pub mass_kg: f64,
     /// Lever along the axis from the centre of the bearing to the point where the link attaches \[m\]. `None` means
-    /// that it is not stated; it is then the offset in the ratings plus half the width of the link.
+    /// that the lever is not stated; it is then `ratings.offset_m` plus half the width of the link.
     pub offset_m: Option<f64>,
     /// Ratings of the vendor for load and life.
     pub ratings: BearingRatings,
@@ -45,7 +45,7 @@ impl Bearing {
     }
 
     /// The bearing of a housed gear as a separate part, for use with a component set. Its mass is the mass of the
-    /// housed unit less the mass of the component set. `None` if one of the two is unknown.
+    /// housed unit less the mass of the component set. `None` if one of the two masses is unknown.
     fn as_part(gear: &Gear) -> Option<Self> {
         let mass_kg = gear.mass_housed_unit_kg? - gear.mass_component_set_kg?;
         Some(Self { mass_kg, ..Self::of_gear(gear, GearMass::HousedUnit)? })
@@ -87,7 +87,8 @@ impl Bearing {
         })
     }
 
-    /// The bearing of the housed gear whose name is the value of `node`. Faults if the catalogs have no such gear.
+    /// The bearing of the housed gear whose name is the value of `node`. A fault is reported if the catalogs have no
+    /// such gear, or if one of its two masses is unknown.
     fn named(node: &Node, catalogs: &Catalogs) -> Option<Self> {
         let gear = match catalogs.gear(node.string()?) {
             Ok(gear) => gear,

@@ -11,7 +11,7 @@ use crate::input::key::Shape;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use serde_json::{Value, json};
 
-/// Difference of two entries of an inertia tensor that still counts as rounding, relative to the largest entry.
+/// Largest error of an entry of an inertia tensor that is taken as rounding, relative to the largest entry.
 const ROUNDING: f64 = 1e-6;
 
 /// A rigid body on a link or a joint.

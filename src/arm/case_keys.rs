@@ -71,6 +71,6 @@ pub(crate) static CASE: Shape = Shape::new(
     &POSE_RULES,
 );
 
-/// Rules for the keys of a pose: one of the two must be given, but not both.
+/// Rules for the keys `pose_deg` and `pose`: one of them must be given, but not both.
 pub(crate) const POSE_RULES: [Rule; 2] =
     [Rule::Any(&["pose_deg", "pose"]), Rule::Refuses("pose_deg", &["pose"])];

@@ -4,9 +4,9 @@
 //! stator. The remaining parts of a joint have no catalog row. [`Extras::usual`] estimates them from published
 //! fractions of the mass of a joint (eyoubot, "Lightweight harmonic drive robot actuator": motor 30 to 40 %, reducer
 //! 25 to 35 %, housing 15 to 25 %, brake 5 to 15 %, encoders 3 to 5 %). The middle of each range is divided by the 65
-//! % of motor and reducer. The brake agrees with the mass that Harmonic Drive's SHA actuators of sizes 20, 25 and 32
-//! have more with a brake than without (0.10, 0.15 and 0.28 kg here). The flange is a disc of aluminium. Flange and
-//! cables are representative masses without a source.
+//! % of motor and reducer. The estimated mass of the brake (0.10, 0.15 and 0.28 kg for the sizes 20, 25 and 32) agrees
+//! with the difference between Harmonic Drive's SHA actuators of these sizes with and without a brake. The flange is a
+//! disc of aluminium. Flange and cables are representative masses without a source.
 
 use super::keys::EXTRAS;
 use crate::catalog::gear::{Gear, GearKind, GearMass};
@@ -59,8 +59,8 @@ const CABLE_KG: f64 = 0.05;
 /// size 20 has 0.093 m.
 const DIAMETER_PER_SIZE_M: f64 = 0.0046;
 
-/// Outer diameter of a gear \[m\]. Where the catalog has none, as of every component set, the size of a harmonic drive gives
-/// it; that of others does not, and their flange is left out.
+/// Outer diameter of a gear \[m\]. If the catalog has none, as for every component set, the diameter of a strain-wave
+/// gear is estimated from its size. For every other gear it is then 0, so that the mass of the flange is 0 too.
 fn diameter_m(gear: &Gear, which: GearMass) -> f64 {
     let by_size = match gear.kind {
         GearKind::StrainWave => DIAMETER_PER_SIZE_M * f64::from(gear.size),

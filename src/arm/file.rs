@@ -84,7 +84,8 @@ pub(crate) fn arm(node: &Node, catalogs: &Catalogs) -> Option<Arm> {
     Some(arm)
 }
 
-/// Puts the motors of an arm where they sit, and tells every joint with which others it turns.
+/// Adds the masses of motors and stages to the elements on which they sit, and writes into every joint which other
+/// joints turn it.
 fn place_transmissions(chain: &mut [Element], driven: &[Driven]) -> Option<()> {
     let seen: Vec<Seen> = chain.iter().map(Element::seen).collect();
     for (joint, placed) in place_all(driven, &seen)? {
@@ -96,7 +97,7 @@ fn place_transmissions(chain: &mut [Element], driven: &[Driven]) -> Option<()> {
     Some(())
 }
 
-/// Reads the springs of an arm, and hangs its counterweights on the elements that carry them.
+/// Reads the springs of an arm, and adds its counterweights to the bodies of the elements on which they sit.
 fn read_balance(root: &Object, chain: &mut [Element]) -> Option<Vec<Spring>> {
     let named: Vec<Named> = chain.iter().map(|e| (e.name(), matches!(e, Element::Joint(_)))).collect();
     let (springs, counterweights) = (read_springs(root, &named), read_counterweights(root, &named));
@@ -239,14 +240,15 @@ fn read_joint(object: &Object, catalogs: &Catalogs) -> Option<(Joint, Option<Tra
     Some((joint, transmission))
 }
 
-/// The output bearing of a joint: the bearing that the file states, else the bearing of the named gear if the
-/// catalogs know this gear.
+/// The output bearing of a joint: the bearing that the file states, else the bearing of the named gear if the catalogs
+/// know this gear and it sits at the joint.
 pub(crate) fn read_joint_bearing(object: &Object, catalogs: &Catalogs) -> Option<Option<Bearing>> {
     if let Stated::Bearing(bearing) = read_bearing(object, catalogs)? {
         return Some(bearing);
     }
     let which = read_gear_mass(object)?;
-    // a name beside explicit numbers need not be a catalog's, and the bearing of a gear elsewhere is not that of the joint
+    // a name next to explicit numbers need not be in a catalog, and the bearing of a gear that sits elsewhere is not
+    // the bearing of the joint
     let gear = object
         .optional("gear")
         .filter(|_| !gear_is_at_motor(object))
@@ -321,8 +323,8 @@ fn gear_windup(gear: &Gear, node: &Node) -> Option<Windup> {
     })
 }
 
-/// The mass of what sits at a joint: the number if it is given, else gear plus motor from the catalog, else zero. A motor
-/// elsewhere does not count, nor does a gear that sits at it.
+/// Mass of the parts that sit at a joint \[kg\]: the key `mass_kg` if it is given, else gear plus motor from the
+/// catalog, else zero. A motor that sits elsewhere is left out, and so is a gear that sits at this motor.
 pub(crate) fn read_joint_mass(object: &Object, catalogs: &Catalogs) -> Option<f64> {
     let which = read_gear_mass(object)?;
     if let Some(mass) = object.optional("mass_kg") {
@@ -340,8 +342,8 @@ pub(crate) fn read_joint_mass(object: &Object, catalogs: &Catalogs) -> Option<f6
     Some(gear + motor)
 }
 
-/// The mass of what sits at a motor elsewhere: the number if it is given, else motor, and gear if it sits there, from the
-/// catalog, else zero.
+/// Mass of the parts that sit at a motor away from its joint \[kg\]: the key `motor_mass_kg` if it is given, else from
+/// the catalog the motor, plus the gear if the gear sits at the motor. It is zero if the motor sits at its joint.
 pub(crate) fn motor_side_kg(object: &Object, catalogs: &Catalogs) -> Option<f64> {
     if !object.has("motor_at") {
         return Some(0.0);

@@ -32,7 +32,7 @@ pub struct Segment {
 
 impl Windup {
     /// A torsion curve with the same stiffness in all three segments. The break points are arbitrary, because the slope
-    /// does not change there.
+    /// does not change at them.
     pub fn straight(stiffness_nm_per_rad: f64) -> Self {
         let k = stiffness_nm_per_rad;
         Self { k1_nm_per_rad: k, k2_nm_per_rad: k, k3_nm_per_rad: k, t1_nm: 1.0, t2_nm: 2.0 }
@@ -73,13 +73,15 @@ impl Windup {
     }
 
     /// Whether the tangent stiffness of this curve is at least that of `other` at every torque up to `most_nm` \[N m\].
-    /// Both change only at break points, so only these are compared.
+    /// Both stiffnesses change only at break points, so they are compared at zero torque and just above each break
+    /// point.
     pub fn never_softer(&self, other: &Self, most_nm: f64) -> bool {
         let starts = [0.0, self.t1_nm, self.t2_nm, other.t1_nm, other.t2_nm];
         starts.into_iter().all(|t| t > most_nm || self.slope_beyond(t) >= other.slope_beyond(t))
     }
 
-    /// Tangent stiffness just above `torque_nm`, where the next segment begins if this is a break point \[N m/rad\].
+    /// Tangent stiffness just above the torque `torque_nm` \[N m/rad\]. If this torque is a break point, it is the
+    /// stiffness of the segment that begins at it.
     fn slope_beyond(&self, torque_nm: f64) -> f64 {
         match torque_nm {
             t if t < self.t1_nm => self.k1_nm_per_rad,
@@ -177,7 +179,8 @@ impl Curve {
         }
     }
 
-    /// The curve with a compliance in series \[rad/(N m)\]: every segment becomes more compliant, and the break points stay.
+    /// The curve with the compliance `rad_per_nm` \[rad/(N m)\] in series. Every segment becomes more compliant, and
+    /// the break points stay.
     #[must_use]
     pub fn in_series(&self, rad_per_nm: f64) -> Curve {
         if rad_per_nm == 0.0 {
@@ -198,7 +201,8 @@ impl Curve {
         }
     }
 
-    /// The curve as the output of a reduction behind it feels it: torques times the ratio, twists over it.
+    /// The curve as it acts at the output of a reduction whose input it drives. Torques are multiplied by `ratio`, and
+    /// angles of torsion are divided by it.
     #[must_use]
     pub fn behind(&self, ratio: f64) -> Curve {
         let stiffened = self.stiffened(ratio * ratio);
@@ -210,7 +214,7 @@ impl Curve {
         }
     }
 
-    /// The curve that a joint model uses.
+    /// The curve that the joint model `model` uses in place of this one.
     pub fn reduced(&self, model: JointModel) -> Curve {
         match model {
             JointModel::K2 => self.middle_slope(),
@@ -236,7 +240,7 @@ impl Curve {
 /// positive.
 const STIFFEST: f64 = 0.02;
 
-/// Torque below which a joint counts as unloaded \[N m\]. Smaller torques are rounding errors.
+/// Torque below which a joint is taken as unloaded \[N m\]. Smaller torques are rounding errors.
 const REST_NM: f64 = 1e-9;
 
 /// Sign of a torque; 0 for an unloaded joint, whose torque is a rounding error.

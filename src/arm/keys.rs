@@ -237,7 +237,7 @@ pub(crate) static STAGE: Shape = Shape::new(
     &[],
 );
 
-/// Where a motor sits that is not at its joint.
+/// Key for the part on which a motor sits that is not at its joint.
 pub(crate) const MOTOR_AT: Key = optional(
     "motor_at",
     Kind::Name,
@@ -246,7 +246,7 @@ pub(crate) const MOTOR_AT: Key = optional(
     "The part that carries the joint's motor: an element inboard of the joint, or base.",
 );
 
-/// Where on that part.
+/// Key for the point at which the motor sits on the part that `motor_at` names.
 pub(crate) const MOTOR_POINT: Key = optional(
     "motor_point_m",
     VECTOR,
@@ -255,7 +255,7 @@ pub(crate) const MOTOR_POINT: Key = optional(
     "Where it is, from the start of the element in the frame that it carries.",
 );
 
-/// What sits there.
+/// Key for the mass of a motor that is not at its joint, with the gear if the gear sits at the motor.
 pub(crate) const MOTOR_MASS: Key = optional(
     "motor_mass_kg",
     Kind::NonNegative,
@@ -264,7 +264,7 @@ pub(crate) const MOTOR_MASS: Key = optional(
     "Mass of what sits at a motor elsewhere; mass_kg is then what stays at the joint.",
 );
 
-/// Where the gear sits.
+/// Key that says whether the gear sits at the joint or at the motor.
 pub(crate) const GEAR_AT: Key = optional(
     "gear_at",
     Kind::Word(&["joint", "motor"]),
@@ -273,7 +273,7 @@ pub(crate) const GEAR_AT: Key = optional(
     "Whether the gear stands at the joint, after the stages, or at the motor, before them.",
 );
 
-/// Ratio of a gear that is given in numbers.
+/// Key for the ratio of a gear that is given in numbers and not by its name.
 pub(crate) const GEAR_RATIO: Key = optional(
     "gear_ratio",
     Kind::Positive,
@@ -282,12 +282,12 @@ pub(crate) const GEAR_RATIO: Key = optional(
     "Ratio of a gear at the joint that is given in numbers; 1 if the stages drive the joint itself.",
 );
 
-/// Stages in a list.
+/// A list of stages.
 const STAGES: Kind = Kind::List(&STAGE_OBJECT);
 
 const STAGE_OBJECT: Kind = Kind::Object(&STAGE);
 
-/// The stages.
+/// Key for the stages between the motor and the joint.
 pub(crate) const TRANSMISSION: Key = optional(
     "transmission",
     STAGES,
@@ -297,7 +297,7 @@ pub(crate) const TRANSMISSION: Key = optional(
      behind the joints that lie between.",
 );
 
-/// How the joint turns with others.
+/// Key for the joints inboard of a joint that turn it while its own motor stands still.
 pub(crate) const TURNS_WITH: Key = optional(
     "turns_with",
     COUPLING,
@@ -306,7 +306,7 @@ pub(crate) const TURNS_WITH: Key = optional(
     "How far the joint turns per turn of joints inboard of it, while its own motor stands.",
 );
 
-/// What holds for the keys of motors elsewhere.
+/// Rules for the keys of stages and of motors that are not at their joints.
 pub(crate) const TRANSMISSION_RULES: [Rule; 4] = [
     Rule::Needs("motor_point_m", &["motor_at"]),
     Rule::Needs("motor_mass_kg", &["motor_at"]),

@@ -42,8 +42,8 @@ pub(super) fn read_link(object: &Object, materials: &[NamedMaterial], catalogs: 
 /// Name under which the equivalent material of a section with stated stiffnesses is listed.
 const STATED_MATERIAL: &str = "(stated stiffness)";
 
-/// Reads a tube with its section, from the object `object`. The material is read from the object `of_material`, which
-/// is the same object, or the link that contains it.
+/// Reads a tube with its section, from the object `object`. The material is read from the object `of_material`. This is
+/// `object` itself or, for a piece of a link that states no material, the object of the link.
 pub(super) fn read_tube(
     (object, of_material): (&Object, &Object),
     section: &Node,

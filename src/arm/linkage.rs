@@ -1,8 +1,9 @@
-//! Linkages: which joints turn another joint beside its own drive, and how far.
+//! Linkages: which joints turn another joint in addition to its own drive, and how far.
 //!
-//! A linkage turns a passive joint with its drivers. A motor that sits inboard of other joints turns its joint with them
-//! while it stands ([`transmission`](super::transmission)). A joint may turn with another that turns with a third: the
-//! factors of all ways from one joint to another are multiplied along each way and added.
+//! In a linkage, driving joints turn a passive joint. A driven joint is turned by other joints if its motor sits
+//! inboard of them: while the motor stands still, they turn the driven joint through its stages
+//! ([`transmission`](super::transmission)). A joint may turn with a second one that turns with a third. The factors
+//! along each such path from one joint to another are multiplied, and the products of all paths are added.
 
 use super::structure::{JointAngle, JointPiece, Structure};
 
@@ -30,7 +31,7 @@ pub(crate) fn linkages(structure: &Structure) -> Vec<Linkage> {
     structure.joints().flat_map(of).collect()
 }
 
-/// The joints that a joint turns with at once, each with its factor.
+/// The joints that turn `joint` directly, each with its factor.
 fn terms(joint: &JointPiece, structure: &Structure) -> Vec<(String, f64)> {
     let JointAngle::Coupled(entries) = &joint.angle else { return joint.turns_with.clone() };
     let name = |entry: usize| {
@@ -39,8 +40,8 @@ fn terms(joint: &JointPiece, structure: &Structure) -> Vec<(String, f64)> {
     entries.iter().filter_map(|(entry, factor)| Some((name(*entry)?, *factor))).collect()
 }
 
-/// All joints that a joint turns with, at once and through others, each with its factor. `direct` tells the joints that one
-/// turns with at once; no joint turns with itself on any way.
+/// All joints that turn the joint named `name`, directly or through other joints, each with its factor. `direct`
+/// returns the joints that turn a named joint directly. No joint may turn itself, not even through others.
 pub(crate) fn composed(name: &str, direct: &dyn Fn(&str) -> Vec<(String, f64)>) -> Vec<(String, f64)> {
     let mut out: Vec<(String, f64)> = Vec::new();
     let mut add = |driver: String, factor: f64| match out.iter_mut().find(|(known, _)| *known == driver) {

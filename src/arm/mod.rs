@@ -214,10 +214,12 @@ pub struct Joint {
     /// Driving joints of a passive joint, each with its factor: the angle is the sum of factors times the angles of
     /// these joints. `None` for a driven joint.
     pub coupled: Option<Vec<(String, f64)>>,
-    /// Stages between motor, gear and joint, for information: their compliance is in the curve, their masses are bodies.
+    /// Stages between motor, gear and joint, for information only. The curve includes their compliance, and their
+    /// masses are among the bodies of the elements.
     pub stages: Stages,
-    /// How far a driven joint turns per turn of joints inboard of it while its own motor stands, since the motor sits inboard
-    /// of them. Its angle in a pose is its own, whatever they do.
+    /// The joints inboard of this driven joint that turn it while its own motor stands still, because this motor sits
+    /// inboard of them. Each has a factor: the turns of this joint per turn of that joint. A pose states the actual
+    /// angle of this joint, whatever the others do.
     pub turns_with: Vec<(String, f64)>,
 }
 
@@ -358,8 +360,8 @@ impl Arm {
         })
     }
 
-    /// The fault that a motor sits beyond other joints than its own; `None` if none does. The model of absolute positions
-    /// lacks how its joint turns with them. `file` is the name of the arm's file.
+    /// A fault if the motor of some joint sits inboard of other joints, else `None`. The model of absolute positions
+    /// does not include how such a joint turns with the others. `file` is the name of the arm's file.
     pub(crate) fn turns_with_fault(&self, file: &str) -> Option<Fault> {
         let joint = self.joints().find(|joint| !joint.turns_with.is_empty())?;
         Some(Fault {
@@ -375,7 +377,7 @@ impl Arm {
         })
     }
 
-    /// What of the arm the model of absolute positions does not know, in words; `None` if it knows all of it.
+    /// A property of the arm that the model of absolute positions does not include, in words; `None` if there is none.
     pub(crate) fn beyond_positions(&self) -> Option<&'static str> {
         if self.prismatics().next().is_some() {
             return Some("prismatic joints");
@@ -386,9 +388,9 @@ impl Arm {
         self.joints().any(|joint| !joint.turns_with.is_empty()).then_some("joints that turn with others")
     }
 
-    /// Reach \[m\]: the sum of the lengths of the links outboard of the first joint that is not vertical. What carries this
-    /// joint is a column. Of an arm whose joints are all vertical or prismatic, it is the length outboard of the first joint.
-    /// Travels do not count.
+    /// Reach \[m\]: the sum of the lengths of the links outboard of the first joint whose axis is not vertical. The
+    /// links inboard of this joint form a column and are left out. If all joints of an arm are vertical or prismatic,
+    /// the reach is the length outboard of the first joint. Travels of prismatic joints are left out.
     pub fn reach_m(&self) -> f64 {
         let is_joint = |element: &Element| !matches!(element, Element::Link(_));
         let leans = |element: &Element| matches!(element, Element::Joint(j) if j.axis.xy().norm() > 1e-9);

@@ -30,12 +30,13 @@ pub struct Prismatic {
     pub guide: Guide,
     /// Whether a carriage or a ram travels.
     pub moves: Moves,
-    /// Mass that travels \[kg\]. It is a point mass at the moved point, outboard of all springs.
+    /// Mass that travels \[kg\]. It is a point mass at the point to which the joint has travelled, outboard of all
+    /// springs.
     pub mass_kg: f64,
     /// Mass that stays where the joint begins \[kg\]. It is a point mass inboard of all springs.
     pub fixed_mass_kg: f64,
     /// Rigid bodies on the joint. Bodies that stay are measured from where the joint begins, bodies that travel from
-    /// the moved point.
+    /// the point to which the joint has travelled.
     pub bodies: JointBodies,
 }
 
@@ -165,7 +166,7 @@ impl Prismatic {
         Some((stiffness?, guide?, moves?))
     }
 
-    /// The compliance of the joint, as [`read_springs`](Self::read_springs) reads it.
+    /// The elastic properties of the joint as JSON, as [`read_springs`](Self::read_springs) reads them.
     pub(crate) fn springs_to_json(&self) -> Value {
         json!({
             "stiffness_n_per_m": self.stiffness_n_per_m,

@@ -7,7 +7,7 @@ use crate::input::key::{Key, Kind, Shape, optional, required};
 /// A list of bodies of a prismatic joint.
 const PRISMATIC_BODIES: Kind = Kind::List(&Kind::Object(&PRISMATIC_BODY));
 
-/// The place of the stiffness among them.
+/// Index in [`KEYS`] of the key for the stiffness of the drive.
 pub(crate) const STIFFNESS: usize = 3;
 
 /// The keys of a prismatic joint in an arm file; a study has more.

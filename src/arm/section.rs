@@ -221,7 +221,8 @@ impl Section {
         }
     }
 
-    /// Geometric properties of the section. `poisson` is Poisson's ratio of the material; the shear factor depends on it.
+    /// Geometric properties of the section. `poisson` is Poisson's ratio of the material, on which the shear factor
+    /// depends.
     ///
     /// ```
     /// use armwright::arm::Section;

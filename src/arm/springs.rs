@@ -29,7 +29,7 @@ pub enum SpringKind {
     },
     /// A spring between the two sides of a joint, which acts as a torque.
     Torsion {
-        /// Index of the joint in the chain, base to tip.
+        /// Index of the joint among all elements of the chain, base to tip.
         joint: usize,
         /// Stiffness \[N m/rad\].
         stiffness_nm_per_rad: f64,

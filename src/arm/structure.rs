@@ -94,7 +94,8 @@ pub struct JointPiece {
     pub bodies: JointBodies,
     /// How the angle of the joint follows from the pose.
     pub angle: JointAngle,
-    /// How far it turns per turn of joints inboard of it while its own motor stands.
+    /// The joints inboard of this joint that turn it while its own motor stands still. Each has a factor: the turns of
+    /// this joint per turn of that joint.
     pub turns_with: Vec<(String, f64)>,
 }
 
@@ -139,8 +140,8 @@ pub struct LinkPiece {
     pub bodies: Vec<RigidBody>,
     /// Mass of cables and hoses along the link, per length \[kg/m\].
     pub harness_kg_per_m: f64,
-    /// Rotational compliance of the structure behind the joint. It acts at the root of the link, in axes of the
-    /// carried frame.
+    /// Rotational compliance of the structure between the link and the joint inboard of it. It acts at the root of the
+    /// link, in axes of the carried frame.
     pub root_frame: FrameCompliance,
 }
 

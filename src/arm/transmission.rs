@@ -1,16 +1,19 @@
 //! Motors that do not sit at the joint they drive, and the belts, chains, shafts and gear stages between both.
 //!
-//! *Torsion.* The stages transmit one torque, each multiplied by the ratios after it. Their compliance at the joint is the sum of
-//! `1/(k R²)` in series with the gear, with the stiffness k at the output of a stage and the product R of the ratios after it.
+//! *Torsion.* A torque passes through all stages one after the other, and the ratio of each multiplies it. At the joint
+//! the compliance of the stages is the sum of `1/(k R²)`, in series with the gear. Here k is the stiffness at the
+//! output of a stage, and R is the product of the ratios after this stage.
 //!
-//! *Coupled motion.* A motor that stands on a part inboard of other joints holds the pulley on the axis of each of these
-//! joints still while the link turns under it. Seen from the link the pulley turns back by the angle of the joint, and the
-//! driven joint by that angle over the product R of the ratios from this pulley on: `q = e - Σ qᵢ / Rᵢ`, with the twist `e` of
-//! gear and stages. By virtual work the drive of joint i then holds its own torque and `-1/Rᵢ` times that of the driven joint,
-//! and the rest of it is held by the part that carries the motor. Both enter as a [`Linkage`](super::linkage::Linkage).
+//! *Coupled motion.* A motor may sit on a part inboard of other joints. The stages then have a pulley on the axis of
+//! each of these joints. While the motor stands still, it keeps the pulley still and the link turns under it. Seen from
+//! the link, the pulley turns back by the angle of the joint. The driven joint turns by this angle over the product R
+//! of the ratios from this pulley on: `q = e - Σ qᵢ / Rᵢ`, with the twist `e` of gear and stages. By virtual work the
+//! torque on the drive of joint i is then that of joint i and `-1/Rᵢ` times that of the driven joint. The part on which
+//! the motor sits takes the rest. Both, motion and torque, enter as a [`Linkage`](super::linkage::Linkage).
 //!
-//! *Masses.* Motor (and gear, if it sits there) are a point on the part that carries them. A stage between two axes has half
-//! of its mass on each. Of the stages at the motor, the last one has half of its mass on the next axis.
+//! *Masses.* The motor, with the gear if it sits at the motor, is a point mass on the part on which the motor sits. A
+//! stage between two axes has half of its mass on each. If several stages sit at the motor, the last of them has half
+//! of its mass on the next axis.
 
 use super::body::{JointBodies, RigidBody};
 use super::element_keys::read_coupling;
@@ -22,14 +25,14 @@ use crate::input::json::{Node, Object};
 use nalgebra::{Matrix3, Vector3};
 use serde_json::{Value, json};
 
-/// Stages between a motor and what it drives, as one.
+/// One stage between a motor and what it drives, or several stages combined into one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stage {
     /// Turns of the input per turn of the output.
     pub ratio: f64,
     /// Part of the power that arrives at the output.
     pub efficiency: f64,
-    /// Twist of the output per torque there, with the input held \[rad/(N m)\].
+    /// Twist of the output per torque at the output, with the input held \[rad/(N m)\].
     pub rad_per_nm: f64,
     /// Moment of inertia at the input \[kg m²\].
     pub inertia_kgm2: f64,
@@ -42,7 +45,7 @@ impl Stage {
     pub const NONE: Self =
         Self { ratio: 1.0, efficiency: 1.0, rad_per_nm: 0.0, inertia_kgm2: 0.0, mass_kg: 0.0 };
 
-    /// This stage and another behind it, as one.
+    /// This stage and the stage `next` that its output drives, combined into one.
     #[must_use]
     pub fn then(self, next: Self) -> Self {
         Self {
@@ -98,21 +101,23 @@ impl Stages {
         self.before.ratio * gear_ratio * self.after.ratio
     }
 
-    /// Moment of inertia at the motor of rotor, gear input and stages \[kg m²\].
+    /// Moment of inertia of rotor, gear input and stages together, referred to the motor \[kg m²\].
     pub fn input_inertia_kgm2(&self, rotor_kgm2: f64, gear_kgm2: f64, gear_ratio: f64) -> f64 {
         let Self { before, after } = self;
         let at_gear_kgm2 = gear_kgm2 + after.inertia_kgm2 / (gear_ratio * gear_ratio);
         rotor_kgm2 + before.inertia_kgm2 + at_gear_kgm2 / (before.ratio * before.ratio)
     }
 
-    /// The stages without compliance and mass, which a design has in its torsion curves and bodies.
+    /// These stages without compliance and mass. A design has the compliance in its torsion curves and the mass in its
+    /// bodies.
     #[must_use]
     pub fn rigid(&self) -> Self {
         let rigid = |stage: Stage| Stage { rad_per_nm: 0.0, mass_kg: 0.0, ..stage };
         Self { before: rigid(self.before), after: rigid(self.after) }
     }
 
-    /// The keys that files have for them: their compliance is in the torsion curve and their mass in bodies.
+    /// The keys with which files write the stages. Compliance and mass are left out, because the torsion curve and the
+    /// bodies include them.
     pub(crate) fn to_json(self) -> Vec<(&'static str, Value)> {
         let one = |stage: Stage| json!([{"ratio": stage.ratio, "efficiency": stage.efficiency, "inertia_kgm2": stage.inertia_kgm2}]);
         match (self.before == Stage::NONE, self.after == Stage::NONE) {
@@ -123,7 +128,7 @@ impl Stages {
     }
 }
 
-/// Keys of a joint whose motor sits elsewhere or drives it through stages.
+/// Keys of a joint whose motor does not sit at the joint, or drives it through stages.
 pub(crate) const TRANSMISSION_KEYS: [&str; 6] =
     ["motor_at", "motor_point_m", "motor_mass_kg", "gear_at", "gear_ratio", "transmission"];
 
@@ -133,25 +138,26 @@ pub(crate) struct Transmission {
     /// Name of the part that carries the motor, or `base`; `None` if the motor sits at the joint.
     motor_at: Option<String>,
     motor_point_m: Vector3<f64>,
-    /// Mass of what sits there \[kg\]; 0 where the drive is chosen, whose motor's mass is known later.
+    /// Mass \[kg\] of the motor, with the gear if it sits at the motor, at the place where the motor is mounted; 0 if
+    /// the search chooses the drive, because its motor is not yet known.
     motor_kg: f64,
     /// Whether the gear sits at the motor, before the stages.
     gear_at_motor: bool,
     /// Ratio of a gear at the joint, after the stages; `None` if no gear is known.
     gear_ratio: Option<f64>,
     stages: Vec<Stage>,
-    /// Whether the file says how the joint turns with those before it.
+    /// Whether the file itself states which joints turn this joint (key `turns_with`).
     is_coupling_stated: bool,
 }
 
-/// Whether a joint's gear sits at a motor elsewhere.
+/// Whether the file states that the gear of a joint sits at the motor (key `gear_at`).
 pub(crate) fn gear_is_at_motor(object: &Object) -> bool {
     object.optional("gear_at").is_some_and(|n| n.value().as_str() == Some("motor"))
 }
 
 impl Transmission {
-    /// Reads it from the keys of a joint; `None` within if the joint has none of them. `motor_kg` is the mass of what sits at the
-    /// motor \[kg\].
+    /// Reads the transmission from the keys of a joint. The inner `None` means that the joint has none of these keys.
+    /// `motor_kg` is the mass of the parts that sit at the motor \[kg\].
     pub(crate) fn read(object: &Object, catalogs: &Catalogs, motor_kg: Option<f64>) -> Option<Option<Self>> {
         fits_beside(object)?;
         if !TRANSMISSION_KEYS.iter().any(|key| object.has(key)) {
@@ -186,12 +192,12 @@ impl Transmission {
         }))
     }
 
-    /// The same behind a gear of this ratio at the joint.
+    /// This transmission with a gear of the ratio `ratio` at the joint, after the stages.
     pub(crate) fn with_gear_ratio(&self, ratio: f64) -> Self {
         Self { gear_ratio: Some(ratio), ..self.clone() }
     }
 
-    /// All stages as one.
+    /// All stages combined into one.
     pub(crate) fn stage(&self) -> Stage {
         self.stages.iter().fold(Stage::NONE, |whole, next| whole.then(*next))
     }
@@ -214,7 +220,7 @@ impl Transmission {
         self.motor_at.is_some()
     }
 
-    /// The torsion curve of the joint with this curve of its gear.
+    /// The torsion curve of the joint, of gear and stages together. `gear` is the torsion curve of the gear alone.
     pub(crate) fn curve(&self, gear: Curve) -> Curve {
         let stage = self.stage();
         match self.gear_at_motor {
@@ -223,14 +229,14 @@ impl Transmission {
         }
     }
 
-    /// Ratio of the gear that stands between the stages and the joint.
+    /// Ratio of the gear between the stages and the joint; 1 if the gear sits at the motor or if its ratio is unknown.
     fn ratio_at_joint(&self) -> f64 {
         if self.gear_at_motor { 1.0 } else { self.gear_ratio.unwrap_or(1.0) }
     }
 }
 
-/// Checks that no key stands where it says nothing: a passive joint has no motor, and the motor's place and mass belong to a
-/// motor elsewhere.
+/// Checks that no key is given where it has no meaning. A passive joint has no motor. The keys for the point and the
+/// mass of the motor need `motor_at`, and `gear_ratio` needs `transmission`.
 fn fits_beside(object: &Object) -> Option<()> {
     let mut sound = Some(());
     let mut stray = |keys: &[&str], problem: &str, hint: &str| {
@@ -260,38 +266,39 @@ fn fits_beside(object: &Object) -> Option<()> {
     sound
 }
 
-/// The ratio of a gear of the catalogs.
+/// Ratio of the gear that the key `gear` names; `None` if the catalogs have no such gear.
 fn gear_ratio(object: &Object, catalogs: &Catalogs) -> Option<f64> {
     let gear = object.optional("gear")?;
     catalogs.gear(gear.value().as_str()?).ok().map(|gear| gear.ratio)
 }
 
-/// An element of a chain, as a transmission sees it.
+/// What a transmission needs to know of an element of its chain.
 #[derive(Debug, Clone)]
 pub(crate) struct Seen {
-    /// Name.
+    /// Name of the element.
     pub name: String,
-    /// What the element does.
+    /// How the element moves.
     pub motion: SeenMotion,
 }
 
-/// What an element of a chain does, as a transmission sees it.
+/// How an element of a chain moves, as far as a transmission needs to know.
 #[derive(Debug, Clone)]
 pub(crate) enum SeenMotion {
-    /// It turns about this axis of the frame with all angles zero; a passive joint has the names of its drivers.
+    /// A joint that turns. The vector is its axis in the frame with all joint angles zero. The names are those of the
+    /// drivers of a passive joint; a driven joint has none.
     Turns(Vector3<f64>, Vec<String>),
-    /// It slides.
+    /// A prismatic joint.
     Slides,
-    /// It is a link.
+    /// A link.
     Stays,
 }
 
 /// The side of an element on which a body is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum HungOn {
-    /// Inboard of what moves there.
+    /// The inboard side, which does not move with the joint.
     Start,
-    /// What moves there.
+    /// The outboard side, which moves with the joint. For a link, it is the link itself.
     Moving,
 }
 
@@ -300,27 +307,30 @@ pub(crate) enum HungOn {
 pub(crate) struct Hung {
     /// Number of the element.
     pub element: usize,
-    /// The side of it.
+    /// Side of the element on which the part is.
     pub on: HungOn,
-    /// The part.
+    /// The part as a rigid body.
     pub body: RigidBody,
 }
 
-/// A transmission in its chain.
+/// A transmission after it has been placed in its chain.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Placed {
-    /// How far the joint turns per turn of each joint that the stages cross, while the motor stands; `None` if the file says it.
+    /// The joints that the stages cross. Each has a factor: the turns of the driven joint per turn of that joint while
+    /// the motor stands still. `None` if the file states them.
     pub turns_with: Option<Vec<(String, f64)>>,
     /// Masses of the motor and of the stages.
     pub hung: Vec<Hung>,
-    /// Where the motor is: element, side and point. At the joint if it does not sit elsewhere.
+    /// Where the motor is: number of the element, side and point \[m\]. It is at the driven joint if the file names no
+    /// other place.
     pub motor: (usize, HungOn, Vector3<f64>),
-    /// Whether the stages cross joints.
+    /// Whether there are joints between the motor and the driven joint, which the stages cross.
     pub crosses: bool,
 }
 
 impl Transmission {
-    /// Puts the transmission of the joint that is element number `joint` into its chain. `node` is that of the joint.
+    /// Places the transmission of the joint that is element number `joint` in its chain. `node` is the joint in its
+    /// file.
     pub(crate) fn place(&self, node: &Node, joint: usize, chain: &[Seen]) -> Option<Placed> {
         let motor = self.motor_place(node, joint, chain)?;
         let first = match motor {
@@ -373,8 +383,9 @@ impl Transmission {
         }
     }
 
-    /// How far the joint turns per turn of the joints that are crossed, while the motor stands. From stage `along` on the
-    /// stages run along the links behind these joints.
+    /// The joints that the stages cross. Each has a factor: the turns of the driven joint per turn of that joint while
+    /// the motor stands still. From the index `along` on, each stage runs along the link outboard of one of these
+    /// joints.
     fn coupling(
         &self,
         node: &Node,
@@ -410,7 +421,7 @@ impl Transmission {
         terms
     }
 
-    /// The motor, and the stages on their axes.
+    /// The point masses of the motor and of the stages, each at its place.
     fn hung(
         &self,
         (at, on, point_m): (usize, HungOn, Vector3<f64>),
@@ -418,7 +429,7 @@ impl Transmission {
         crossed: &[(usize, Vector3<f64>)],
         along: usize,
     ) -> Vec<Hung> {
-        // stages at the motor sit there; the last of them reaches the next axis
+        // stages before the first crossed joint sit at the motor; the last of them reaches the next axis
         let near = &self.stages[..along];
         let near_kg: f64 = near.iter().map(|stage| stage.mass_kg).sum();
         let half_kg = near.last().map_or(0.0, |stage| stage.mass_kg / 2.0);
@@ -441,10 +452,11 @@ impl Transmission {
     }
 }
 
-/// Least cosine between axes that count as parallel.
+/// Smallest cosine of the angle between two axes that are taken as parallel.
 const PARALLEL: f64 = 0.999_999;
 
-/// The joints that lie between a motor and the joint that it drives, each with its axis.
+/// The joints between a motor and the joint that it drives, each as the number of its element and its axis. `first` is
+/// the first element outboard of the motor.
 fn crossed(node: &Node, first: usize, joint: usize, chain: &[Seen]) -> Option<Vec<(usize, Vector3<f64>)>> {
     let mut out = Vec::new();
     for (element, seen) in chain.iter().enumerate().take(joint).skip(first) {
@@ -473,12 +485,14 @@ fn crossed(node: &Node, first: usize, joint: usize, chain: &[Seen]) -> Option<Ve
     Some(out)
 }
 
-/// Reads `turns_with`: how far the joint turns per turn of joints inboard of it, while its motor stands; none without the key.
+/// Reads the key `turns_with`: the joints inboard of a joint that turn it while its own motor stands still, each with
+/// its factor. The list is empty without the key.
 pub(crate) fn read_turns_with(object: &Object) -> Option<Vec<(String, f64)>> {
     object.or("turns_with", Vec::new(), read_coupling)
 }
 
-/// Checks that every joint of `turns_with` of element number `joint` is a joint inboard of it that turns.
+/// Checks that every joint in `terms` is a joint that turns and is inboard of the element number `joint`. `terms` is
+/// the value of `turns_with` of this element.
 pub(crate) fn turns_with_joints_inboard(
     node: &Node,
     terms: &[(String, f64)],
@@ -500,19 +514,20 @@ pub(crate) fn turns_with_joints_inboard(
 
 /// The bodies of an element, to which parts of transmissions are added.
 pub(crate) enum Carrier<'a> {
-    /// Of a joint.
+    /// The bodies of a joint.
     Joint(&'a mut JointBodies),
-    /// Of a link.
+    /// The bodies of a link.
     Link(&'a mut Vec<RigidBody>),
 }
 
 impl Carrier<'_> {
-    /// Hangs a part on the element.
+    /// Adds a part of a transmission to the bodies of the element.
     pub(crate) fn carry(&mut self, hung: &Hung) {
         match (self, hung.on) {
             (Self::Joint(bodies), HungOn::Start) => bodies.fixed.push(hung.body),
             (Self::Joint(bodies), HungOn::Moving) => bodies.rotating.push(hung.body),
-            // what stands at the base, before a chain that begins with a link, does not move with it
+            // a motor at the base of a chain that begins with a link does not move with the link, so it is put at its
+            // start
             (Self::Link(bodies), HungOn::Start) => {
                 bodies.push(RigidBody { cg_m: Vector3::zeros(), ..hung.body });
             }

@@ -1,23 +1,24 @@
-//! All transmissions of a chain, of arm files and of studies: each is put into the chain, and every fault is found.
+//! Places all transmissions of a chain, of arm files and of studies, and finds every fault of them.
 
 use super::Element;
 use super::transmission::Carrier;
 use super::transmission::{Placed, Seen, SeenMotion, Transmission, turns_with_joints_inboard};
 use crate::input::json::Node;
 
-/// A joint of a chain with what its file says of its drive.
+/// A joint of a chain, with what its file says about its drive.
 pub(crate) struct Driven<'n> {
     /// The joint in its file.
     pub node: Node<'n>,
     /// Number of the joint in the chain.
     pub joint: usize,
-    /// How its motor drives it, if the file says something of it.
+    /// How the motor drives the joint; `None` if the file has no key for it.
     pub transmission: Option<Transmission>,
-    /// How far it turns with others by the file.
+    /// The joints that turn this joint while its own motor stands still, each with its factor, as the file states them.
     pub turns_with: Vec<(String, f64)>,
 }
 
-/// Every transmission in its chain, with the number of its joint.
+/// Places every transmission in the chain. Each item of the result is the number of the driven joint and its placed
+/// transmission. `None` if one of them has a fault.
 pub(crate) fn place_all(driven: &[Driven], chain: &[Seen]) -> Option<Vec<(usize, Placed)>> {
     let mut out = Some(Vec::new());
     for of in driven {
@@ -35,7 +36,7 @@ pub(crate) fn place_all(driven: &[Driven], chain: &[Seen]) -> Option<Vec<(usize,
 }
 
 impl Element {
-    /// The element as a transmission sees it.
+    /// What a transmission needs to know of this element.
     pub(crate) fn seen(&self) -> Seen {
         let motion = match self {
             Element::Joint(joint) => SeenMotion::turning(&joint.axis, joint.coupled.as_deref()),
@@ -56,7 +57,7 @@ impl Element {
 }
 
 impl SeenMotion {
-    /// A joint that turns about an axis, perhaps with drivers of a linkage.
+    /// A joint that turns about an axis. `coupled` has its drivers if it is the passive joint of a linkage.
     pub(crate) fn turning(axis: &nalgebra::Vector3<f64>, coupled: Option<&[(String, f64)]>) -> Self {
         let drivers = coupled.into_iter().flatten().map(|(name, _)| name.clone()).collect();
         SeenMotion::Turns(*axis, drivers)

@@ -21,11 +21,11 @@ pub enum GearKind {
     Spur,
     /// Direct drive: there is no gear, and the motor turns the joint.
     Direct,
-    /// The gear inside an actuator of `actuators.csv`. The ratings there are those of the whole actuator.
+    /// The gear inside an actuator of `actuators.csv`. Its ratings are those of the whole actuator.
     Actuator,
     /// Ball screw of a prismatic joint: its ratings are forces, its ratio is in rad/m.
     Screw,
-    /// Rack and pinion of a prismatic joint, likewise.
+    /// Rack and pinion of a prismatic joint: its ratings are forces, its ratio is in rad/m.
     Rack,
 }
 
@@ -49,18 +49,18 @@ impl GearKind {
         }
     }
 
-    /// Whether it drives along a travel, so that forces take the place of torques.
+    /// Whether a gear of this kind drives a prismatic joint, so that forces take the place of torques.
     pub fn slides(self) -> bool {
         matches!(self, GearKind::Screw | GearKind::Rack)
     }
 
-    /// Whether a blank rating of such a gear means that there is no such limit. A direct drive has no teeth, and an
-    /// actuator is rated as a whole, by the numbers of its motor.
+    /// Whether a blank rating of gears of this kind means that there is no limit. A direct drive has no teeth, an
+    /// actuator is rated as a whole by the numbers of its motor, and a screw or rack may be stated with few ratings.
     pub fn has_no_ratings_of_its_own(self) -> bool {
         self.slides() || matches!(self, GearKind::Direct | GearKind::Actuator)
     }
 
-    /// Whether the life of such a gear is limited by its bearings, so that it is always checked. The life of a
+    /// Whether the life of gears of this kind is limited by their bearings, so that it is always checked. The life of a
     /// belt, a direct drive or an actuator is checked only if its row states one.
     pub fn wears_out(self) -> bool {
         !self.slides() && !matches!(self, GearKind::Belt | GearKind::Direct | GearKind::Actuator)
@@ -255,7 +255,8 @@ impl Gear {
         }
     }
 
-    /// Outer size in the build a study asks for. The catalog has that of housed units; of component sets nothing is known.
+    /// Outer size of the gear as it is bought, as a component set or as a housed unit (`which`). The catalog has the
+    /// sizes of housed units only, so every size of a component set is unknown.
     pub(crate) fn envelope_as(&self, which: GearMass) -> Envelope {
         match which {
             GearMass::ComponentSet => Envelope::default(),
@@ -263,7 +264,8 @@ impl Gear {
         }
     }
 
-    /// Whether the two make a drive: an actuator goes with its own motor only, and that motor with nothing else.
+    /// Whether this gear and `motor` can make a drive. An actuator goes with its own motor only, and this motor with no
+    /// other gear.
     pub fn goes_with(&self, motor: &Motor) -> bool {
         match (self.kind, motor.kind) {
             (GearKind::Actuator, MotorKind::OfActuator) => self.id == motor.id,

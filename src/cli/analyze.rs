@@ -145,7 +145,7 @@ fn ignored_text(ignored: &[String]) -> String {
     }
 }
 
-/// What no number of an arm with gears has; nothing for one without.
+/// A sentence about what is left out of every number of an arm with gears; empty for an arm without gears.
 fn left_out_text(arm: &Arm) -> String {
     let has_gear = |element: &Element| matches!(element, Element::Joint(joint) if joint.gear.is_some());
     let words = "Left out of every number, unless the file states it: the compliance of the connections between links and \
@@ -153,7 +153,7 @@ fn left_out_text(arm: &Arm) -> String {
     if arm.chain.iter().any(has_gear) { wrap(words, TERMINAL, "") } else { String::new() }
 }
 
-/// What is said of the arm's materials that creep, and of links with stated factors.
+/// Sentences about those materials of the arm that creep, and about links with stated factors; empty if there are none.
 fn creep_text(arm: &Arm, catalogs: &Catalogs) -> String {
     let tubes = arm.chain.iter().filter_map(|element| match element {
         Element::Link(Link { name, body: LinkBody::Tube { material_name, .. }, .. }) => {

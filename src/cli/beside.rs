@@ -54,8 +54,8 @@ pub(super) fn say_missing(missing: &[String]) {
     }
 }
 
-/// Panics if a test asks for it with the environment variable `ARMWRIGHT_FAULT=panic:summary.md`. Only builds with
-/// debug assertions do so.
+/// Panics if a test asks for it: if the environment variable `ARMWRIGHT_FAULT` is `panic:` followed by `what`, such as
+/// `panic:summary.md`. Only builds with debug assertions do so.
 #[cfg(debug_assertions)]
 fn fail_if_wanted(what: &str) {
     let wanted = std::env::var("ARMWRIGHT_FAULT").unwrap_or_default();

@@ -16,8 +16,8 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-/// Finds the largest payload that an arm holds with the drives it has, in every sizing pose and in all of them together, and
-/// says which joint and which check ends it.
+/// Finds the largest payload that an arm holds with the drives it has, in every sizing pose and in all of them
+/// together, and names the joint and the check that limit it.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: armwright capacity light-arm\n         armwright capacity my-study.json --design 2f --json\n         \
@@ -56,7 +56,7 @@ pub(super) fn run(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Fa
     Ok(said(args, &study.name, &capacity_of(&study, args.design.as_deref(), catalogs)?, &study.remarks))
 }
 
-/// The capacity, with what a reader should know of the numbers.
+/// The capacity as text or JSON, with the remarks that a reader should know.
 fn said(args: &CapacityArgs, name: &str, found: &Capacity, remarks: &[String]) -> String {
     if args.json {
         let mut json = found.to_json();
@@ -68,10 +68,10 @@ fn said(args: &CapacityArgs, name: &str, found: &Capacity, remarks: &[String]) -
     format!("{}{above}{lines}", to_text(name, found))
 }
 
-/// What the capacity of an arm file leaves out.
+/// The remark on the capacity of an arm file that says what is checked and what is not.
 const AT_REST: &str = "Judged are torques and output bearings at rest, as far as their ratings are known. Motion, heat and strength are not checked.";
 
-/// Whether the file is an arm and no study, which has poses.
+/// Whether the file at `path` is an arm file. It then has a chain and, in contrast to a study file, no poses.
 fn is_arm_file(path: &str) -> bool {
     let text = std::fs::read_to_string(path).unwrap_or_default();
     let file: Value = serde_json::from_str(&text).unwrap_or_default();
@@ -79,8 +79,8 @@ fn is_arm_file(path: &str) -> bool {
 }
 
 /// The largest payload of an arm file at rest. The torques of the joints are compared with the limits that the user
-/// gives; without them with the limits of an import.json in the same folder; without this with the limits of the named
-/// gears and motors.
+/// gives. If the user gives none, the limits are those of an import.json in the same folder. If this file is missing
+/// too, they are those of the gears and motors that the arm file names.
 fn of_arm(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     if args.design.is_some() {
         return Err(Failure::Usage(format!("{} is an arm file; --design is for studies", args.study)));

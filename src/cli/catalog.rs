@@ -432,7 +432,7 @@ fn all_fields(catalogs: &Catalogs, file: CatalogFile, provenance: &Provenance) -
     out
 }
 
-/// Largest width of tables and paragraphs, in characters.
+/// Largest width of paragraphs \[characters\].
 const TERMINAL_COLUMNS: usize = 110;
 
 /// A paragraph broken into lines between words. All lines after the first are indented.

@@ -115,8 +115,8 @@ fn blanks_table(catalogs: &Catalogs) -> String {
 /// Number of parts whose names are listed in one line; further parts are only counted.
 const NAMED: usize = 3;
 
-/// A list of the parts that `size` and `run` cannot choose and that an arm file cannot name, by the ratings that are
-/// blank. It is empty if there are no such parts.
+/// A list of the parts that `size` and `run` cannot choose because ratings are blank, grouped by file and by blank
+/// ratings. It also says which of these parts an arm file cannot name. It is empty if there are no such parts.
 fn unchoosable(catalogs: &Catalogs) -> String {
     let mut by_lacks: BTreeMap<(String, String), Vec<(usize, &str)>> = BTreeMap::new();
     let mut add = |from: &Provenance, id, lacks: Vec<Lack>| {
@@ -173,8 +173,8 @@ fn named(parts: &[(usize, &str)]) -> String {
     }
 }
 
-/// Housed gears and actuators whose output bearing counts as rigid because their row states no tilting stiffness, a line
-/// for each file.
+/// Housed gears and actuators whose output bearing counts as rigid because their row states no tilting stiffness. The
+/// text has one line for each file.
 fn rigid_bearings(catalogs: &Catalogs) -> String {
     let mut by_file: BTreeMap<&str, Vec<(usize, &str)>> = BTreeMap::new();
     for gear in &catalogs.gears {
@@ -197,7 +197,8 @@ fn rigid_bearings(catalogs: &Catalogs) -> String {
     }
 }
 
-/// Gears whose life is that of their kind because their row states none.
+/// A list of the gears whose row states no life. The life that is usual for their kind is taken instead, or the life is
+/// not checked (belts).
 fn by_usual_life(catalogs: &Catalogs) -> String {
     let is_blank = |from: &Provenance| cell(catalogs.printed_row(from), "rated_life_h").is_empty();
     let mut out = String::new();

@@ -61,7 +61,7 @@ impl TextTable {
         lines.iter().fold(String::new(), |out, line| out + &aligned(line, &columns) + "\n")
     }
 
-    /// Width of the column `i` of these lines in characters, and whether all cells of the column are numbers or blank.
+    /// Width of the column `i` in `lines` \[characters\], and whether all cells of the column are numbers or blank.
     fn column(&self, i: usize, lines: &[Vec<String>]) -> (usize, bool) {
         let width = lines.iter().map(|line| line[i].chars().count()).max().unwrap_or(0);
         (width, self.rows.iter().all(|row| row[i].is_empty() || row[i].parse::<f64>().is_ok()))

@@ -1,4 +1,4 @@
-//! Finds out of which kind files and folders are, and finds all their faults.
+//! Finds out which kind of file or folder something is, and finds all its faults.
 
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
@@ -137,7 +137,7 @@ fn look_at_file(path: &Path, catalogs: &Catalogs) -> Look {
 }
 
 /// The kind of file to which a document belongs: the one whose keys match most keys of the document, or "cases" for a
-/// list of cases. If several kinds match equally many keys, it is the first of them.
+/// list of cases. If several kinds match equally many keys, it is the one that comes first in `FILES`.
 fn kind_of(value: &Value) -> Option<&'static str> {
     let Value::Object(map) = value else {
         let is_case = |item: &Value| item.as_object().is_some_and(|map| map.keys().any(|key| CASE.has(key)));
@@ -192,7 +192,7 @@ fn result_words(manifest: &str) -> &'static str {
     }
 }
 
-/// Checks that the files of a result still have the hashes that `manifest`, the file that lists them, has for them.
+/// Checks that the files of a result still have the hashes that the file `manifest` lists.
 fn unchanged(folder: &Path, manifest: &str) -> Result<(), Problem> {
     let path = folder.join(manifest);
     let text = std::fs::read_to_string(&path).map_err(|e| Problem::Unreadable(e.to_string()))?;

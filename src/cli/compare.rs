@@ -215,7 +215,7 @@ fn is_one_study(results: &[PathBuf]) -> bool {
     first.is_some() && results.iter().all(|r| study(r) == first)
 }
 
-/// A label for every path: the fewest last components that distinguish it from the others.
+/// A label for every path: the fewest last components of the path that distinguish it from the other paths.
 fn labels(results: &[PathBuf]) -> Vec<String> {
     let most = results.iter().map(|r| r.components().count()).max().unwrap_or(1);
     let at = |parts: usize| results.iter().map(|r| last_parts(r, parts)).collect::<Vec<_>>();

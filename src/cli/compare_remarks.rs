@@ -1,4 +1,5 @@
-//! What is said beside a comparison: where the questions of the results differ, and what each leaves out.
+//! Remarks that are printed with a comparison: where the questions of the results differ, and what each result leaves
+//! out.
 
 use super::failure::Failure;
 use super::results::Results;
@@ -6,22 +7,23 @@ use crate::report::number::shortest;
 use serde_json::Value;
 use std::path::PathBuf;
 
-/// A result with its question and what it says beside its numbers.
+/// A result that is compared: its label, its `run.json`, which has its remarks, and its study.
 pub(super) struct Said {
     label: String,
     run: Value,
-    /// The study; null if the file is gone.
+    /// Contents of `study.json`; null if this file is missing.
     study: Value,
 }
 
-/// Keys of a study that are the task of the arm, and not the arm: results in which they differ answer different questions.
+/// Keys of a study that state the task of the arm and do not describe the arm itself. Results whose studies differ in
+/// such a key answer different questions.
 const TASK: [&str; 7] =
     ["payload", "poses", "cases", "gravity_m_s2", "motion", "constraints", "judged_poses"];
 
-/// The result folders among what is compared, each with its label.
+/// The result folders among the compared paths `results`, each with its label from `labels`.
 ///
 /// # Errors
-/// As of [`Results::open`].
+/// The same errors as of [`Results::open`].
 pub(super) fn said_by(results: &[PathBuf], labels: Vec<String>) -> Result<Vec<Said>, Failure> {
     let folders = results.iter().zip(labels).filter(|(path, _)| path.join("run.json").is_file());
     let said = folders.map(|(path, label)| {
@@ -32,7 +34,8 @@ pub(super) fn said_by(results: &[PathBuf], labels: Vec<String>) -> Result<Vec<Sa
     said.collect()
 }
 
-/// Where the questions differ, then the remarks of the results, each once.
+/// The remarks on a comparison: first a sentence that says where the questions differ, then the remarks of the results.
+/// A remark that several results have is listed once.
 pub(super) fn remarks(said: &[Said]) -> Vec<String> {
     let mut by_words: Vec<(&str, Vec<&str>)> = Vec::new();
     for result in said {
@@ -51,7 +54,8 @@ pub(super) fn remarks(said: &[Said]) -> Vec<String> {
     tasks_differ(said).into_iter().chain(of_results).collect()
 }
 
-/// Which keys of the task differ, the payloads with their masses.
+/// A sentence that names those keys of [`TASK`] in which the studies differ, with the mass of each payload if the
+/// payloads differ. `None` if no key differs.
 fn tasks_differ(said: &[Said]) -> Option<String> {
     let known: Vec<&Said> = said.iter().filter(|result| result.study.is_object()).collect();
     let (first, others) = known.split_first()?;

@@ -1,5 +1,5 @@
-//! Applies the corrections of a measured arm to a study, and reports which of them apply. They come from an arm file
-//! or from a verdict.
+//! Applies the corrections of a measured arm to a study, and reports which of them apply. The corrections come from an
+//! arm file or from a verdict.
 
 use super::asked::Asked;
 use super::failure::Failure;
@@ -17,10 +17,10 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::Path;
 
-/// A study with the corrections of the arm file at `path` applied. `text` is the file of the study.
+/// A study with the corrections of the arm file at `path` applied. `text` is the text of the study's file.
 ///
 /// # Errors
-/// The file cannot be read, or no effect and no calibrated value of it applies to the study.
+/// The file cannot be read, or no effect and no calibrated value of the arm file applies to the study.
 pub(super) fn from_arm_file(
     path: &Path,
     study: &Study,
@@ -44,7 +44,7 @@ pub(super) fn from_arm_file(
 }
 
 /// A study with the effects of `arm` and the calibrated values `calibrated` (name and factor each) applied. `text` is
-/// the file of the study.
+/// the text of the study's file.
 ///
 /// # Errors
 /// The corrected study is faulty.

@@ -18,8 +18,8 @@ use clap::Args;
 use nalgebra::Vector3;
 use std::path::{Path, PathBuf};
 
-/// Writes an arm, or a design of a result, for another program: CalculiX (finite elements), MuJoCo (MJCF), URDF, or as JSON, CSV
-/// or a bill of materials.
+/// Writes an arm, or a design of a result, for another program: CalculiX (finite elements), MuJoCo (MJCF), URDF, or as
+/// JSON, CSV or a bill of materials.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: armwright export results/light-arm#x3k9 --to calculix --out fe && cd fe && ccx static && ccx modes\n         \

@@ -59,11 +59,12 @@ pub(super) struct Written {
     pub front: FrontTable,
     /// How the search ended.
     pub status: Status,
-    /// Exit status if all files are written.
+    /// Exit status with which the program ends.
     pub exit: Exit,
     /// One line on how long the search took.
     pub timing: String,
-    /// Optimality gap that was proved, as a fraction; `None` if the front is whole or none was proved.
+    /// Optimality gap that was proved, as a fraction; 0 means that the front is whole. `None` for an exhaustive search,
+    /// or if no gap was proved.
     pub gap: Option<f64>,
     /// Whether no design is missing in the front.
     pub is_whole: bool,
@@ -80,12 +81,12 @@ pub(super) struct Written {
 const NOTHING_ELSE: &str =
     "what goes with the front: budget.csv, summary.md, report.html, plots, ties and supplements";
 
-/// Name of the file with the front of one material.
+/// Name of the file with the front of one material. `file` is the short name of the material.
 pub(super) fn front_of_material(file: &str) -> String {
     format!("front.{file}.csv")
 }
 
-/// Whether a file of this name has the front of one material.
+/// Whether a file of this name contains the front of one material.
 pub(super) fn is_front_of_material(name: &str) -> bool {
     name.starts_with("front.") && name.ends_with(".csv") && name != "front.csv"
 }
@@ -95,7 +96,7 @@ pub(super) fn is_front_of_material(name: &str) -> bool {
 pub(super) struct FoundExactly {
     /// Number of boxes whose bounds were computed, and number of boxes that were left open.
     pub boxes: [u64; 2],
-    /// Optimality gap that was proved, as a fraction; `None` if none was proved.
+    /// Optimality gap that was proved, as a fraction; 0 if the front is whole, `None` if no gap was proved.
     pub gap: Option<f64>,
     /// Whether designs that differ only in drives of equal mass and torsion curve are all rows of the front.
     pub ties_listed: bool,
@@ -108,7 +109,8 @@ pub(super) struct Finished<'a> {
     pub text: &'a str,
     /// Corrections of a measured arm.
     pub corrections: &'a [Correction],
-    /// The problem with all options of the study, or only with the options that the designs of the front use.
+    /// The search problem, either with all options of the study or with only those options that the designs of the
+    /// front use.
     pub problem: &'a ArmProblem<'a>,
     /// The space with all options of the study.
     pub whole: &'a DesignSpace,
@@ -340,7 +342,8 @@ impl Finished<'_> {
         of_study.chain(of_bearings).chain(of_given).collect()
     }
 
-    /// The parts of the picks whose figures are not their vendor's, in a sentence; `None` if there are none.
+    /// A sentence that names the parts of the picks whose ratings are not those of their vendor; `None` if there are
+    /// none.
     fn caveats(&self, summary: &SummaryInput) -> Option<String> {
         let picked = picks::rows_and_names(&picks::picks(&picks::designs(&summary.overall)));
         let sentence = summary.facts.caveats.sentence(&summary.overall, &picked);
@@ -456,8 +459,9 @@ pub(super) fn facts_of(run: &Value) -> Vec<(String, String)> {
         .collect()
 }
 
-/// The picture of the front. Designs of mixed materials are grey, and each material has a colour. If the search found
-/// a front of the material, this front is drawn.
+/// The picture of the front. Designs of mixed materials are grey, and each material has a colour. For each material its
+/// own front is drawn. If the search found no such front, the designs of the overall front that consist of this
+/// material are drawn.
 fn picture(summary: &SummaryInput) -> String {
     let mixed = mixed_designs(&summary.overall);
     let pure: Vec<(String, FrontTable)> = single_materials(summary)
@@ -482,7 +486,7 @@ pub(super) fn count(n: u128) -> Value {
     u64::try_from(n).map_or_else(|_| json!(n as f64), |n| json!(n))
 }
 
-/// A hash of every rating of every part. It recognizes results that were made with other catalogs.
+/// A hash of every rating of every part. It shows whether a result was made with other catalogs.
 pub(super) fn catalogs_hash(catalogs: &Catalogs) -> String {
     blake3::hash(format!("{catalogs:?}").as_bytes()).to_hex().to_string()
 }

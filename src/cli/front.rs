@@ -49,8 +49,8 @@ enum FrontVerb {
 struct CheckArgs {
     /// Result folder of a study
     results: PathBuf,
-    /// Stop looking for missing designs after so many seconds, and say so. The time of a check that was stopped and goes on
-    /// counts too
+    /// Stop looking for missing designs after so many seconds, and say so. If a check that was stopped goes on, the
+    /// time that it took before counts too
     #[arg(long, value_name = "SECONDS", value_parser = time_limit)]
     time_limit: Option<Duration>,
 }
@@ -70,7 +70,7 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs, log: Log) -> Result<Ans
     let gap = claimed_gap(run);
     let ties_listed = run["ties_listed"].as_bool().unwrap_or(true);
     let stop = stopped_by_signal();
-    // a file that is not there has none
+    // a result without the file of ties has no ties
     let ties_csv = match results.is_there(ties::FILE) {
         true => results.with_todays_ids(ties::FILE)?,
         false => Vec::new(),

@@ -23,8 +23,8 @@ pub(crate) struct ImportArgs {
     /// Link where the arm ends, such as the flange or the tool
     #[arg(long, value_name = "LINK")]
     tip: String,
-    /// Stiffness of the joints (JSON): {"joints": {"NAME": {"stiffness_nm_per_rad": 2e4}}}; the keys are those of joints in
-    /// arm files: stiffness_nm_per_rad, windup or gear; motor; bearing
+    /// Stiffness of the joints (JSON): {"joints": {"NAME": {"stiffness_nm_per_rad": 2e4}}}; the keys are those of
+    /// joints in arm files: one of stiffness_nm_per_rad, windup and gear, and also motor and bearing
     #[arg(long, value_name = "FILE")]
     stiffness: Option<PathBuf>,
     /// Folder for arm.json and import.json

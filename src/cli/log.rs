@@ -12,7 +12,7 @@ use std::io::IsTerminal;
 pub(super) enum LogForm {
     /// Sentences, and a bar on a terminal
     Text,
-    /// A JSON object a line: event, and what belongs to it
+    /// One JSON object in each line: the event, with its numbers or its message
     Json,
 }
 

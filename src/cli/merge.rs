@@ -1,5 +1,5 @@
 //! `armwright merge` and `armwright status`: join the shards of a search into its front, and list the shards that are
-//! there.
+//! found.
 
 use super::asked::Asked;
 use super::exit::{Answer, Exit};
@@ -33,7 +33,8 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// Joins the shards of a search into its front. They must be of one study, one version and the same catalogs, and cover
-/// every design; what is missing is listed with the command that makes it. The result is that of one machine.
+/// every design; what is missing is listed with the command that makes it. The result is the same as that of a search
+/// on one machine.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: armwright run my-study.json --shard 1/2 --out parts/1-of-2\n         \
                   armwright run my-study.json --shard 2/2 --out parts/2-of-2\n         \
@@ -66,7 +67,7 @@ struct Found {
     manifest: Value,
     /// Number of the shard, and number of all shards.
     shard: Shard,
-    /// Numbers of the designs that it visited; `None` of an exact search.
+    /// Numbers of the designs that the shard visited; `None` if its search was exact.
     range: Option<Range<u128>>,
 }
 
@@ -110,10 +111,10 @@ pub(super) fn merge(
     Ok(Answer { text, exit: Exit::Done })
 }
 
-/// What shards are joined with.
+/// Everything that is needed to join shards, except the shards themselves.
 struct Joining<'a> {
     asked: &'a Asked,
-    /// Time of all shards \[s\].
+    /// Sum of the times that the shards took \[s\].
     elapsed_s: f64,
     catalogs: &'a Catalogs,
     overlay: Option<&'a Path>,
@@ -122,7 +123,7 @@ struct Joining<'a> {
 }
 
 impl Joining<'_> {
-    /// Joins shards of a visit to every design.
+    /// Joins the shards of an exhaustive search, which visits every design.
     fn exhaustive(&self, shards: &Shards) -> Result<Written, Failure> {
         let Self { asked, elapsed_s, catalogs, overlay, dir, .. } = *self;
         let study = &asked.study;
@@ -134,7 +135,7 @@ impl Joining<'_> {
         self.keep(&Finished::visit(asked, (&problem, &outcome), elapsed_s, (catalogs, overlay), dir))
     }
 
-    /// Joins shards of an exact search.
+    /// Joins the shards of an exact search.
     fn exact(&self, shards: &Shards) -> Result<Written, Failure> {
         let Self { asked: Asked { study, text, corrections }, elapsed_s, catalogs, overlay, dir, args } =
             *self;
@@ -160,7 +161,7 @@ impl Joining<'_> {
         })
     }
 
-    /// Says why no design meets the study, if that is so.
+    /// Fails if no design meets the limits of the study. The error says why.
     fn refuse_nothing(&self, status: Status) -> Result<(), Failure> {
         let why = || why_infeasible(&self.asked.study, self.catalogs, stopped_by_signal(), None);
         if status == Status::Infeasible { Err(Failure::Infeasible(why())) } else { Ok(()) }
@@ -244,26 +245,26 @@ impl Shards {
         }
     }
 
-    /// The study, and the time of all shards \[s\].
+    /// The study, and the sum of the times that the shards took \[s\].
     fn asked(&self, catalogs: &Catalogs) -> Result<(Asked, f64), Failure> {
         let first = self.by_number.values().next().ok_or_else(|| Failure::Internal("no shard".into()))?;
         let elapsed_s = |found: &Found| found.manifest["elapsed_s"].as_f64().unwrap_or_default();
         Ok((first.study(catalogs)?, self.by_number.values().map(elapsed_s).sum()))
     }
 
-    /// What each shard of a visit found.
+    /// What each shard of an exhaustive search found.
     fn swept(&self, study: &Study) -> Result<Vec<Swept>, Failure> {
         let materials = study.space.material_names().len();
         self.by_number.values().map(|found| found.swept(materials)).collect()
     }
 
-    /// What each shard of an exact search found, front by front.
+    /// What each shard of an exact search found, with one entry for each of its fronts.
     fn found(&self, study: &Study) -> Result<Vec<Vec<FoundInShard>>, Failure> {
         let read = |found: &Found| read_candidates_of(&found.dir, &found.manifest, study);
         self.by_number.values().map(read).collect()
     }
 
-    /// What the flags of all shards say.
+    /// The flag `key` of the search, which is the same in all shards; null if there is no such flag.
     fn flag(&self, key: &str) -> &Value {
         self.by_number.values().next().map_or(&Value::Null, |found| &found.manifest["flags"][key])
     }
@@ -273,7 +274,7 @@ impl Shards {
         self.flag("search") == "exact"
     }
 
-    /// The gap to which an exact search went.
+    /// The gap that the user asked for in an exact search, as a fraction; 0 for an exhaustive search.
     fn gap(&self) -> f64 {
         self.flag("gap").as_f64().unwrap_or_default()
     }
@@ -316,7 +317,7 @@ impl Found {
         out
     }
 
-    /// The command that computes the shard with this number in the same search as this one.
+    /// The command that computes another shard of the search of this shard: the one with the number `number`.
     fn command_of(&self, number: u32) -> String {
         let words = self.manifest["command"].as_array().into_iter().flatten().filter_map(Value::as_str);
         let words: Vec<String> = words.map(shell_word).collect();

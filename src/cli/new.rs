@@ -33,10 +33,11 @@ enum What {
     Campaign(CampaignArgs),
 }
 
-/// Arguments of the things that need nothing but a folder.
+/// Arguments of `new study`, `new arm` and `new parts`.
 #[derive(Debug, Args)]
 struct FolderArgs {
-    /// New folder, made with its parents; its name is the name of the study or arm. Nothing that is there is overwritten.
+    /// New folder, made with its parents; its name is the name of the study or arm. Nothing that is there is
+    /// overwritten.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
 }

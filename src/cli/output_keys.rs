@@ -1,5 +1,5 @@
-//! Keys and columns of the files that the program writes, for programs that read them. `tests/program/output_schemas.rs` holds
-//! them against files that it writes.
+//! Keys and columns of the files that the program writes, for programs that read them.
+//! `tests/program/output_schemas.rs` compares them with files that the program has written.
 
 use crate::arm::effect::catalogue::KINDS;
 use crate::arm::effect::kind::{Kind as EffectKind, Parameter, Place};
@@ -53,7 +53,7 @@ const PLATFORM: Key = required("platform", Kind::Text, "-", "System and processo
 const TIES_LISTED: Key =
     required("ties_listed", Kind::Flag, "-", "Whether tied drives are rows of their own.");
 
-/// An object of which only some keys are told; others are there too.
+/// The shape of an object of which only the keys `keys` are described. The object may have any other keys.
 const fn open(name: &'static str, about: &'static str, keys: &'static [Key]) -> Shape {
     Shape { name, about, keys, rules: &[], others: Some(&Kind::Anything) }
 }
@@ -400,7 +400,8 @@ static EXPECTED: Shape = Shape::new(
     &[],
 );
 
-/// A table that the program writes: its name, what it is, and its columns. `<link>` and `<joint>` stand for names of the arm.
+/// A table that the program writes: its name, what it is, and its columns. In the names of columns, `<link>` and
+/// `<joint>` stand for the names of links and joints.
 pub(super) struct OutputTable {
     pub name: &'static str,
     pub about: &'static str,
@@ -492,7 +493,7 @@ static BOM: [Key; 10] = [
 ];
 
 impl OutputTable {
-    /// The columns as a Table Schema.
+    /// The columns as a Table Schema, a JSON description of a CSV file.
     pub(super) fn schema(&self) -> Value {
         let field = |column: &Key| {
             let kind = match column.kind {
@@ -520,7 +521,7 @@ impl OutputTable {
     }
 }
 
-/// Name of the schema of effects on the command line, and what it is.
+/// Name of the schema of effects on the command line, and its description.
 pub(super) const EFFECTS: (&str, &str) =
     ("effects", "An effect as arm files, studies and verdicts have it: places, parameters and their bounds.");
 
@@ -534,7 +535,8 @@ pub(super) fn effects_schema() -> Value {
     })
 }
 
-/// The schema of an effect; one for each of its places where they have parameters of their own.
+/// The schemas of an effect: one for each set of parameters. The effect has the same parameters at all places of one
+/// schema.
 fn of_effect(kind: &EffectKind) -> Vec<Value> {
     let mut groups: Vec<(Vec<Place>, &[Parameter])> = Vec::new();
     for &place in kind.places {
@@ -587,7 +589,7 @@ fn of_parameter(parameter: &Parameter) -> Value {
     }
     let mut number = json!({"type": "number"});
     for (key, bound) in [("minimum", parameter.low), ("maximum", parameter.high)] {
-        // an infinite bound is none
+        // an infinite bound is left out
         if bound.is_finite() {
             number[key] = json!(bound);
         }

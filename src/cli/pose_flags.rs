@@ -1,11 +1,11 @@
-//! The pose of an arm on the command line: `--pose-deg` where every joint turns, `--pose` anywhere.
+//! The pose of an arm on the command line: `--pose-deg` for an arm whose joints all turn, `--pose` for any arm.
 
 use super::failure::Failure;
 use super::values::{entries, number_list};
 use crate::arm::pose::{DrivenJoint, any_slides, pose_of_keys};
 use clap::Args;
 
-/// A pose.
+/// Options that state a pose.
 #[derive(Debug, Clone, Args)]
 pub(super) struct PoseArgs {
     /// One angle per joint, base to tip [deg]; default all zero
@@ -39,7 +39,7 @@ impl PoseArgs {
     /// The entries of the pose \[deg, mm\], every joint at 0 by default.
     ///
     /// # Errors
-    /// It is no pose of these joints.
+    /// The options do not give a pose of the joints `driven`.
     pub(super) fn entries(&self, driven: &[DrivenJoint]) -> Result<Vec<f64>, Failure> {
         if let Some(PoseEntries(given)) = &self.pose {
             let given = given.iter().map(|(key, entry)| (key.as_str(), *entry));

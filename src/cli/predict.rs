@@ -24,7 +24,7 @@ pub(crate) struct PredictArgs {
     /// Readings: a static, modal, windup or positions file.
     #[arg(value_name = "READINGS")]
     pub readings: PathBuf,
-    /// The campaign.json that says how they were taken.
+    /// The campaign.json that says how the readings were taken.
     #[arg(long, value_name = "FILE")]
     pub campaign: PathBuf,
     /// File to write; default: standard output.

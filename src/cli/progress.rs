@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 
 /// Time between two looks at the state of a search.
 const LOOK_EVERY: Duration = Duration::from_millis(50);
-/// Time between two lines of text.
+/// Time between two lines of text that show the progress.
 const LINE_EVERY: Duration = Duration::from_secs(10);
 /// Time between two lines of the record. A line is added earlier if the optimality gap changes.
 const RECORD_EVERY: Duration = Duration::from_secs(1);
@@ -23,7 +23,7 @@ const RECORD_EVERY: Duration = Duration::from_secs(1);
 /// The state of a search at one moment. A number is `None` if the search does not know it while it runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Progress {
-    /// Number of designs visited so far; of an exact search, number of designs evaluated so far.
+    /// Number of designs visited so far. In an exact search, number of designs evaluated so far.
     pub designs: u64,
     /// Optimality gap proved so far, as a fraction.
     pub gap: Option<f64>,
@@ -102,7 +102,7 @@ impl<'r> Watch<'r> {
     }
 
     /// Looks at a search again and again until `finished` is set. Each time, `see` is called with the elapsed time to
-    /// show the progress, and `now`, the state of the search, is added to the record if a line is due.
+    /// show the progress, and the state of the search, which `now` returns, is added to the record if a line is due.
     fn look(&self, finished: &AtomicBool, now: impl Fn() -> Progress, mut see: impl FnMut(Duration)) {
         let (mut next, mut last_gap) = (Duration::ZERO, None);
         while !finished.load(Ordering::Relaxed) {
@@ -162,7 +162,8 @@ impl<'r> Watch<'r> {
     }
 }
 
-/// A function that calls `say` at most every ten seconds of elapsed time. It is itself called with the elapsed time.
+/// A function that calls `say` at most every ten seconds of elapsed time. The function is itself called with the
+/// elapsed time.
 fn in_lines(say: impl Fn(Duration)) -> impl FnMut(Duration) {
     let mut next = LINE_EVERY;
     move |elapsed| {

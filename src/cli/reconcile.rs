@@ -45,7 +45,7 @@ pub(crate) struct ReconcileArgs {
     /// links of the same name.
     #[arg(long, value_name = "STUDY")]
     pub study: Option<String>,
-    /// Applies to each of the study's two runs.
+    /// Search options, which apply to each of the study's two runs.
     #[command(flatten)]
     pub how: SearchArgs,
     /// Folder to write into, made with its parents; default: `results/<campaign>`.
@@ -53,8 +53,9 @@ pub(crate) struct ReconcileArgs {
     pub out: Option<PathBuf>,
 }
 
-/// Reads a campaign, finds the verdict and writes it. If the folder already has a verdict from the same readings,
-/// arm, catalogs and version, it is used again. So a script over many campaigns can be repeated after it was stopped.
+/// Reads a campaign, finds the verdict and writes it. If the folder already has a verdict from the same readings, arm,
+/// catalogs and version, this verdict is used again. So a script over many campaigns can be repeated after it was
+/// stopped.
 ///
 /// # Errors
 /// The input files have faults, or a file cannot be written.
@@ -151,7 +152,7 @@ fn planned(args: &ReconcileArgs, campaign: &Campaign, catalogs: &Catalogs) -> Re
     Ok(out)
 }
 
-/// Writes the verdict, and then the page. Returns all files and a text for the terminal. If making the page fails, it
+/// Writes the verdict, and then the page. Returns all files and a text for the terminal. If the page cannot be made, it
 /// is left out with a warning, and the verdict stays.
 fn keep(
     campaign: &Campaign,

@@ -38,7 +38,7 @@ pub(super) struct Rerun {
     /// Files of both runs in `study/nominal` and `study/corrected`, and `study_changes.csv` if both runs found a
     /// front.
     pub files: Files,
-    /// Exit status of the program. If one of the runs was stopped, it is the status of this run.
+    /// Exit status of the program. If one of the runs was stopped, the status is that of this run.
     pub exit: Exit,
 }
 

@@ -20,7 +20,7 @@ use std::time::Duration;
 
 /// Folder for unfinished work inside a folder of results.
 const STATE: &str = ".armwright";
-/// Name of the lock file in this folder.
+/// Name of the lock file in the folder [`STATE`].
 const LOCK: &str = "lock";
 /// How many times a reader waits until a writer is done, and how long each time.
 const READER_WAITS: (u32, Duration) = (20, Duration::from_millis(100));
@@ -151,7 +151,7 @@ impl Drop for ResultFolder {
     }
 }
 
-/// Removes the state of an unfinished search, and what it leaves empty.
+/// Removes the file `state` with the state of an unfinished search. Its folder is removed too if it is then empty.
 ///
 /// # Errors
 /// The state cannot be removed.
@@ -162,7 +162,8 @@ pub(super) fn settle(state: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The file of the state of an unfinished search in a folder of results.
+/// The path of the file that saves the state of an unfinished search, in a folder of results. `name` tells the searches
+/// of the folder apart.
 pub(super) fn unfinished_in(folder: &Path, name: &str) -> PathBuf {
     folder.join(STATE).join(format!("{name}{ENDING}"))
 }
@@ -224,8 +225,8 @@ fn roll_forward(folder: &Path) -> io::Result<()> {
     sweep(&ready)
 }
 
-/// Removes a file of an earlier result, and its folders if they are then empty. Nothing is removed behind a symbolic
-/// link, because it leads to files that are not part of the result.
+/// Removes a file of an earlier result, and its folders if they are then empty. No file is removed whose path leads
+/// over a symbolic link, because such a file is not part of the result.
 fn remove_listed(folder: &Path, name: &str) -> io::Result<()> {
     let path = folder.join(name);
     if has_strange_parent(folder, name) || !is_there(&path) || path.is_dir() && !path.is_symlink() {

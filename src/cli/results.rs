@@ -149,8 +149,8 @@ impl Results {
         if self.has_earlier_ids() { number_of_earlier(id) } else { number_of(id) }
     }
 
-    /// Whether the names of designs lack the `x` in front that this version writes. It is so in results of early
-    /// versions, which listed no files.
+    /// Whether the names of designs lack the `x` at their beginning that this version writes. The names lack it in
+    /// results of early versions, which listed no files.
     fn has_earlier_ids(&self) -> bool {
         self.files.is_none()
     }

@@ -61,13 +61,13 @@ pub(crate) struct RunArgs {
     /// boxes_open. There is a line every second and whenever the gap falls; null stands for what is not known
     #[arg(long, value_name = "FILE")]
     progress: Option<PathBuf>,
-    /// Search part M of N of the designs only, and write what it found for `armwright merge`. The parts can run one after
-    /// the other or on many machines; the front is the same. Every design is visited unless --search exact or --gap is
-    /// given
+    /// Search part M of N of the designs only, and write what it found for `armwright merge`. The parts can run one
+    /// after the other or on many machines; the front is the same. Every design is visited unless --search exact or
+    /// --gap is given
     #[arg(long, value_name = "M/N", value_parser = shard_of)]
     shard: Option<Shard>,
-    /// Shards of exact searches of the same study, such as one to a wide gap on one machine: a shard of an exact search
-    /// begins with the designs that they found, and so prunes from the start what they dominate
+    /// Shards of other exact searches of the same study, such as a search with a wide gap on one machine. A shard of an
+    /// exact search begins with the designs that they found, and discards from the start what these dominate
     #[arg(long, value_name = "SHARD|DIR", num_args = 1.., requires = "shard")]
     incumbents: Vec<PathBuf>,
     #[command(flatten)]
@@ -248,7 +248,7 @@ fn run_paper(args: &RunArgs, catalogs: &Catalogs) -> Result<String, Failure> {
 /// Significant digits of the numbers in the tables of a page. The files have all digits.
 const PAGE_DIGITS: usize = 5;
 
-/// The page for a browser of a study of the paper, with its pictures and tables.
+/// The page, for a browser, of one of the paper's studies, with the pictures and tables of the study.
 fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> DocumentPage {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     let ending = |end: &'static str| files.iter().filter_map(move |(n, b)| Some((n.strip_suffix(end)?, b)));

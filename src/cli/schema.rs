@@ -1,5 +1,5 @@
-//! `armwright schema`: what a kind of file may hold, for editors and other programs, and what the files hold that the program
-//! writes.
+//! `armwright schema`: the keys or columns of a kind of file, for editors and other programs. It describes the files
+//! that users write and the files that the program writes.
 
 use super::failure::Failure;
 use super::output_keys::{EFFECTS, OUTPUTS, TABLES, effects_schema};
@@ -35,7 +35,7 @@ const PAGE_HEAD: &str = "# Keys of all files\n\nEvery key that the readers know,
     A key that is not here is a fault in a file. [arm-format.md](arm-format.md), [study-format.md](study-format.md) and \
     [reconcile.md](reconcile.md) explain how the keys work together. `armwright schema KIND` prints the same as a JSON Schema.\n";
 
-/// What stands before the keys of files that the program writes.
+/// Text before the keys of the files that the program writes.
 const WRITTEN_HEAD: &str = "The following files are written by the program, for other programs to read. A key that is added later is \
     no change of the form; none is renamed. What stands under *default* says when a key is missing. The columns of `front.csv` and \
     `bom.csv` are printed by `armwright schema front` and `bom`, the parameters of effects by `armwright schema effects`.\n";
@@ -57,7 +57,7 @@ pub(super) fn run(args: &SchemaArgs) -> Result<String, Failure> {
     }
 }
 
-/// The schema of a table, or of effects.
+/// The schema of the table `name`, or that of effects; `None` if there is no such schema.
 fn table_schema(name: &str) -> Option<Value> {
     let catalog = CatalogFile::ALL.into_iter().find(|file| stem(*file) == name);
     let written = || TABLES.iter().find(|table| table.name == name).map(|table| table.schema());

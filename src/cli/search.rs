@@ -45,19 +45,19 @@ pub(crate) struct SearchArgs {
     /// gap_percent
     #[arg(long, value_name = "PERCENT", value_parser = part_or_none)]
     gap: Option<f64>,
-    /// Discard what an earlier run left in the folder of results, and begin anew. Without it the same command goes on where
-    /// a search was when it was stopped, killed, or lost its machine
+    /// Discard what an earlier run left in the folder of results, and begin anew. Without it the same command goes on
+    /// where a search was when it was stopped, killed, or lost its machine
     #[arg(long)]
     fresh: bool,
 }
 
 impl SearchArgs {
-    /// What asks for a method and a gap.
+    /// Options that ask for the method `search` and the gap `gap`, as far as they are given.
     pub(super) fn asking_for(search: Option<SearchMethod>, gap: Option<f64>) -> Self {
         Self { search, gap, ..Self::default() }
     }
 
-    /// What is asked of the search.
+    /// What the user asks of the search: the method, and whether there is a gap and a time limit.
     fn wish(&self) -> SearchWish {
         let (has_gap, has_time_limit) = (self.gap.is_some(), self.time_limit.is_some());
         SearchWish { method: self.search, has_gap, has_time_limit }
@@ -84,11 +84,12 @@ impl SearchArgs {
         Ok(self.wish().check(study, catalogs)?)
     }
 
-    /// Checks that a search of one shard suits the study, and counts the study's designs. Every design is visited unless the
-    /// exact search or a gap is asked for: an estimate must not decide otherwise for another shard.
+    /// Checks that the search options suit a search of one shard. Returns the search method and the number of designs
+    /// of the study. The method is the exhaustive search unless the user asks for the exact search or for a gap. No
+    /// estimate decides, because it could decide otherwise for another shard.
     ///
     /// # Errors
-    /// It does not suit the study, would take years, or a time limit is asked for.
+    /// The options do not suit the study, the search would take years, or the user gives a time limit.
     pub(super) fn check_shard(
         &self,
         study: &Study,
@@ -105,7 +106,8 @@ impl SearchArgs {
         Ok((method, designs))
     }
 
-    /// The gap to which an exact search of a study goes.
+    /// The gap at which an exact search of the study ends, as a fraction: the one that the user gives, or else that of
+    /// the study.
     pub(super) fn gap_of(&self, study: &Study) -> f64 {
         self.gap.unwrap_or(study.gap)
     }
@@ -201,7 +203,7 @@ impl With<'_> {
     }
 }
 
-/// Searches a study by a visit to every design.
+/// Searches a study by visiting every design.
 fn visit_all(asked: &Asked, with: &With) -> Result<Written, Failure> {
     let study = &asked.study;
     let With { catalogs, overlay, dir, keep, supplements, record, log, .. } = *with;

@@ -1,5 +1,5 @@
-//! `armwright run STUDY --shard M/N`: searches one part of a study's designs and writes what it found with a manifest, for
-//! `armwright merge`.
+//! `armwright run STUDY --shard M/N`: searches one part of a study's designs. It writes the designs that it found and a
+//! manifest, both for `armwright merge`.
 
 use super::asked::Asked;
 use super::exit::{Answer, Exit};
@@ -21,7 +21,7 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-/// Reads `M/N`.
+/// Reads a shard from the command line: `M/N`, the number of the part and the number of all parts.
 pub(super) fn shard_of(text: &str) -> Result<Shard, String> {
     let fault = || "a part and the number of parts, such as 2/16, with 1 for the first part".to_string();
     let (number, of) = text.split_once('/').ok_or_else(fault)?;
@@ -32,10 +32,11 @@ pub(super) fn shard_of(text: &str) -> Result<Shard, String> {
     }
 }
 
-/// Largest number of shards. With more of them there would be more files than work.
+/// Largest number of shards. More shards would each have too little work for the files that they write.
 pub(super) const MOST_SHARDS: u32 = 100_000;
 
-/// Searches a shard. `words` are those of the command line that tell which study, limits, catalogs and search.
+/// Searches a shard. `words` are the words of the command line that name the study, the limits, the catalogs and the
+/// kind of search.
 ///
 /// # Errors
 /// The search does not suit the study, the shard cannot be written, or the user stops it.
@@ -88,7 +89,7 @@ pub(super) fn run_shard(
         (CANDIDATES.to_string(), searched.candidates.into_bytes()),
         (STUDY.to_string(), asked.text.clone().into_bytes()),
     ];
-    // it lists the others with their hashes and is written last: where it is, the rest is complete
+    // the manifest lists the other files with their hashes and is written last: if it exists, the others are complete
     files.push((SHARD.into(), pretty(&manifest)));
     (with.keep)(&files)?;
     Ok(Answer { text, exit: Exit::Done })
@@ -96,14 +97,14 @@ pub(super) fn run_shard(
 
 /// A shard that was searched.
 struct Searched {
-    /// Its candidates as a file.
+    /// The candidates that the shard found, as the text of a file.
     candidates: String,
-    /// What is said of its search in the manifest.
+    /// Entries of the manifest that describe the search.
     facts: Value,
 }
 
 impl Searched {
-    /// What was done, for the terminal.
+    /// A text for the terminal that says what was searched and which files were written.
     fn words(&self, shard: Shard, elapsed_s: f64, dir: &Path) -> String {
         let range = [0, 1].map(|end| self.facts["range"][end].as_u64());
         let what = match range {
@@ -124,7 +125,7 @@ impl Searched {
     }
 }
 
-/// Nothing was written because the user stopped the search.
+/// The failure of a shard that the user stopped. Nothing was written.
 fn stopped(shard: Shard) -> Failure {
     Failure::Interrupted(format!(
         "shard {}/{} was stopped; nothing was written, the same command goes on from there",
@@ -132,7 +133,7 @@ fn stopped(shard: Shard) -> Failure {
     ))
 }
 
-/// Visits the designs of a shard; also its time \[s\].
+/// Visits the designs of a shard. Returns what was found, and the time that the search took \[s\].
 fn visit(asked: &Asked, shard: Shard, with: &With) -> Result<(Searched, f64), Failure> {
     let flags = json!({"search": "exhaustive", "shard": [shard.number, shard.of]});
     let (stop, unfinished) = (stopped_by_signal(), with.go_on(asked, flags)?);
@@ -153,7 +154,8 @@ fn visit(asked: &Asked, shard: Shard, with: &With) -> Result<(Searched, f64), Fa
     Ok((Searched { candidates: candidates_csv(&swept), facts }, started.elapsed().as_secs_f64()))
 }
 
-/// Searches the subtrees of a shard; also its time \[s\].
+/// Searches the subtrees of a shard by the exact search. Returns what was found, and the time that the search took
+/// \[s\].
 fn search_exactly(
     asked: &Asked,
     shard: Shard,
@@ -195,15 +197,16 @@ fn search_exactly(
     Ok((Searched { candidates: found_csv(&found), facts }, started.elapsed().as_secs_f64()))
 }
 
-/// What other searches of the study found.
+/// What shards of other exact searches of the study found.
 struct Incumbents {
     found: Vec<Vec<FoundInShard>>,
-    /// Hashes of their files.
+    /// Hashes of the files with the candidates, one for each shard in `found`.
     hashes: Vec<Value>,
 }
 
 impl Incumbents {
-    /// Reads shards of exact searches. They may be of another gap and number of shards.
+    /// Reads shards of exact searches. Their gap and their number of shards may differ from those of the search that
+    /// begins with their designs.
     ///
     /// # Errors
     /// A folder has no shard, or one of another study, other catalogs or another kind of search.

@@ -10,20 +10,21 @@ use crate::study::shards::read_found;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
-/// Names of the other files of a shard.
+/// Name of the file with the candidates that a shard found.
 pub(super) const CANDIDATES: &str = "candidates.csv";
+/// Name of the file with the study, in the folder of a shard.
 pub(super) const STUDY: &str = "study.json";
 
 /// Keys in which all shards of one search agree.
 pub(super) const COMMON: [&str; 5] =
     ["tool_version", "study_hash", "catalogs_hash", "flags", "designs_total"];
 
-/// The folder of a shard, next to those of the others.
+/// The folder of a shard. `shards` is the folder that contains the folders of all shards of the search.
 pub(super) fn folder_of(shards: &Path, shard: Shard) -> PathBuf {
     shards.join(format!("{}-of-{}", shard.number, shard.of))
 }
 
-/// Reads what a shard of an exact search found, front by front.
+/// Reads what a shard of an exact search found, with one entry for each of its fronts.
 ///
 /// # Errors
 /// The file or the manifest is not one that this program writes.
@@ -49,7 +50,7 @@ pub(super) fn read_candidates_of(
     Ok(found)
 }
 
-/// The folders of shards among some folders, or in them.
+/// The folders of all shards that are found: those among `folders` that are shards, and those inside the other folders.
 ///
 /// # Errors
 /// A folder cannot be read, or none has a shard.
@@ -68,10 +69,11 @@ pub(super) fn shards_in_all(folders: &[PathBuf]) -> Result<Vec<PathBuf>, Failure
     Ok(all)
 }
 
-/// Folders are searched for shards to this depth.
+/// Number of levels of subfolders that are searched for shards.
 const DEEPEST: usize = 3;
 
-/// The folders of shards in a folder, itself among them, in the order of their names.
+/// The folders of the shards in `folder`, in the order of their names. If `folder` is itself a shard, it is the only
+/// one. `depth` is the number of levels of subfolders that are searched.
 fn shards_in(folder: &Path, depth: usize) -> Result<Vec<PathBuf>, Failure> {
     if folder.join(SHARD).is_file() {
         return Ok(vec![folder.to_path_buf()]);

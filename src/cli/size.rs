@@ -193,7 +193,7 @@ fn room_words(room: &LinkRoom) -> String {
     format!("{}{}", part("gear", room.gear_m), part("motor", room.motor_m))
 }
 
-/// What loads the output bearing of a joint; nothing if it has none.
+/// A line with the loads on the output bearing of a joint: at rest, in a ramp and in a stop. Empty if there are none.
 fn bearing_line(joint: &str, demand: &BearingDemand) -> String {
     if demand.is_zero() {
         return String::new();

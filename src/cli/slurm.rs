@@ -12,9 +12,9 @@ use crate::study::tolerance::part;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
-/// Prints a shell script that submits a study as an array of shards, and a job that joins them when all are done. A shard
-/// that fails can be submitted again by itself (`armwright status`), and the script can be run again: shards that are
-/// there are not swept twice.
+/// Prints a shell script that submits a study as an array of shards, and a job that joins them when all are done. A
+/// shard that fails can be submitted again by itself (`armwright status`), and the script can be run again: shards that
+/// are there are not swept twice.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: armwright slurm my-study.json --shards 64 --cpus 8 > submit.sh\n         sh submit.sh"
@@ -31,8 +31,8 @@ pub(crate) struct SlurmArgs {
     /// End the exact search at this gap, such as 1%, as in `armwright run`
     #[arg(long, value_name = "PERCENT", value_parser = part_or_none)]
     gap: Option<f64>,
-    /// Before the shards of an exact search, submit a job that searches the whole study to this gap, such as 10%; the shards
-    /// begin with what it found
+    /// Before the shards of an exact search, submit a job that searches the whole study to this gap, such as 10%; the
+    /// shards begin with what it found
     #[arg(long, value_name = "PERCENT", value_parser = part)]
     gap_first: Option<f64>,
     /// Processors of each shard

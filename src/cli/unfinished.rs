@@ -37,7 +37,7 @@ pub(super) struct Unfinished {
     path: PathBuf,
     /// Keys that identify the search.
     search: Value,
-    /// The state that an earlier process saved.
+    /// The state that an earlier process saved; `None` if there is none.
     from: Option<Vec<u8>>,
     /// Time that earlier processes spent on the search.
     earlier: Duration,
@@ -179,8 +179,8 @@ pub(super) fn remove(path: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Time between two states, unless the environment asks for another one: a slow shared disk is written less often, and a test
-/// writes more often.
+/// Time between two saved states. The environment variable `ARMWRIGHT_KEEP_EVERY_MS` may set another time, such as a
+/// longer one for a slow shared disk or a shorter one for a test.
 fn keep_every() -> Duration {
     let asked = std::env::var("ARMWRIGHT_KEEP_EVERY_MS").ok();
     asked.and_then(|ms| ms.parse().ok()).map_or(KEEP_EVERY, Duration::from_millis)

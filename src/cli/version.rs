@@ -1,11 +1,11 @@
-//! Refuses results of earlier versions, which do not count output bearings.
+//! Refuses results of early versions, whose model had no output bearings.
 
 use super::failure::Failure;
 use crate::input::json::{Fault, Faults};
 use serde_json::Value;
 use std::path::Path;
 
-/// The first version whose results count output bearings.
+/// The first version whose model has output bearings.
 const WITH_BEARINGS: [u64; 3] = [0, 2, 0];
 
 /// Refuses a result that was computed before output bearings were modelled. Its objectives are not those that this

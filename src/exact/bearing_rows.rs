@@ -11,13 +11,14 @@ use crate::mechanics::{Twist, Wrench, linear, rotation_twist, stack};
 use crate::sizing::bearing::{BearingDemand, BearingLoad};
 use nalgebra::{Matrix6, Vector3};
 
-/// A coefficient is set to zero if it is below this fraction of the greatest magnitude that the given wrench could
-/// have. It is then due to rounding.
+/// A component of a wrench is set to zero if its magnitude is below this fraction of the greatest magnitude that a
+/// component of this wrench could have. Such a component is due to rounding.
 const NOTHING: f64 = 1e-13;
 /// Number of components of a load: moments about the two axes across the joint axis, forces along these two axes, and
 /// the force along the joint axis.
 const COMPONENTS: usize = 5;
-/// Indices of the components whose length is the moment, the radial force and the axial force.
+/// Indices of the components that make up the moment, the radial force and the axial force. Each of these three is the
+/// length of its components as a vector.
 const MOMENT: [usize; 2] = [0, 1];
 const RADIAL: [usize; 2] = [2, 3];
 const AXIAL: [usize; 1] = [4];
@@ -36,8 +37,8 @@ pub(super) struct BearingRows {
 /// The components of a load, each as a linear function of the numbers of the parts.
 type Components = [Sum; COMPONENTS];
 
-/// A linear function `fixed + Σ coefficient · number` of the weights or of the inertias. `terms` holds the index and
-/// the coefficient of each number whose coefficient is not zero.
+/// A linear function `fixed + Σ coefficient · number` of the weights or of the inertias. `terms` has the index and the
+/// coefficient of each number whose coefficient is not zero.
 #[derive(Default)]
 struct Sum {
     fixed: f64,
@@ -85,8 +86,8 @@ impl Frame {
         Self([about(first), about(second), along(first), along(second), along(axis)])
     }
 
-    /// The moments and forces of `wrench` about and along the axes of this frame. A component that is only rounding
-    /// becomes zero.
+    /// The moments and forces of `wrench` about and along the axes of this frame. A component that is only due to
+    /// rounding becomes zero.
     fn components(&self, wrench: &Wrench) -> [f64; COMPONENTS] {
         self.0.each_ref().map(|unit| {
             let component = unit.dot(wrench);
@@ -95,7 +96,7 @@ impl Frame {
         })
     }
 
-    /// The components of the wrench `fixed + Σ wrench · number`. `wrenches` holds the index of each number (a weight or
+    /// The components of the wrench `fixed + Σ wrench · number`. `wrenches` has the index of each number (a weight or
     /// an inertia) and the wrench per unit of it.
     fn sums(&self, fixed: &Wrench, wrenches: impl Iterator<Item = (usize, Wrench)>) -> Components {
         let mut sums: Components = self.components(fixed).map(|fixed| Sum { fixed, terms: Vec::new() });
@@ -125,7 +126,7 @@ impl BearingRows {
             let lines = ramp.inertia.as_flattened().iter().map(|form| form * ramp.acceleration);
             frame.sums(&(ramp.fixed * ramp.acceleration), lines.enumerate())
         };
-        // A joint whose ramp loads nothing here need not be looked at for every box.
+        // A joint whose ramp does not load this bearing is left out, so that it takes no time in any box.
         let counts = |sums: &Components| sums.iter().any(|sum| sum.fixed != 0.0 || !sum.terms.is_empty());
         Self { at_rest, ramps: ramps.map(of_ramp).filter(counts).collect() }
     }
@@ -155,7 +156,7 @@ impl BearingRows {
     }
 
     /// Whether none of the three loads on the bearing (moment, radial force, axial force) can fall when a drive gets
-    /// heavier. `is_drive` tells whether the piece with an index is a drive.
+    /// heavier. `is_drive` tells whether the piece with a given index is a drive.
     ///
     /// The length of a sum of vectors grows with one contribution if this contribution has no negative dot product with
     /// any other. For `a` at rest and `b` of a ramp, the greater of `|a + b|` and `|a - b|` grows if `|a|`, `|b|` and
@@ -289,8 +290,9 @@ mod tests {
     use serde_json::json;
     use std::collections::BTreeSet;
 
-    /// A study of an arm with three joints whose drives are sized, in two poses. The upper arm, between the second and
-    /// the third joint, has an offset to the side.
+    /// A study of an arm with three joints whose drives are sized, in the pose `pose_deg` and in the stretched pose.
+    /// The upper arm, between the second and the third joint, has an offset of `side_m` to the side. `tip_n` is the
+    /// force at the tip along y.
     fn study(pose_deg: [f64; 3], side_m: f64, tip_n: f64, catalogs: &Catalogs) -> Study {
         let drives =
             json!({"gear_series": ["CSG"], "ratios": [100], "motor_models": ["ILM70x18", "ILM85x26"]});

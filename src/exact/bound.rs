@@ -1,10 +1,11 @@
 //! The bound of a box: for each objective, the best value that any of its members could have.
 //!
-//! | objective | bound of the box |
-//! |---|---|
-//! | mass | the sum of the least masses |
-//! | tip deflection | torques, forces and compliances are intervals and give a box for the tip's displacement; the bound is the distance of that box from zero |
-//! | lowest mode | the Rayleigh quotient of a trial shape ([`shape`](super::shape)) with every stiffness at its greatest and every inertia at its least; the slope of a gear's curve is the greatest that it has under the torques of the box |
+//! - *mass*: the sum of the least masses.
+//! - *tip deflection*: torques, forces and compliances are intervals, so each component of the tip's displacement lies
+//!   in an interval too. The bound is the length of the shortest displacement within these intervals.
+//! - *lowest mode*: the Rayleigh quotient of a trial shape ([`shape`](super::shape)) with every stiffness at its
+//!   greatest and every inertia at its least. For a gear, the slope of the torsion curve is the greatest that it has
+//!   under the torques of the box.
 //!
 //! If a joint or a link cannot carry even its least load, the whole box is infeasible.
 
@@ -259,8 +260,8 @@ impl<'c> Problem<'c> {
             if !pose.contributions_align {
                 work.greatest_tip_m.push(most_m);
             }
-            // Each component of the tip's displacement has its own interval, so the nearest point of the box
-            // to zero is found component by component.
+            // Each component of the tip's displacement has its own interval, so the shortest displacement is found
+            // component by component.
             let nearest = Vector3::from(tip_m.map(|[low, high]| if low > 0.0 { low } else { high.min(0.0) }));
             work.tip_directions.push(nearest.try_normalize(0.0).unwrap_or_default());
             if nearest.norm() > worst {
@@ -271,7 +272,7 @@ impl<'c> Problem<'c> {
         Some(worst)
     }
 
-    /// Indices of the cases that count for deflection and lowest mode.
+    /// Indices of the judged cases, over which deflection and lowest mode are taken.
     pub(super) fn judged_cases(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.poses.len()).filter(|&case| self.poses[case].judged)
     }

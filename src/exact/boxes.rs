@@ -12,7 +12,7 @@ use super::shape::Shape;
 use super::work::Work;
 use std::sync::Arc;
 
-/// Greatest number of boxes that one task bounds. Then it returns the boxes that are still open.
+/// Greatest number of boxes that one task bounds. After that, the task returns the boxes that are still open.
 const BOXES: usize = 32;
 
 /// A box that waits to be bounded, with the trial shapes and the bound of the box from which it was halved.
@@ -28,7 +28,8 @@ impl OpenBox {
         Self::first(problem, &[problem.root()]).pop()
     }
 
-    /// Boxes of a space that are searched first. None if no design of the space meets the constraints.
+    /// The boxes `boxes` as open boxes, with which a search starts. They have the first trial shapes of the whole
+    /// space, and no bound yet. Empty if no design of the space meets the constraints.
     pub(super) fn first(problem: &Problem, boxes: &[DesignBox]) -> Vec<Self> {
         let Some(shapes) = problem.first_shapes(&mut Work::default()).map(Arc::new) else {
             return Vec::new();
@@ -87,7 +88,8 @@ fn go_through_boxes<K: Sync, F: Send + Default>(
 }
 
 /// Bounds the box `first` and then boxes into which it is divided, depth first, until [`BOXES`] boxes are bounded.
-/// `open` bounds one box and returns its parts. Returns the boxes that are still open and the designs found.
+/// `open` bounds one box and returns the boxes into which it is divided. Returns the boxes that are still open and the
+/// designs found.
 pub(super) fn open_boxes<F: Default>(
     budget: &Budget,
     first: OpenBox,
@@ -104,8 +106,9 @@ pub(super) fn open_boxes<F: Default>(
     Done { tasks: stack, findings }
 }
 
-/// One pass over some boxes and all into which they are divided. `keep` is shown the state and the open boxes after each
-/// round. Returns the bounds of the boxes that are still open when the search is stopped.
+/// One pass with the slack `slack` over the boxes `first` and all boxes into which they are divided. `keep` is shown
+/// the state and the open boxes after each round. Returns the bounds of the boxes that are still open when the search
+/// is stopped.
 pub(super) fn pass_by_boxes(
     budget: &Budget,
     problem: &Problem,

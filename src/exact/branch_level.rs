@@ -71,11 +71,12 @@ impl Problem<'_> {
         best.map(|(_, level)| level)
     }
 
-    /// For each piece, the relative fall of the Rayleigh quotient of `shape` if gears inboard were loaded by a torque
-    /// of middle size. The bound assumes that each gear works in the stiffest segment of its torsion curve that any
-    /// torque of the box reaches, and the torque is uncertain because the weights outboard are. The fall is divided
-    /// among these weights in proportion to the width that each adds to the interval of the torque. `strain` is twice
-    /// the strain energy of the shape.
+    /// For each piece, the relative fall of the Rayleigh quotient of `shape` if gears inboard had a middle stiffness.
+    /// The bound takes the greatest slope of each gear's torsion curve that any torque of the box reaches. The torque
+    /// is known only as an interval, because the weights outboard are intervals. The middle stiffness is the geometric
+    /// mean of this slope and the slope at the least torque. The fall is divided among the pieces outboard in
+    /// proportion to the width that their weights add to the interval of the torque. `strain` is twice the strain
+    /// energy of the shape.
     fn softened_by_torque(&self, case: usize, shape: &Shape, strain: f64, work: &Work) -> Vec<f64> {
         let mut softened = vec![0.0; self.parts.len()];
         let pose = &self.poses[case];

@@ -15,8 +15,9 @@ use super::problem::{Part, Problem};
 use super::rows::{RelaxedDesign, Rows};
 use super::tree::Key;
 
-/// For drives and for tubes: the two coordinates of an option's key ([`Key`]) that stand for its mass and for its
-/// stiffness, each as the index of the coordinate and the factor by which it multiplies the logarithm.
+/// The two coordinates of an option's key ([`Key`]) that stand for its mass and for its stiffness: [`DRIVE`] for drives
+/// and [`TUBE`] for tubes. Each is given by its index in the key and by the factor with which the key multiplies the
+/// logarithm of the number.
 const DRIVE: [(usize, f64); 2] = [(3, 1.0), (0, 4.0)];
 const TUBE: [(usize, f64); 2] = [(0, 2.0), (1, 1.0)];
 /// A division whose expected benefit is below this is not made, because the benefit is due to rounding.
@@ -31,9 +32,9 @@ const SAME: f64 = 1e-3;
 /// A way to divide a region into two: the quantity that is divided, and the value at which it is divided.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Branching {
-    /// Expected benefit of the division. It is the part of the weighted sum of rows (inequalities of the bound) that
-    /// the McCormick bounds underestimate or in which the mixed designs differ, as far as the division can reduce it.
-    /// The rows are scaled, so it has no unit.
+    /// Expected benefit of the division. The weighted sum of rows (inequalities of the bound) is too low for two
+    /// reasons: McCormick bounds underestimate products, and the mixed designs differ. The benefit is the part of this
+    /// error that the division can remove. The rows are scaled, so it has no unit.
     gain: f64,
     /// The quantity that is divided.
     by: BranchOn,
@@ -83,8 +84,8 @@ impl Rows<'_> {
                 let at = mean(mixed, |member| key(member)[axis]);
                 branchings.push(Branching { gain, by: BranchOn::Options { level, axis }, at });
             }
-            // The point lies halfway between the best value and the mean. One half then excludes the best value, and
-            // the underestimate is smaller there.
+            // The options are divided halfway between the best value and the mean of the mixture. One half then
+            // excludes the best value, so that its underestimate is smaller.
             for ((axis, best), gain) in self.best_of(piece).into_iter().zip(left_out[piece]) {
                 let at = 0.5 * (best + mean(mixed, |member| key(member)[axis]));
                 branchings.push(Branching { gain, by: BranchOn::Options { level, axis }, at });
@@ -223,8 +224,8 @@ impl Problem<'_> {
         }
     }
 
-    /// The two problems into which `branching` divides this one. `kept` holds, for each level, the nodes of its base
-    /// tree that remain. `None` if all options lie on one side.
+    /// The two problems into which `branching` divides this one. `kept` has, for each level, the nodes of its base tree
+    /// that remain. `None` if all options lie on one side.
     pub(super) fn branch(&self, kept: &[Vec<u32>], branching: &Branching) -> Option<[Self; 2]> {
         match branching.by {
             BranchOn::Options { level, axis } => {

@@ -29,12 +29,14 @@ use std::sync::Arc;
 /// The joints of a chain with their drives, before anything is compiled. Every list has one entry for each piece of the
 /// chain, base to tip.
 struct Joints<'c> {
-    /// The given joint or the drives of each joint; `None` for any other piece, and after the joint was compiled.
+    /// For each joint, its given drive or the drives that it may have; `None` for any other piece, and after the joint
+    /// was compiled.
     slots: Vec<Option<Slot<'c>>>,
     /// The motion of each joint and the state of its bearing, as a compiled pose needs them; default values for any
     /// other piece.
     needs: Vec<JointNeeds>,
-    /// Lever from each joint whose bearing is checked to its link; `None` for any other piece.
+    /// For each joint whose bearing is checked: the lever, which is the distance along the joint's axis from the face
+    /// of its flange to the point where the link attaches. `None` for any other piece.
     levers: Vec<Option<LeverByOption>>,
     /// The space for gear and motor at each joint whose drives must fit into a link; `None` for any other piece.
     rooms: Vec<Option<RoomAtJoint>>,
@@ -69,16 +71,17 @@ impl<'c> Joints<'c> {
         Self { numbers, ..joints }
     }
 
-    /// The space for gear and motor that the link at `place` leaves with this option, for the joint that carries the
-    /// link. Unlimited if no joint has to fit its drive into this link.
+    /// The space that the link at `place` leaves with this option for gear and motor of the joint inboard. Unlimited if
+    /// no joint has to fit its drive into this link.
     fn room(&self, place: usize, option: usize) -> LinkRoom {
         let mut rooms = self.rooms[..place].iter().flatten();
         let room = rooms.find(|room| room.link_slot == self.numbers[place]);
         room.and_then(|room| room.rooms.get(option)).copied().unwrap_or(LinkRoom::ANY)
     }
 
-    /// The lever that the link at `place` has with this option \[m\]: the distance along the axis from the bearing of
-    /// the next joint inboard to the link. 0 if no bearing is checked there.
+    /// The lever that the link at `place` has with this option \[m\]: the distance along the axis of the joint directly
+    /// inboard from the face of the joint's flange to the point where the link attaches. 0 if the bearing of this joint
+    /// is not checked.
     fn lever_m(&self, place: usize, option: usize) -> f64 {
         let inboard = place.checked_sub(1).and_then(|inboard| self.levers[inboard].as_ref());
         inboard.and_then(|lever| lever.lever_m.get(option)).copied().unwrap_or_default()
@@ -161,8 +164,8 @@ impl<'c> Problem<'c> {
     }
 
     /// Compiles one layer of the chain, which belongs to the piece at `place`. The drives of a joint are taken out of
-    /// `joints`. `takes` and `ties` are those of [`new`](Self::new). `None` if a choice has no option, or if the layer
-    /// has no part in this search.
+    /// `joints`. `takes` and `ties` are those of [`new`](Self::new). `None` if a choice has no option, or if this
+    /// search cannot treat the layer.
     fn part(
         &mut self,
         (place, layer): (usize, Layer<'c>),
@@ -187,7 +190,8 @@ impl<'c> Problem<'c> {
             Layer::Mass(_) | Layer::Travelling(_) | Layer::Springs(_) => Part::Offset { mass_kg: 0.0 },
             Layer::Extra(mass_kg) => Part::Offset { mass_kg },
             Layer::Bodies(bodies) => Part::Offset { mass_kg: bodies.mass_kg() },
-            // A motor elsewhere is beyond this search, and the tilts of a gear's bearing belong to its joint.
+            // This search cannot treat a motor that stands away from its joint. The tilts of a gear's bearing belong to
+            // its joint.
             Layer::Motor(_) | Layer::Bearing(_) => return None,
         })
     }
@@ -240,8 +244,8 @@ impl<'c> Problem<'c> {
     }
 
     /// Compiles a link of the chain with the options for which `takes` is true. For the index of an option, `leaves`
-    /// returns the lever from the joint inboard \[m\] and the space that the link leaves for the drive of this joint.
-    /// `None` if no option is admitted.
+    /// returns the lever of the loads on the bearing of the joint inboard \[m\], and the space that the link leaves for
+    /// the drive of this joint. `None` if no option is admitted.
     fn link(
         &mut self,
         piece: &'c SpacePiece,
@@ -280,7 +284,7 @@ impl<'c> Problem<'c> {
         }
     }
 
-    /// A joint whose drive is a level of the search.
+    /// Compiles a joint whose drive the search chooses, and adds its level.
     fn drives(&mut self, sized: Arc<SizedJoint<'c>>, tilts: bool, ties: Ties) -> Option<Part<'c>> {
         self.level(sized.table.len());
         let rays = self.rays(self.parts.len(), sized.table.motion());
@@ -291,7 +295,7 @@ impl<'c> Problem<'c> {
         Some(Part::Drives { sized, kinds: Arc::new(kinds), tree: Arc::new(tree), rays: Arc::new(rays) })
     }
 
-    /// A joint that takes the lightest drive that can carry its load.
+    /// Compiles a joint that takes the lightest drive that can carry its load.
     fn first_fit(&self, sized: Arc<SizedJoint<'c>>, tilts: bool) -> Option<Part<'c>> {
         let rays = self.rays(self.parts.len(), sized.table.motion());
         let candidates = sized.table.first_fit_candidates();

@@ -85,8 +85,8 @@ impl Pose {
 
     /// Writes the rows of this pose: for each strain coordinate, its generalized force as a linear function of the
     /// weights outboard. The function goes inward from the tip and adds each piece to the wrench of everything
-    /// outboard. `joints` holds the needs of each joint and `springs` the wrench of each spring, both with the number
-    /// of the piece at which they act.
+    /// outboard. `joints` has the needs of each joint and `springs` the wrench of each spring, both with the number of
+    /// the piece at which they act.
     fn compile(
         &mut self,
         space: &DesignSpace,
@@ -138,7 +138,7 @@ impl Pose {
     }
 
     /// The loads on the output bearing of the joint `piece`, as functions of the weights and inertias outboard.
-    /// `joints` holds the needs of each joint. `None` if the piece is not a joint, its bearing is not checked, or the
+    /// `joints` has the needs of each joint. `None` if the piece is not a joint, its bearing is not checked, or the
     /// case is not a sizing case.
     fn bearing(
         &self,
@@ -394,8 +394,8 @@ struct Outboard {
     per_n: Vec<Wrench>,
     /// Inertia of the payload and of the bodies that the study gives, added up so far, about the world's origin.
     fixed_inertia: Matrix6<f64>,
-    /// Sum of `fixed_inertia` as it was when each piece was added: the inertia of payload and given bodies outboard of
-    /// this piece, tip first.
+    /// For each piece, tip first, the value of `fixed_inertia` before this piece was added: the inertia of payload and
+    /// given bodies outboard of the piece.
     fixed_inertia_of: Vec<Matrix6<f64>>,
     /// Inertia of each piece about the world's origin per unit of each line inertia, tip first.
     inertia: Vec<[Matrix6<f64>; INERTIAS]>,

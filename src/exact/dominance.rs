@@ -57,8 +57,8 @@ impl DominatingDrive<'_> {
             }
     }
 
-    /// Mass \[kg\] of some dominating drive below `node`. `None` if none is found within `boxes_left` visits of nodes;
-    /// the number of visits is subtracted from it.
+    /// Mass \[kg\] of some dominating drive below `node`. `None` if none is found within `boxes_left` visits of nodes.
+    /// The number of visits is subtracted from `boxes_left`.
     fn find(&self, tree: &Tree<DriveBox>, node: u32, boxes_left: &mut usize) -> Option<f64> {
         let drives = &tree.node(node).bounds;
         if *boxes_left == 0 || !self.may_be_in(drives) {
@@ -97,8 +97,8 @@ impl Problem<'_> {
         work: &Work,
     ) -> Option<bool> {
         let mut shrunk = false;
-        // The argument requires that contributions to the tip's displacement do not oppose each other. A pose where
-        // they may oppose does no harm if it cannot be the worst pose of the box.
+        // The proof at the head of this file requires that contributions to the tip's displacement do not oppose each
+        // other. A pose in which they may oppose each other does no harm if the tip cannot deflect most in this pose.
         if !self.lighter_is_better || work.greatest_tip_m.iter().any(|most_m| *most_m > tip_m) {
             return Some(false);
         }
@@ -137,8 +137,8 @@ impl Problem<'_> {
         })
     }
 
-    /// Whether every gear inboard keeps its slope and its play in the modes if the piece becomes lighter by `lost_n`
-    /// \[N\].
+    /// Whether every gear inboard vibrates with the same slope and the same play as before if the piece becomes lighter
+    /// by `lost_n` \[N\].
     fn slopes_stay(&self, piece: usize, lost_n: f64, work: &Work) -> bool {
         self.judged_cases().all(|case| {
             self.poses[case].rows.iter().filter(|row| row.piece > piece).all(|row| {

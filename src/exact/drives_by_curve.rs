@@ -1,11 +1,11 @@
 //! The feasible drives below a node, grouped by torsion curve and bearing.
 //!
 //! A joint has hundreds of drives but only some dozens of curves, and gears of one curve mostly have one bearing. The
-//! price of a drive is the price of its mass plus the prices of its curve and its bearing. Among the drives of one group
-//! only the lightest or the heaviest can therefore be the cheapest, whatever the prices are.
+//! price of a drive is the price of its mass plus the prices of its curve and its bearing. Among the drives of one
+//! group only the lightest or the heaviest can therefore be the cheapest, whatever the prices are.
 //!
-//! A region is priced at dozens of multipliers, and the states of a gear that may be the cheapest are the same at all of
-//! them. They are collected once ([`PricedDrives`]), and eight groups are priced side by side.
+//! The parts of a region are priced at dozens of sets of multipliers, and the states of a gear that may be the cheapest
+//! are the same at all of them. They are collected once ([`PricedDrives`]), and eight groups are priced side by side.
 
 use super::dual_price::{DualPrice, Gear, GearStates, states_of};
 use super::joint_play::JointPlay;
@@ -53,7 +53,8 @@ impl DrivesByCurve {
                 continue;
             }
             if let Some(halves) = tree.children(at) {
-                // What the least limits carry every drive below the node carries, so nothing is asked there.
+                // If even the least limits of the node carry the demand, every drive below the node carries it, and
+                // none of them is tested.
                 let asked = asked.filter(|asked| !drives.least_limits.hold(&asked.demand));
                 open.extend(halves.map(|half| (half, asked)));
                 continue;
@@ -79,20 +80,21 @@ impl DrivesByCurve {
     }
 }
 
-/// Eight groups with curves, and the states of their gears in each judged case.
+/// Eight groups of drives ([`CurveGroup`]) that are not rigid, and the states of their gears in each judged case.
 struct EightGroups {
-    /// Mass \[kg\] of the lightest and of the heaviest drive of each group, and their nodes. The last group fills the lanes
-    /// that are left.
+    /// Mass \[kg\] of the lightest and of the heaviest drive of each group, and their nodes. Lanes without a group of
+    /// their own repeat the last group.
     mass_kg: [Eight; 2],
     nodes: [[u32; LANES]; 2],
     tilt_rad_per_nm: [Eight; 2],
     tilt_stiffness: Eight,
-    /// For each judged case the candidate states. A gear with fewer than its neighbours has its first more than once.
+    /// For each judged case, the candidate states. A gear with fewer states than another of the eight repeats its first
+    /// state.
     states: Vec<Vec<EightStates>>,
     count: usize,
 }
 
-/// A candidate state of the gears of eight groups.
+/// A candidate state of the gear of each of eight groups of drives ([`CurveGroup`]).
 #[derive(Clone, Copy)]
 struct EightStates {
     torque_nm: Eight,
@@ -101,7 +103,8 @@ struct EightStates {
 }
 
 impl EightGroups {
-    /// Packs at most eight groups that have curves, for gears and the play of their joint.
+    /// Packs at most eight groups of drives that are not rigid. `gears` are the gear of their joint in each judged
+    /// case, and `play` is the play of the joint.
     fn new(groups: &[(&CurveGroup, &CurveBox)], gears: &[&Gear], play: Option<&JointPlay>) -> Self {
         let group = |lane: usize| groups[lane.min(groups.len() - 1)].0;
         let lanes =
@@ -119,7 +122,7 @@ impl EightGroups {
 }
 
 impl EightStates {
-    /// The candidate states of the curves of at most eight groups under torques in an interval \[N m\].
+    /// The candidate states of the curves of at most eight groups of drives, under torques in an interval \[N m\].
     fn all(
         groups: &[(&CurveGroup, &CurveBox)],
         torques_nm: [f64; 2],
@@ -144,7 +147,7 @@ impl EightStates {
     }
 }
 
-/// The prices of eight groups.
+/// Computes the least price of a drive in each of eight groups of drives ([`CurveGroup`]).
 struct GroupPrices<'a> {
     groups: &'a EightGroups,
     price: &'a DualPrice,
@@ -184,7 +187,8 @@ pub(super) struct PricedDrives {
 }
 
 impl PricedDrives {
-    /// The feasible drives of a level with the states of its gears, one for each judged case.
+    /// The feasible drives of a level with the states of their gears. `gears` has the gear of the joint in each judged
+    /// case.
     pub(super) fn new(feasible: &FeasibleDrives, gears: &[&Gear], play: Option<&JointPlay>) -> Self {
         let drives = Arc::clone(&feasible.drives);
         let with_curve: Vec<(&CurveGroup, &CurveBox)> =

@@ -29,8 +29,8 @@ pub(super) struct Gear {
     pub torques_nm: [f64; 2],
     /// Index of the first of the gear's two rows (inequalities of the bound), if the slope of the gear may change
     /// within the interval. The two rows, one for each direction, force the torque at which the gear is evaluated to
-    /// equal the torque of the weights. `None` for a gear with a single slope. Such a gear is evaluated at the torque
-    /// `torques_nm[0]`, and its twist grows linearly with the weights from there.
+    /// equal the torque that the weights cause. `None` for a gear with a single slope. Such a gear is evaluated at the
+    /// torque `torques_nm[0]`. From this torque on, its twist grows linearly with the weights.
     pub row: Option<usize>,
     /// Least compliance of any gear of the box within the interval of torque \[rad/(N m)\]. It is 0 and unused for a
     /// gear with a single slope.
@@ -64,9 +64,11 @@ impl Gear {
 pub(super) struct DualPrice {
     /// Price per unit of each line inertia of a tube. For any other piece the first entry is the price per kilogram.
     pub inertia: [f64; INERTIAS],
-    /// Price per unit of each compliance of a tube. For a joint the entry [`TILT`] is that of its bearing.
+    /// Price per unit of each compliance of a tube. For a joint, the entry [`TILT`] is the price of its bearing's
+    /// compliance.
     pub compliance: [f64; STIFFNESSES],
-    /// Credit per unit of each stiffness of a tube, or of a joint's bearing. A stiffer part lowers the weighted sum.
+    /// Amount by which each unit of a stiffness lowers the weighted sum. The stiffnesses are those of a tube or of a
+    /// joint's bearing.
     pub stiffness: [f64; STIFFNESSES],
     /// Prices of a joint, one for each judged case.
     pub joint: Vec<JointPrice>,
@@ -78,7 +80,7 @@ pub(super) struct JointPrice {
     pub twist: f64,
     /// Price per unit of the torque at which the gear is evaluated \[1/(N m)\].
     pub torque: f64,
-    /// Credit per unit of slope of the torsion curve \[rad/(N m)\].
+    /// Amount by which each N m/rad of the torsion curve's slope lowers the weighted sum \[rad/(N m)\].
     pub slope: f64,
     /// Interval of the gear's torque \[N m\].
     pub torques_nm: [f64; 2],
@@ -95,7 +97,7 @@ pub(super) struct JointState {
 }
 
 /// A state of a gear that may have the least price. The twist is linear in the torque within a segment, so the states
-/// at the ends of the segments are enough. For a box of gears, `twist_rad` holds the least and the greatest twist
+/// at the ends of the segments are enough. For a box of gears, `twist_rad` has the least and the greatest twist
 /// (without play), and `slope` is the greatest slope (with play).
 #[derive(Clone, Copy, Default)]
 pub(super) struct GearState {
@@ -281,7 +283,8 @@ impl DualPrice {
     }
 }
 
-/// The price of a tube, prepared for many tubes: the sign of each number's price says which end of an interval costs less.
+/// The price of a tube, prepared for many tubes: the sign of each number's price says which end of an interval costs
+/// less.
 pub(super) struct TubePrice<'a> {
     price: &'a DualPrice,
     inertia_ends: [usize; INERTIAS],
@@ -294,7 +297,8 @@ impl<'a> TubePrice<'a> {
         Self { price, inertia_ends: price.inertia.map(end), compliance_ends: price.compliance.map(end) }
     }
 
-    /// Price of a tube, as [`DualPrice::of_tube`] but for rounding. The three sums do not wait for each other.
+    /// Price of a tube, as [`DualPrice::of_tube`] but for rounding. The three sums do not depend on each other, so the
+    /// processor can compute them at the same time.
     #[inline]
     fn of(&self, tube: &LinkBox) -> f64 {
         let DualPrice { inertia, compliance, stiffness, .. } = self.price;

@@ -26,7 +26,8 @@ use std::sync::Arc;
 
 /// Greatest number of generations. Later ones hardly find better designs.
 const GENERATIONS: u64 = 20;
-/// Fraction of a time limit after which no further generation begins. The passes prove something, generations do not.
+/// Fraction of a time limit after which no further generation begins. A pass proves a gap, and a generation proves
+/// nothing.
 const MOST_TIME: f64 = 0.25;
 /// Greatest number of children in a generation. In a small space, a generation has as many children as the square
 /// root of the number of designs.
@@ -45,10 +46,10 @@ pub(super) struct Individual {
 
 /// The result of one recombination.
 enum Offspring {
-    /// The child has the parts of its parent.
+    /// The child has the same parts as its first parent.
     Unchanged,
-    /// A design that was found before dominates the child, or a part of the child cannot carry its load, or a bound
-    /// breaks a limit.
+    /// A design that was found before dominates the child, or a part of the child cannot carry its load, or even the
+    /// bound of the child breaks a limit.
     Dominated,
     /// The objectives of the child are known, and it breaks a constraint.
     Infeasible,
@@ -57,7 +58,7 @@ enum Offspring {
 }
 
 impl Offspring {
-    /// Whether the three objectives of the child were computed for its own design.
+    /// Whether the three objectives of the child were computed.
     fn is_evaluated(&self) -> bool {
         matches!(self, Self::Infeasible | Self::Feasible(_))
     }
@@ -117,7 +118,7 @@ fn by_mass(members: Vec<Individual>) -> Vec<Individual> {
     kept
 }
 
-/// The parents and the tools from which one child is made.
+/// What is needed to make one child.
 struct Recombination<'a, 'p> {
     budget: &'a Budget<'p>,
     problem: &'a Problem<'p>,

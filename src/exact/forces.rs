@@ -20,8 +20,8 @@ impl Problem<'_> {
         for row in rows {
             let mut force = interval(row.fixed, &row.per_n, &weights[case]);
             for bound in self.force_bounds.iter() {
-                // In water of another density the same parts have other weights, so the bound says nothing
-                // there.
+                // In water of another density the same parts have other weights, so the bound says nothing about the
+                // forces of this case.
                 if self.poses[bound.case].water_kg_m3 == self.poses[case].water_kg_m3 {
                     let by = &self.poses[bound.case].rows[bound.row];
                     bound.tighten(row, by, &weights[case], &mut force);

@@ -26,7 +26,8 @@ pub(super) struct Incumbents {
     columns: HashMap<i32, Vec<Objectives>>,
     /// All incumbents in the order in which they were added.
     all: Vec<Objectives>,
-    /// If a single objective counts: this objective, and the least cost of a design in it. `None` if all three count.
+    /// If a single objective counts: this objective, and its least cost among the designs entered so far. `None` if all
+    /// three count.
     only: Option<(Objective, f64)>,
 }
 

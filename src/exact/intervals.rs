@@ -14,7 +14,7 @@ use crate::space::slot::SizedJoint;
 
 /// Relative margin for rounding of a sum of a few dozen terms.
 pub(super) const ROUNDING: f64 = 1e-12;
-/// Number of levels that the search for drives that cannot carry a demand descends in a tree of drives.
+/// Greatest number of steps down a tree of drives in which drives that cannot carry a demand are searched for.
 const DEPTH: usize = 6;
 
 impl Problem<'_> {
@@ -155,7 +155,7 @@ impl Problem<'_> {
         (rounded(static_nm), rounded(inertia_kgm2))
     }
 
-    /// The least and the greatest loads on the output bearing of a joint, over all cases; zero if no bearing is
+    /// The least and the greatest loads on the output bearing of a joint, over all cases; zero if this bearing is not
     /// checked.
     pub(super) fn bearing_loads(&self, piece: usize, work: &Work) -> [BearingDemand; 2] {
         let Some(lever) = self.levers[piece] else { return [BearingDemand::default(); 2] };
@@ -176,7 +176,7 @@ impl Problem<'_> {
         ]
     }
 
-    /// The least and the greatest space that the link of a joint leaves for the gear and motor of this joint.
+    /// The least and the greatest space that the link outboard of a joint leaves for the joint's gear and motor.
     fn room(&self, piece: usize, work: &Work) -> [LinkRoom; 2] {
         match self.rooms[piece] {
             None => [LinkRoom::ANY; 2],
@@ -205,8 +205,8 @@ impl Problem<'_> {
     }
 }
 
-/// The box around those drives below `node` that may carry the demand `asked`. The function descends at most `depth`
-/// levels of the tree. Drives that it excludes there do not widen the box. `None` if no drive may carry the demand.
+/// The box around those drives below `node` that may carry the demand `asked`. The function goes at most `depth` steps
+/// down the tree. Drives that it excludes in these steps do not widen the box. `None` if no drive may carry the demand.
 fn feasible_drives(tree: &Tree<DriveBox>, node: u32, asked: &LeastDemand, depth: usize) -> Option<DriveBox> {
     let drives = &tree.node(node).bounds;
     if !drives.may_hold(asked) {
@@ -225,7 +225,7 @@ fn feasible_drives(tree: &Tree<DriveBox>, node: u32, asked: &LeastDemand, depth:
 /// Whether some option of the box may carry `load`: axial force \[N\], moments about y and z and torsion \[N m\].
 fn stress_holds(links: &LinkBox, load: &[f64; 4]) -> bool {
     let [axial, y, z, torsion]: [f64; 4] = std::array::from_fn(|k| load[k] * links.stress[k]);
-    // For other sections the two bending stresses add up at one edge of the section.
+    // In a section that is not round, the two bending stresses add up at one edge of the section.
     let bending = if links.round { libm::hypot(y, z) } else { y + z };
     von_mises(axial + bending, torsion) <= 1.0
 }

@@ -7,7 +7,7 @@
 
 use crate::arm::joint_law::{JointLaw, LostMotion};
 
-/// A torque below this fraction of `T_c` does not change the slope of lost motion.
+/// A torque below this fraction of the torque `T_c` of the lost motion does not change the slope of the lost motion.
 const AT_REST: f64 = 1e-8;
 
 /// The twist that a joint has in addition to its torsion curve.
@@ -15,7 +15,7 @@ const AT_REST: f64 = 1e-8;
 pub(super) struct JointPlay {
     /// Clearance that closes as the torque grows; `None` if the joint has none.
     lost_motion: Option<LostMotion>,
-    /// Half width of the twist that friction holds back \[rad\].
+    /// Greatest angle by which friction reduces the twist \[rad\]: the half width of the hysteresis.
     friction_rad: f64,
 }
 

@@ -33,7 +33,7 @@ pub(super) struct Journal<'s> {
 struct State {
     /// The results of the parts that are finished.
     finished: Vec<FoundInShard>,
-    /// How many of them were used in this process.
+    /// Number of finished parts whose results this process has taken from `finished` or added to it.
     #[serde(skip)]
     used: usize,
     /// Number of boxes bounded in all parts.
@@ -54,8 +54,8 @@ pub(super) struct Begun {
     open: Option<OpenPass>,
 }
 
-/// The open boxes of a pass. `shapes` holds each list of trial shapes once, because several boxes share it. A box
-/// refers to its list by index.
+/// The open boxes of a pass. `shapes` has each list of trial shapes once, because several boxes share it. A box refers
+/// to its list by index.
 #[derive(Clone, Serialize, Deserialize)]
 struct OpenPass {
     slack: f64,
@@ -81,7 +81,7 @@ impl<'s> Journal<'s> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The result of the next part, if an earlier process finished it.
+    /// The result of the next part of the search, if an earlier process finished this part.
     pub(super) fn next_finished(&self) -> Option<FoundInShard> {
         let mut state = self.lock();
         let found = state.finished.get(state.used).cloned()?;
@@ -89,12 +89,12 @@ impl<'s> Journal<'s> {
         Some(found)
     }
 
-    /// The progress of the next part in an earlier process. `None` if it was not begun.
+    /// The progress that an earlier process made with the next part. `None` if that part was not begun.
     pub(super) fn begun(&self) -> Option<Begun> {
         self.lock().begun.take()
     }
 
-    /// Takes down the result of a part.
+    /// Records the result of a finished part of the search.
     pub(super) fn finish(&self, found: &FoundInShard) {
         if let Some(keeper) = self.keeper {
             let mut state = self.lock();
@@ -161,7 +161,7 @@ impl Begun {
         Self { state: state.to_kept(), passes: passes.to_vec(), told, open: None }
     }
 
-    /// Takes the designs found out of this progress, which has none afterwards.
+    /// Moves the state of the search out of this progress, which has an empty state afterwards.
     pub(super) fn state(&mut self) -> KeptState {
         std::mem::take(&mut self.state)
     }

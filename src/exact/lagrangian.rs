@@ -51,21 +51,21 @@ impl Rows<'_> {
     /// upper limit by as much as possible. They are the solution of a matrix game between the rows and the relaxed
     /// designs.
     pub(super) fn best_multipliers(&self, members: &[RelaxedDesign], upper: &LocalUpperBound) -> Game {
-        /// Lower limit of the scaled excess of a row over its limit. A row so far below its limit has no influence on
-        /// the game.
+        /// If the value of a scaled row is further below its limit than this, this number is used for the difference. A
+        /// row so far below its limit has no influence on the game.
         const NO_SAY: f64 = -10.0;
         let row_limits: Vec<f64> = self.row_limits(upper).collect();
         let mut above = Vec::with_capacity(members.len() * row_limits.len());
         for member in members {
             above.extend(member.values.iter().zip(&row_limits).map(|(v, a)| (v - a).max(NO_SAY)));
         }
-        // The mixture has to satisfy the rows of a force as equations. It need not keep them low.
+        // The two rows of a force are balanced columns: the mixture has to satisfy them as an equation.
         let balanced = 1 + self.tips.len()..self.first_mode;
         solve(&above, row_limits.len(), balanced)
     }
 
-    /// Adds a row for each mode of the mixed arm that lies below the frequency of `upper`. `mix` holds the weight of
-    /// each relaxed design of `members` in the mixed arm. Returns whether a row was added.
+    /// Adds a row for each mode of the mixed arm that lies below the frequency of `upper`. `mix` has the weight of each
+    /// relaxed design of `members` in the mixed arm. Returns whether a row was added.
     pub(super) fn add_violated_modes(
         &mut self,
         members: &mut [RelaxedDesign],
@@ -283,7 +283,7 @@ impl Rows<'_> {
                 *c += multiplier(1 + judged) * tip_per_compliance;
             }
         }
-        // A drive has no outer area; the weight of water on it is not counted by the model either.
+        // A drive has no outer area in the model, and therefore no buoyancy.
         if is_joint {
             price.inertia[inertia::OUTER_AREA] = 0.0;
         }
@@ -308,7 +308,7 @@ impl Rows<'_> {
             for (p, kinetic) in price.inertia.iter_mut().zip(&mode.shape.kinetic[piece]) {
                 *p += w * self.lambda * kinetic;
             }
-            // The slope of a gear depends on its state, so the credit for it is in `JointPrice`.
+            // The slope of a gear depends on its state, so the amount by which it lowers the sum is in `JointPrice`.
             let first = if is_joint { TILT } else { 0 };
             for (p, strain) in price.stiffness.iter_mut().zip(&mode.shape.strain[piece]).skip(first) {
                 *p += w * strain;

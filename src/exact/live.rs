@@ -39,7 +39,7 @@ struct Latest {
 }
 
 impl Live {
-    /// The latest progress. The number of boxes is not filled in.
+    /// The latest progress, except for the number of boxes, which is not known here.
     pub(super) fn known(&self) -> Known {
         self.lock().known
     }

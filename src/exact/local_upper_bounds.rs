@@ -21,8 +21,8 @@ pub(super) struct LocalUpperBound {
 }
 
 impl LocalUpperBound {
-    /// The smallest region that contains the regions below this local upper bound and below `other`: the larger mass
-    /// and deflection and the lower frequency of the two.
+    /// The bound of the smallest region that contains the regions below this local upper bound and below `other`. It
+    /// has the larger mass and deflection and the lower frequency of the two.
     fn join(&self, other: &Self) -> Self {
         Self {
             mass_kg: self.mass_kg.max(other.mass_kg),
@@ -111,7 +111,8 @@ impl Stairs {
         if to < from || self.steps.get(from).is_some_and(|step| step[0] == tip_m && step[1] >= hz) {
             return false;
         }
-        // Bound k lies between the steps k - 1 and k. The outer two are shared with the neighbours.
+        // Bound k lies between the steps k - 1 and k. The design cuts off the bounds from `from` to `to`, and replaces
+        // the steps between them.
         upper_bounds.extend((from..=to).map(|k| self.bound_before(k, design.mass_kg)));
         self.steps.splice(from..to, [[tip_m, hz]]);
         true
@@ -129,7 +130,8 @@ impl Stairs {
 }
 
 /// Builds the tree over the bounds `upper_bounds`, appends its nodes to `nodes` and returns the bound of its root. The
-/// bounds are divided at the median of the objective whose greatest value is the largest multiple of its least value.
+/// bounds are divided at the median of one objective: the one in which the ratio of the greatest to the least value is
+/// largest.
 fn grow(upper_bounds: &mut [LocalUpperBound], nodes: &mut Vec<Node>) -> LocalUpperBound {
     let here = nodes.len();
     nodes.push(Node { bound: upper_bounds[0], end: here + 1 });

@@ -1,7 +1,7 @@
 //! The exact lowest eigenvalue of one arm, independent of any trial shape.
 //!
-//! With `A = C^½ M C^½` and the compliance matrix `C`, the inverse of the stiffness matrix `K`, all eigenvalues of `K φ
-//! = λ M φ` lie above `λ` exactly if `1/λ - A` is positive definite (Sylvester's law of inertia). One Cholesky
+//! With `A = C^½ M C^½` and the compliance matrix `C`, the inverse of the stiffness matrix `K`, all eigenvalues of
+//! `K φ = λ M φ` lie above `λ` exactly if `1/λ - A` is positive definite (Sylvester's law of inertia). One Cholesky
 //! factorization decides that.
 
 use super::parts::INERTIAS;
@@ -152,8 +152,8 @@ impl LaneWork for Cholesky<'_> {
 }
 
 /// The inertia matrix `M` of an arm over the given coordinates (index of the piece, index of its strain coordinate).
-/// `inertia` holds the line inertias of each piece. Each column holds the inertia forces of a unit motion of one
-/// coordinate.
+/// `inertia` has the line inertias of each piece. Each column of `M` consists of the inertia forces of a unit motion of
+/// one coordinate.
 fn matrix(pose: &Pose, coordinates: &[(usize, usize)], inertia: &[[f64; INERTIAS]]) -> Vec<f64> {
     let n = coordinates.len();
     let mut work = Work::default();

@@ -9,22 +9,23 @@ const MOST_PIVOTS: usize = 200;
 /// Numbers below this count as rounding.
 const NOTHING: f64 = 1e-11;
 
-/// A sum over balanced columns may exceed zero by this much. A small amount that differs from column to column is added
-/// to it, so that no two pivots of the simplex method are equal.
+/// The weighted sum of a balanced column may exceed zero by this much. A small amount that differs from column to
+/// column is added to this limit, so that no two pivots of the simplex method are equal.
 const BALANCED: f64 = 1e-6;
 
 /// The solution of a matrix game.
 pub(super) struct Game {
     /// Weights of the columns. None is negative, and they sum to one.
     pub weights: Vec<f64>,
-    /// Weights of the rows in the mixture that keeps the greatest column as low as possible. They sum to one.
+    /// Weights of the rows in the mixture that makes the greatest weighted sum of a column as small as possible. They
+    /// sum to one.
     pub mix: Vec<f64>,
     /// Value of the game: the weighted sum of the numbers of a row, for the row in which it is least.
     pub value: f64,
 }
 
 /// Solves a matrix game: finds weights of the columns that make the weighted sum of the worst row as large as possible.
-/// `rows` holds the numbers of all rows one after the other, `width` numbers for each row.
+/// `rows` has the numbers of all rows one after the other, `width` numbers for each row.
 ///
 /// The simplex method solves the linear program of the other player: `max Σ z` with `Σ_j (a_ji + c) z_j <= 1` for every
 /// column `i`, and `z >= 0`. The dual values of this program are the weights.
@@ -42,8 +43,8 @@ pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game 
     let entry =
         |i: usize, a: f64| if balanced.contains(&i) { a / spread } else { (a - least) / spread + 1.0 };
     // The tableau has one line for each column of the game (its slack is basic at first) and one for the objective. A
-    // line has a number for each variable that is not basic, and the right side. Basic variables have unit vectors, which
-    // are left out. Lines are filled with zeros to whole registers.
+    // line has a number for each variable that is not basic, and the right side. Basic variables have unit vectors,
+    // which are left out. Lines are filled with zeros to whole registers.
     let line = (count + 1).next_multiple_of(LANES);
     let mut table = vec![0.0; (width + 1) * line];
     let (mut basic, mut others): (Vec<usize>, Vec<usize>) =
@@ -62,7 +63,7 @@ pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game 
         if cost > -NOTHING {
             break;
         }
-        // Among equals the variable of the lowest number, wherever it stands.
+        // Of several variables with this cost, the one with the lowest number enters, whatever its column is.
         let equals = (0..count).filter(|&j| objective[j] == cost);
         let Some(enter) = equals.min_by_key(|&j| others[j]) else { break };
         let ratio = |i: usize| {
@@ -109,8 +110,8 @@ impl LaneWork for Least<'_> {
     }
 }
 
-/// One step of the simplex method: the variable of column `enter` becomes basic in the place of that of line `leave`, whose
-/// column takes its place.
+/// One step of the simplex method: the variable of column `enter` becomes basic and gets line `leave` of the tableau.
+/// The basic variable that had this line gets column `enter`.
 struct Pivot<'a> {
     table: &'a mut [f64],
     /// Number of entries in a line of the tableau.
@@ -151,8 +152,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// The mixture satisfies the balanced pair as an equation. The greatest of the other columns under the mixture
-        /// equals the value that the weights guarantee, so no weights are better.
+        /// The mixture satisfies the pair of balanced columns as an equation. The greatest of the other columns under
+        /// the mixture equals the value that the weights guarantee, so no weights are better.
         #[test]
         fn a_balanced_pair_is_a_condition_and_no_stake(rows in prop::collection::vec(-1.0f64..1.0, 3 * 6)) {
             let rows: Vec<f64> = rows.chunks(3).flat_map(|r| [r[0], r[1], r[2], -r[2]]).collect();

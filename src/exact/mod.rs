@@ -8,9 +8,9 @@
 //! found (an incumbent) dominates the bound. Otherwise the box is halved. A box of one design is judged by
 //! the full model.
 //!
-//! A very large space is searched region by region (`regions.rs`). A region holds the designs that are better
-//! than one local upper bound of the incumbents. A Lagrangian bound over the region removes most options of
-//! each level before boxes are searched.
+//! A very large space is searched region by region (`regions.rs`). A region consists of the designs that are better
+//! than one local upper bound of the incumbents. A Lagrangian bound over the region removes most options of each level
+//! before boxes are searched.
 //!
 //! A space can also be searched in shards (`shard.rs`), one process each.
 //!

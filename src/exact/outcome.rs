@@ -6,8 +6,8 @@ use serde::{Deserialize, Serialize};
 /// What was found in the boxes of one shard, before designs with tied drives are listed.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct FoundInShard {
-    /// The subtrees of the space that were searched. A subtree is named by the halves that lead to it from the box of all
-    /// designs, such as `0110`; the box of all designs has the name of no letters.
+    /// The subtrees of the space that were searched. A subtree is named by the halves that lead to it from the box of
+    /// all designs, such as `0110`. The name of the box of all designs is empty.
     pub subtrees: Vec<String>,
     /// Number of designs whose three objectives were computed.
     pub designs_evaluated: u64,

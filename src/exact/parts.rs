@@ -81,16 +81,17 @@ pub(super) struct LinkBox {
     pub round: bool,
     /// Least cost of the material \[EUR/m\].
     pub cost_eur_per_m: f64,
-    /// Least and greatest lever \[m\]: the distance along the axis of the joint inboard from its bearing to where the
-    /// link attaches. 0 if no bearing is checked there.
+    /// Least and greatest lever \[m\]: the distance along the axis of the joint directly inboard from the face of the
+    /// joint's flange to the point where the link attaches. 0 if the bearing of this joint is not checked.
     pub lever_m: [f64; 2],
-    /// Least and greatest space for the gear and motor of the joint that carries the link.
+    /// Least and greatest space that the link leaves for the gear and motor of the joint inboard.
     pub room: [LinkRoom; 2],
 }
 
 impl LinkBox {
-    /// The box of one option. `link` is the option with the effects of the study. `lever_m` is the lever from the joint
-    /// inboard \[m\], and `room` the space that the option leaves for the drive of the joint that carries it.
+    /// The box of one option. `link` is the option with the effects of the study. `lever_m` is the lever of the loads
+    /// on the bearing of the joint inboard \[m\], and `room` is the space that the option leaves for the drive of this
+    /// joint.
     pub(super) fn of(
         option: &LinkOption,
         link: &LinkPiece,
@@ -158,7 +159,7 @@ impl Bounds for LinkBox {
 /// Relative difference below which a torque and a break point count as equal.
 pub(super) const SAME_TORQUE: f64 = 1e-12;
 
-/// Number of rays, the proportions of static torque and inertia for which a box of drives knows its capacity.
+/// Number of rays: the proportions of static torque and inertia for which the capacity of each box of drives is stored.
 pub(super) const RAYS: usize = 12;
 
 /// Rays: demands on a joint in fixed proportions of static torque and inertia. A drive that carries a demand also
@@ -174,9 +175,10 @@ pub(super) struct Rays {
 
 impl Rays {
     /// The rays of a joint, around the proportion of static torque to inertia that the payload alone causes. A part of
-    /// the demand that does not grow with the arm would break their proportions. So the demand of a duty that is stated
-    /// in numbers is left out, and the remaining demand is a lower bound. The inertia of the motor itself does not grow
-    /// with the arm either: [`MotorHeat::multiple_of`](crate::sizing::heat::MotorHeat::multiple_of) accounts for it.
+    /// the demand that does not grow with torque and inertia would break the proportions of the rays. So the demand of
+    /// a duty that is stated in numbers is left out, and the remaining demand is a lower bound. The inertia of the
+    /// motor itself does not grow with the load either:
+    /// [`MotorHeat::multiple_of`](crate::sizing::heat::MotorHeat::multiple_of) accounts for it.
     pub(super) fn new(motion: &JointMotion, payload_static_nm: f64, payload_inertia_kgm2: f64) -> Self {
         let motion = motion.without_stated();
         let loads = std::array::from_fn(|k| match k {
@@ -198,7 +200,8 @@ impl Rays {
 }
 
 /// Fraction by which the motor heat of a least demand is lowered and that of a greatest demand is raised to cover
-/// rounding. A margin on the loads alone would not do, because the motor's own inertia can cause most of the heat.
+/// rounding. A margin on the loads alone would not be enough, because the motor's own inertia can cause most of the
+/// heat.
 pub(super) const HEAT_ROUNDING: f64 = 1e-12;
 
 /// The least demand that the members of a box put on a joint.
@@ -248,7 +251,7 @@ pub(super) struct DriveBox {
     pub mass_kg: [f64; 2],
     /// The greatest value of each limit of a drive over the members.
     pub limits: DriveLimits,
-    /// The least of each limit over the members.
+    /// The least value of each limit of a drive over the members.
     pub least_limits: DriveLimits,
     /// For each ray (fixed proportion of static torque and inertia), the greatest multiple of its demand that a single
     /// member carries.
@@ -260,8 +263,9 @@ pub(super) struct DriveBox {
     /// Least and greatest tilt of the output bearing per moment \[rad/(N m)\], including the tilt that an effect adds
     /// in series. 0 if no drive of the joint has a bearing that tilts.
     pub tilt_rad_per_nm: [f64; 2],
-    /// For a box that is one kind of several drives: the limits of each drive that no other drive of the kind covers.
-    /// The kind carries a demand if one of them does. `None` for any other box.
+    /// For a box that is one kind of several drives: the limits of its drives, without each drive whose limits are all
+    /// reached by another drive of the kind. The kind carries a demand if one of the listed drives does. `None` if one
+    /// drive reaches the limits of all others, and for any other box.
     pub each: Option<Arc<[DriveLimits]>>,
 }
 
@@ -278,7 +282,7 @@ impl DriveBox {
         };
         let each: Vec<DriveLimits> =
             drives.iter().enumerate().filter(|d| !covered(*d)).map(|(_, d)| d.limits).collect();
-        // A drive that covers the others stands for all of them.
+        // If one drive carries whatever the others carry, its limits are those of the box, and no list is needed.
         Some(Self { each: (each.len() > 1).then(|| Arc::from(each)), ..kind })
     }
 

@@ -16,14 +16,15 @@ const SLACKS: [f64; 25] = [
     1.0, 0.7, 0.5, 0.42, 0.35, 0.3, 0.25, 0.2, 0.16, 0.12, 0.09, 0.075, 0.06, 0.05, 0.04, 0.035, 0.03, 0.025,
     0.02, 0.015, 0.01, 0.007, 0.005, 0.0035, 0.0025,
 ];
-/// Slacks below this are used only in a search by regions. A search by boxes finds no more designs with such passes.
+/// Slacks below this are used only in a search by regions. In a search by boxes, passes with such slacks find no
+/// further designs.
 const FINE: f64 = 0.02;
 /// Greatest number of slacks of the list that are skipped between two passes.
 const MOST_PASSED_OVER: usize = 4;
 /// Greatest number of slacks that are skipped between two passes if the search is to end at a gap that was asked for.
 const PASSED_OVER_TO_A_GAP: usize = 8;
-/// Exponent `g` with which the time of a pass is assumed to grow until two passes are completed. An exponent measured
-/// later is limited to the interval from `LEAST_GROWTH` to `MOST_GROWTH`.
+/// Exponent `g` of the growth `t ∝ ε^-g` of a pass's time. This value is assumed until two passes are completed. An
+/// exponent measured later is limited to the interval from `LEAST_GROWTH` to `MOST_GROWTH`.
 const GROWTH: f64 = 3.3;
 const LEAST_GROWTH: f64 = 1.0;
 const MOST_GROWTH: f64 = 4.5;
@@ -69,7 +70,7 @@ impl Plan {
         Self { slacks: coarser.chain([gap]).collect(), most_passed_over }
     }
 
-    /// The slack of the next pass. `done` holds the completed passes. `left_s` is the time left \[s\], `None` without a
+    /// The slack of the next pass. `done` are the completed passes. `left_s` is the time left \[s\], `None` without a
     /// time limit. The result is `None` once the gap that was asked for is proved.
     pub(super) fn next(&self, done: &[Pass], left_s: Option<f64>) -> Option<f64> {
         let Some(last) = done.last() else { return self.slacks.first().copied() };

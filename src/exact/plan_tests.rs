@@ -2,8 +2,9 @@
 
 use super::*;
 
-/// Simulates the passes of a search up to a time limit \[s\]. A pass takes `first_s` at a slack of 1 and grows with the
-/// exponent `growth`. Returns the slack of each completed pass and the time at which it was done \[s\].
+/// Simulates the passes of a search up to a time limit \[s\]. A pass with a slack of 1 takes the time `first_s` \[s\].
+/// The smaller the slack, the longer a pass takes, with the exponent `growth`. Returns the slack of each completed pass
+/// and the time at which it was done \[s\].
 fn planned(gap: f64, growth: f64, first_s: f64, limit_s: Option<f64>) -> Vec<(f64, f64)> {
     let plan = Plan::new(gap, true);
     let (mut done, mut out, mut now_s) = (Vec::<Pass>::new(), Vec::new(), 0.0);

@@ -56,14 +56,14 @@ pub(super) fn degree_factor(coordinate: usize) -> f64 {
 
 /// A case, compiled for bounds. Pieces are counted from the tip.
 pub(super) struct Pose {
-    /// Whether the case counts for deflection and lowest mode.
+    /// Whether deflection and lowest mode are judged in this case.
     pub judged: bool,
     /// Whether drives and stresses are checked in this case.
     pub sizing: bool,
     /// Whether no two contributions to the tip's displacement can oppose each other.
     pub contributions_align: bool,
-    /// Density of the water around the arm \[kg/m³\], 0 in air. The net weight of a tube per length is `g (mass - water
-    /// · outer area)`.
+    /// Density of the water around the arm \[kg/m³\], 0 in air. The net weight of a tube per length is
+    /// `g (mass - water · outer area)`.
     pub water_kg_m3: f64,
     pub pieces: Vec<PosedPiece>,
     /// Inertia of the payload about the world's origin.
@@ -75,16 +75,16 @@ pub(super) struct Pose {
     pub stress: Vec<StressRow>,
     /// Inertia of everything outboard about each joint's axis; `None` for a piece that is not a joint.
     pub inertia_about: Vec<Option<InertiaRow>>,
-    /// Loads on the output bearing of each joint; `None` for any other piece, if no bearing is checked, or if the case
-    /// is not a sizing case.
+    /// Loads on the output bearing of each joint. `None` for a joint whose bearing is not checked, for any other piece,
+    /// and for all pieces if the case is not a sizing case.
     pub bearings: Vec<Option<BearingRows>>,
 }
 
 /// A piece in a pose.
 pub(super) enum PosedPiece {
     /// A joint. `twist` is the motion of everything outboard per radian (metre for a prismatic joint), and `at_m` the
-    /// place of its mass. `across` holds the motions per radian of tilt of the output bearing about the two axes across
-    /// the joint axis; `None` if no option tilts.
+    /// place of its mass. `across` has the motions of everything outboard per radian of tilt of the output bearing
+    /// about the two axes across the joint axis; `None` if no option tilts.
     Joint { twist: Twist, at_m: Vector3<f64>, across: Option<[Twist; 2]> },
     /// A rigid body, with its inertia about the world's origin.
     Body(Matrix6<f64>),
@@ -137,9 +137,9 @@ pub(super) struct Pulls {
     pub end_forces: [f64; 8],
 }
 
-/// Matrices of the quadratic forms of kinetic energy. `across` and `rotary` are over `(root translation, root rotation,
-/// curvatures, shears)` in one plane. `polar` is over `(root rotation, torsions)` about the tube's axis, and `along`
-/// over `(root translation, stretches)` along it.
+/// Matrices of the quadratic forms of kinetic energy. `across` and `rotary` are over
+/// `(root translation, root rotation, curvatures, shears)` in one plane. `polar` is over `(root rotation, torsions)`
+/// about the tube's axis, and `along` over `(root translation, stretches)` along it.
 pub(super) struct TubeForms {
     pub across_z: SMatrix<f64, 9, 9>,
     pub across_y: SMatrix<f64, 9, 9>,
@@ -233,8 +233,8 @@ impl Pose {
 }
 
 impl PosedPiece {
-    /// For a coordinate of this piece: the index of the stiffness that resists it, and the factor that this stiffness
-    /// divides to give the deflection per unit of force.
+    /// For a coordinate of this piece: the index of the stiffness that resists it, and a factor. The factor divided by
+    /// this stiffness is the deflection per unit of force.
     #[inline]
     pub(super) fn resisted(&self, coordinate: usize) -> (usize, f64) {
         match self {

@@ -127,9 +127,9 @@ impl Probe<'_, '_> {
         Some(Individual { design_box: best.design_box, objectives: best.objectives, shapes: best.shapes })
     }
 
-    /// Searches the box `design_box` for a design of less merit (the objective of the probe) than `best`. Of two
-    /// halves, the one with the better bound is opened first, and at most `most_boxes` boxes are bounded. Returns the
-    /// better design, or `best` if none was found.
+    /// Searches the box `design_box` for a better design than `best`: one with a smaller merit, which is the objective
+    /// of the probe. Of two halves, the one with the better bound is opened first, and at most `most_boxes` boxes are
+    /// bounded. Returns the better design, or `best` if none was found.
     fn descend(
         &self,
         design_box: DesignBox,
@@ -167,9 +167,8 @@ impl Probe<'_, '_> {
         best
     }
 
-    /// Bounds a box. If the box is one design, the design is evaluated, and stored in `best` if it is better than the
-    /// design there. Returns the box if it has several designs and one of them may be better than `best`; otherwise
-    /// `None`.
+    /// Bounds a box. If the box is one design, the design is evaluated. It replaces the design in `best` if it is
+    /// better. Returns the box if it has several designs and one of them may be better than `best`; otherwise `None`.
     fn look(
         &self,
         mut design_box: DesignBox,

@@ -1,6 +1,5 @@
 //! A design space as branch and bound uses it: a tree of boxes for every level, and rows of numbers for every case.
 
-// {} => Given parts and first fits have no options of their own.
 use super::force_bound::ForceBound;
 use super::joint_play::JointPlay;
 use super::kinds::Kinds;
@@ -33,7 +32,7 @@ pub(super) struct Problem<'c> {
     pub lighter_is_better: bool,
     /// Lost motion and friction of each joint; `None` for a joint without play and for any other piece.
     pub joint_plays: Vec<Option<JointPlay>>,
-    /// Lever of each joint whose bearing is checked; `None` for any other piece.
+    /// Lever of the loads on each output bearing that is checked; `None` for any other joint and for any other piece.
     pub levers: Vec<Option<Lever>>,
     /// The space for gear and motor at each joint whose drives must fit into a link; `None` for any other piece.
     pub rooms: Vec<Option<Room>>,
@@ -60,8 +59,8 @@ pub(super) enum Part<'c> {
     Offset { mass_kg: f64 },
 }
 
-/// Lever of the loads on a joint's output bearing: the distance along the axis from the bearing to where the link
-/// attaches.
+/// Lever of the loads on a joint's output bearing: the distance along the axis from the face of the joint's flange (or
+/// from the centre of the bearing, if the study states the lever) to the point where the link attaches.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Lever {
     /// The lever is the same for all options \[m\].
@@ -70,7 +69,8 @@ pub(super) enum Lever {
     OfLink(usize),
 }
 
-/// Where the space for gear and motor of a joint comes from. It is what the link that the joint carries leaves free.
+/// Where the space for gear and motor of a joint comes from. It is the space that the link outboard of the joint
+/// leaves.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Room {
     /// The space is the same for all options.
@@ -121,7 +121,7 @@ impl Ladder {
 }
 
 impl<'c> Problem<'c> {
-    /// The problem restricted to some of its options. `kept` holds, for each level (choice), the nodes of its base tree
+    /// The problem restricted to some of its options. `kept` has, for each level (choice), the nodes of its base tree
     /// whose options remain. `None` if a level has no option left.
     pub(super) fn restricted_to(&self, kept: &[Vec<u32>]) -> Option<Self> {
         let mut narrower = self.clone();
@@ -129,14 +129,15 @@ impl<'c> Problem<'c> {
             match &mut narrower.parts[piece] {
                 Part::Drives { tree, .. } => *tree = Tree::over(tree, nodes)?,
                 Part::Links { tree, .. } => *tree = Tree::over(tree, nodes)?,
+                // Given parts and first fits have no options of their own.
                 _ => {}
             }
         }
         Some(narrower)
     }
 
-    /// Whether `design_box` has one node for each level and every node exists. A state of an earlier process is checked
-    /// with it.
+    /// Whether `design_box` has one node for each level and every node exists. This is tested for each box in a state
+    /// that an earlier process saved.
     pub(super) fn has_box(&self, design_box: &[u32]) -> bool {
         let has = |(&piece, &node): (&usize, &u32)| match &self.parts[piece] {
             Part::Drives { tree, .. } => tree.has(node),
@@ -160,7 +161,7 @@ impl<'c> Problem<'c> {
         }
     }
 
-    /// The options that remain in each level, ascending. `kept` holds, for each level, the nodes of its base tree that
+    /// The options that remain in each level, ascending. `kept` has, for each level, the nodes of its base tree that
     /// remain. All drives of a kind are included.
     pub(super) fn options_below(&self, kept: &[Vec<u32>]) -> Vec<Vec<u32>> {
         let of = |(&piece, nodes): (&usize, &Vec<u32>)| match &self.parts[piece] {
@@ -171,8 +172,8 @@ impl<'c> Problem<'c> {
         self.level_pieces.iter().zip(kept).map(of).collect()
     }
 
-    /// Number of designs that remain. `kept` holds, for each level, the nodes of its base tree that remain. All drives
-    /// of a kind are counted as one option.
+    /// Number of designs that remain. `kept` has, for each level, the nodes of its base tree that remain. All drives of
+    /// a kind are counted as one option.
     pub(super) fn designs_below(&self, kept: &[Vec<u32>]) -> f64 {
         let of = |(&piece, nodes): (&usize, &Vec<u32>)| match &self.parts[piece] {
             Part::Drives { tree, .. } => tree.members_of(nodes),

@@ -15,7 +15,7 @@ use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, in_lanes};
 /// Approximate number of tree nodes by which the remaining options of a level are described.
 const BOXES: usize = 256;
 /// Number of dual points (sets of multipliers) that are used to exclude options. Those are taken whose least weighted
-/// sum leaves least up to the sum that the local upper bound allows.
+/// sum comes nearest to the sum that the local upper bound allows.
 const STRICTEST: usize = 32;
 
 /// The dual prices of a level at one dual point, and the greatest price at which an option of the level may still
@@ -24,7 +24,8 @@ type PricedLimit = (DualPrice, f64);
 
 impl Rows<'_> {
     /// The options that remain in each level after reduced-cost fixing, as nodes of its base tree. `points` are the
-    /// dual points that may exclude options of members below `upper`. `None` if a level has no option left.
+    /// dual points by which options are excluded that no member below `upper` can have. `None` if a level has no option
+    /// left.
     pub(super) fn affordable_options(
         &self,
         design_box: &[u32],
@@ -41,8 +42,8 @@ impl Rows<'_> {
                 (room, multipliers, &point.levels[..])
             })
             .collect();
-        // The dual points that allow the lowest prices exclude most options. Beyond some dozens, another one hardly
-        // excludes enough to pay for its time.
+        // The dual points that allow the lowest prices exclude most options. After some dozens of dual points, a
+        // further one hardly excludes enough options to save the time that it takes.
         strict.sort_by(|a, b| a.0.total_cmp(&b.0));
         strict.truncate(STRICTEST);
         let levels = self.problem.level_pieces.iter().enumerate();
@@ -59,7 +60,7 @@ impl Rows<'_> {
     }
 
     /// Nodes of a level's base tree below `node` that contain every option which no dual point excludes. `afforded`
-    /// holds, for each dual point, the prices of the level and the greatest price that an option may have.
+    /// has, for each dual point, the prices of the level and the greatest price that an option may have.
     fn affordable(&self, piece: usize, node: u32, afforded: &[PricedLimit]) -> Vec<u32> {
         let prices: Vec<EightPrices> = afforded.chunks(LANES).map(EightPrices::new).collect();
         let prices = &prices[..];
@@ -89,9 +90,10 @@ struct EightPrices {
     inertia: [Eight; INERTIAS],
     /// Price per unit of each compliance at each dual point.
     compliance: [Eight; STIFFNESSES],
-    /// Credit per unit of each stiffness at each dual point. A stiffer part lowers the weighted sum of the rows.
+    /// Amount by which each unit of a stiffness lowers the weighted sum of the rows at each dual point.
     stiffness: [Eight; STIFFNESSES],
-    /// For each judged case, the prices of a joint per unit of twist and of torque, and the credit per unit of slope.
+    /// For each judged case: the price of a joint per unit of twist, its price per unit of torque, and the amount by
+    /// which each unit of slope lowers the weighted sum.
     joint: Vec<[Eight; 3]>,
 }
 
@@ -120,8 +122,8 @@ impl EightPrices {
     }
 }
 
-/// Computes whether every drive of a box is excluded: whether, at some dual point (set of multipliers), its price is
-/// above the allowed one. A price that is not a number excludes nothing.
+/// Computes whether every drive of a box is excluded: whether, at some dual point (set of multipliers), the least price
+/// of a drive in the box is above the allowed one. A price that is not a number excludes nothing.
 struct DrivesCost<'a> {
     drives: &'a DriveBox,
     gears: &'a [JointPrice],
@@ -165,8 +167,8 @@ impl LaneWork for DrivesCost<'_> {
     }
 }
 
-/// Computes whether every tube of a box is excluded: whether, at some dual point (set of multipliers), its price is
-/// above the allowed one. A price that is not a number excludes nothing.
+/// Computes whether every tube of a box is excluded: whether, at some dual point (set of multipliers), the least price
+/// of a tube in the box is above the allowed one. A price that is not a number excludes nothing.
 struct LinksCost<'a> {
     links: &'a LinkBox,
     prices: &'a [EightPrices],
@@ -186,7 +188,8 @@ impl LaneWork for LinksCost<'_> {
             let [stiff, soft] = compliances;
             for k in 0..STIFFNESSES {
                 cost = cost + least::<V>(&eight.compliance[k], [stiff[k], soft[k]]);
-                // A rigid coordinate earns no credit. An infinite stiffness times a zero price must not become NaN.
+                // A rigid coordinate does not lower the cost. An infinite stiffness times a zero price must not become
+                // NaN.
                 let price = V::load(&eight.stiffness[k]);
                 let earned = price * V::splat(high.stiffnesses[k]);
                 cost = cost - V::choose(V::zero().less(price), earned, V::zero());

@@ -16,7 +16,7 @@ const MOST_SHAPES: usize = 3;
 /// Further points still exclude more options by their reduced costs.
 const MOST_TO_REDUCE: usize = 8;
 /// The search for multipliers stops if the value of the matrix game, which limits what any multipliers can prove,
-/// exceeds the best dual point so far by at most this much (in the scale of the rows).
+/// exceeds the value of the best dual point so far by at most this much (in the scale of the rows).
 const SETTLED: f64 = 1e-4;
 /// Least weight of a relaxed design in the mixture. A smaller weight is due to rounding.
 const SHARE: f64 = 1e-9;
@@ -34,7 +34,7 @@ pub(super) struct Survivors {
 
 impl Problem<'_> {
     /// Tests whether a box has designs below the local upper bound `upper`. The intervals of the box are in `work`, and
-    /// `warm_start` holds the multipliers of the parent box. `None` if the bound proves that there are none; otherwise
+    /// the multipliers of the parent box are in `warm_start`. `None` if the bound proves that there are none; otherwise
     /// the options and designs that remain possible.
     pub(super) fn bound_below(
         &self,

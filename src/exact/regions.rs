@@ -5,8 +5,8 @@
 //! local upper bound allows ([`reduced_cost`](super::reduced_cost)). With fewer options the bounds are sharper, and
 //! more options can be excluded.
 //!
-//! Local upper bounds are refuted in groups, by one bound that covers all of a group. A group that is not refuted is
-//! divided into two. A region below a single bound that is not refuted is branched on options or on a torque
+//! Local upper bounds are refuted several at a time, by one bound that covers all of them. A set of bounds that is not
+//! refuted is divided into two. A region below a single bound that is not refuted is branched on options or on a torque
 //! ([`branching`](super::branching)) until few designs are left. These are searched box by box.
 
 use super::bound::{BoxBound, DesignBox, Verdict};
@@ -33,8 +33,8 @@ const WORTH_IT: f64 = 0.1;
 /// Width of a grid cell for the thinning of incumbents, as a fraction of the slack.
 const THINNED: f64 = 0.45;
 
-/// The options that may belong to a design of a region, with the trial shapes and multipliers of the region from which
-/// it was divided.
+/// The options that may belong to a design of a region. The trial shapes and multipliers are those of the larger region
+/// of which this region is a part, until its own are computed.
 #[derive(Clone)]
 pub(super) struct Subproblem<'p> {
     problem: Arc<Problem<'p>>,
@@ -53,8 +53,9 @@ enum Task<'p> {
     Boxes { problem: Arc<Problem<'p>>, upper: LocalUpperBound, first: OpenBox },
 }
 
-/// One pass over the whole search region, for the designs of some boxes. `seen` is called after each round. Returns one bound for each task that is left
-/// when the search is stopped.
+/// One pass with the slack `slack` over the whole search region, for the designs of the boxes `boxes`. A region of at
+/// most `regions_to` designs is searched box by box. `seen` is called after each round. Returns one bound for each task
+/// that is left when the search is stopped.
 pub(super) fn pass_by_regions<'p>(
     budget: &Budget<'p>,
     problem: &Problem<'p>,
@@ -99,7 +100,8 @@ pub(super) fn pass_by_regions<'p>(
 }
 
 impl<'p> Search<'_, 'p> {
-    /// Searches the region below the local upper bounds under node `at` of their tree. Returns the tasks that remain.
+    /// Searches the region below the local upper bounds under node `at` of their tree. If it has at most `regions_to`
+    /// designs, it is searched box by box. Returns the tasks that remain.
     fn region(
         &self,
         upper_bounds: Arc<LocalUpperBounds>,
@@ -180,9 +182,9 @@ impl<'p> Search<'_, 'p> {
         }
     }
 
-    /// The local upper bounds of what remains of the region below `upper` after incumbents that were found since
-    /// `upper` was made have cut it. `incumbents_seen` is the number of incumbents that were known then, and is brought
-    /// up to date. `None` if no later incumbent lies in the region.
+    /// The local upper bounds of what later incumbents leave undominated of the region below `upper`. Later incumbents
+    /// are those found since `upper` was made. `incumbents_seen` is the number of incumbents that were known when it
+    /// was made, and is brought up to date. `None` if no later incumbent lies in the region.
     fn clipped(&self, upper: &LocalUpperBound, incumbents_seen: &mut usize) -> Option<LocalUpperBounds> {
         let is_inside = |o: &Objectives| {
             o.mass_kg < upper.mass_kg && o.tip_deflection_m < upper.tip_m && o.lowest_mode_hz > upper.hz
@@ -229,8 +231,9 @@ impl<'p> Subproblem<'p> {
         Self::whole(&problem.restricted_to(&nodes)?, incumbents_seen, work)
     }
 
-    /// Bounds a subproblem below a local upper bound. Returns the survivors, and whether the subproblem was
-    /// restricted to them. It is restricted if enough designs were excluded. `None` if the region is empty.
+    /// Bounds a subproblem below a local upper bound. Returns the survivors, and whether the subproblem was restricted
+    /// to them. It is restricted if enough designs were excluded. `is_beaten` tells whether a known design dominates
+    /// every design with a given bound. `None` if the region is empty.
     pub(super) fn reduce(
         &mut self,
         upper: &LocalUpperBound,

@@ -3,12 +3,15 @@
 //! The bound of a box takes every part at its lightest *and* at its stiffest, but a part is one or the other.
 //! The rows below are sums of one number for each part, so lightness and stiffness are traded part by part:
 //!
-//! | row | sum over the parts | what is lost |
-//! |---|---|---|
-//! | mass | exact | nothing |
-//! | displacement of the tip in a case, along a fixed direction | twist of the gears, each at a torque of its own; `F₀ c + c₀ (F - F₀)` for the force `F` and the compliance `c` of a tube or a bearing, with `F₀` and `c₀` the least of the box (McCormick) | the product of the widths of `F` and `c` |
-//! | torque of a gear | its own torque less the torque that the weights outboard make: zero | nothing |
-//! | mode | `λ xᵀMx - xᵀKx` for a trial shape `x`: not positive for a member whose eigenvalues are at least `λ` | the square of the shape's error |
+//! - *mass*: the sum of the masses. It is exact.
+//! - *displacement of the tip* in a case, along a fixed direction: the twists of the gears, each at a torque of its
+//!   own, and the deflections of tubes and bearings. A product of the force `F` and the compliance `c` of a tube or a
+//!   bearing is replaced by `F₀ c + c₀ (F - F₀)`, where `F₀` and `c₀` are the least of the box (McCormick). The error
+//!   is at most the product of the widths of the two intervals.
+//! - *torque of a gear*: its own torque less the torque that the weights outboard make. The difference is zero, and
+//!   nothing is lost.
+//! - *mode*: `λ xᵀMx - xᵀKx` for a trial shape `x`. It is not positive for a member whose eigenvalues are at least `λ`.
+//!   The error is about the square of the shape's error.
 //!
 //! For a member below a [`LocalUpperBound`] each row has an upper limit. With multipliers that are not
 //! negative, the weighted sum of the rows then has one too. This is the Lagrangian relaxation of the region;
@@ -51,8 +54,8 @@ impl WarmStart {
     }
 }
 
-/// The rows of a box: linear inequalities between the numbers of the parts that every member below a local upper bound
-/// satisfies.
+/// The rows of a box: linear inequalities in the numbers of the parts. Every member below a local upper bound satisfies
+/// them.
 pub(super) struct Rows<'a> {
     pub problem: &'a Problem<'a>,
     pub work: &'a Work,
@@ -74,7 +77,8 @@ pub(super) struct Rows<'a> {
     pub first_mode: usize,
     /// The feasible drives of each level; `None` for a level of links.
     drives: Vec<Option<FeasibleDrives>>,
-    /// They with the states that their gears may have in this box.
+    /// The feasible drives of each level with the states that their gears may have in this box; `None` for a level of
+    /// links.
     pub priced: Vec<Option<PricedDrives>>,
 }
 
@@ -89,7 +93,7 @@ pub(super) struct Force<'a> {
     pub row: usize,
 }
 
-/// A trial shape (motion of the arm) that bounds the modes in a judged case, with the numbers of its row.
+/// A trial shape (motion of the arm) that bounds the modes in a judged case, with what is needed to make its row.
 pub(super) struct Mode {
     /// Index of the judged case.
     pub judged: usize,
@@ -163,7 +167,7 @@ impl Problem<'_> {
 }
 
 impl<'a> Rows<'a> {
-    /// Makes the rows (inequalities) of a box for the local upper bound `upper`. `work` holds the intervals of the box,
+    /// Makes the rows (inequalities) of a box for the local upper bound `upper`. `work` has the intervals of the box,
     /// and `warm_start` the shapes and drives of the parent box.
     pub(super) fn new(
         problem: &'a Problem,
@@ -230,7 +234,7 @@ impl<'a> Rows<'a> {
                 Some(torque_nm) => Gear::at(row.piece, judged, torque_nm),
                 None => {
                     // The slope may change within the interval of torque. The gear is then evaluated at a torque of its
-                    // own, which two rows force to equal the torque of the weights.
+                    // own, which two rows force to equal the torque that the weights cause.
                     let [least_nm, most_nm] = work.torques[case][row.piece];
                     let compliance = 1.0 / curve.steepest(least_nm, most_nm);
                     let torques_nm = work.forces[case][at];
@@ -243,15 +247,15 @@ impl<'a> Rows<'a> {
     }
 
     /// Adds two rows for each force bound of a judged case: one for the lower and one for the upper limit of the force.
-    /// A torque of a gear that has such rows already gets none.
+    /// No rows are added for the torque of a gear that has two rows already.
     fn push_force_bounds(&mut self, judged: usize, case: usize) {
         let (problem, work) = (self.problem, self.work);
         for bound in problem.force_bounds.iter().filter(|bound| bound.case == case) {
             let row = &problem.poses[case].rows[bound.row];
             let is_free =
                 |gear: &Gear| gear.piece == row.piece && gear.row.is_some() && work.curve(row).is_some();
-            // A bounded force that is the torque of such a gear is restricted by the gear's rows already. Any other
-            // needs rows of its own.
+            // If the bounded force is the torque of a gear with two rows, these rows restrict it already. Any other
+            // force needs rows of its own.
             if !self.gears.iter().any(is_free) {
                 let between = work.forces[case][bound.row];
                 self.push_force(judged, row, between, between);
@@ -272,7 +276,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Adds the two rows of a generalized force. The first is the force's least value less the force that the weights
-    /// cause, the second is this force less its greatest value. `between` holds the least and the greatest value. The
+    /// cause, the second is this force less its greatest value. `between` are the least and the greatest value. The
     /// scale of the rows is taken from the interval from `low` to `high`. Returns the index of the first row.
     fn push_force(&mut self, judged: usize, row: &'a Row, [low, high]: [f64; 2], between: [f64; 2]) -> usize {
         let next = self.scale.len();
@@ -294,8 +298,8 @@ impl<'a> Rows<'a> {
         self.modes.push(Mode { judged, start, shape, kinetic });
     }
 
-    /// The multipliers with which the search for better ones starts. `above` holds those of the parent box. Rows that
-    /// the parent box did not have get equal multipliers.
+    /// The multipliers with which the search for better ones starts. `above` are those of the parent box. Rows that the
+    /// parent box did not have get equal multipliers.
     pub(super) fn starting_multipliers(&self, above: &[f64]) -> Vec<f64> {
         let mut multipliers = vec![0.0; self.scale.len()];
         let others: Vec<usize> = (0..=self.tips.len()).chain(self.first_mode..self.scale.len()).collect();
@@ -309,13 +313,13 @@ impl<'a> Rows<'a> {
 
     /// Adds multipliers of the torque rows to `multipliers`. With them the price of a gear's twist grows with the
     /// torque that the weights make, by the least compliance of the box (McCormick). Without them a gear could be
-    /// evaluated at any torque at no price.
+    /// evaluated at any torque without raising the weighted sum.
     pub(super) fn with_torques(&self, mut multipliers: Vec<f64>) -> Vec<f64> {
         for gear in &self.gears {
             let Some(row) = gear.row else { continue };
             let tip = 1 + gear.judged;
             let per_twist = multipliers[tip] / self.scale[tip] * self.tips[gear.judged].joints[gear.piece];
-            // The row in which the price rises with the torque of the weights.
+            // The row in which the price rises with the torque that the weights cause.
             let at = if per_twist > 0.0 { row + 1 } else { row };
             multipliers[at] += per_twist.abs() * gear.least_compliance * self.scale[at];
         }
@@ -347,8 +351,8 @@ impl<'a> Rows<'a> {
         objectives.chain(torques).chain(modes).zip(&self.scale).map(|(row, scale)| row / scale)
     }
 
-    /// Sets of multipliers that use a single row. There is one for each row with a finite limit below `upper`, except
-    /// for torque rows.
+    /// Sets of multipliers that use a single row. There is one for each row that has a finite limit for members below
+    /// `upper`, except for torque rows.
     pub(super) fn single_row_multipliers(&self, upper: &LocalUpperBound) -> Vec<Vec<f64>> {
         let is_torque = |row: usize| (1 + self.tips.len()..self.first_mode).contains(&row);
         let rows = self.row_limits(upper).enumerate().filter(|(row, a)| a.is_finite() && !is_torque(*row));

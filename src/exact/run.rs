@@ -26,7 +26,7 @@ use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-/// Stack size that each worker thread needs \[bytes\]. Regions of an exact search are nested calls, and a worker that
+/// Stack size that each worker thread needs \[bytes\]. An exact search by regions makes nested calls, and a worker that
 /// waits for others runs their tasks on its own stack. A program that builds its own thread pool has to give its
 /// workers this much.
 pub const WORKER_STACK_BYTES: usize = 64 << 20;
@@ -37,14 +37,14 @@ const LARGE: f64 = 1e9;
 pub const VAST: f64 = 1e14;
 /// Number of designs below which a region is searched box by box.
 const FEW: f64 = 1e6;
-/// Number of probes per squared decade of designs: a space of `10^n` designs gets `0.12 n²` probes. More probes pay
-/// only in a large space.
+/// Number of probes per squared decade of designs: a space of `10^n` designs gets `0.12 n²` probes. More probes shorten
+/// the search only in a large space.
 const PROBES: f64 = 0.12;
 /// Number of probes per squared decade of designs if the genetic algorithm ([`evolve`]) follows. It is a third of
 /// [`PROBES`].
 const PROBES_TO_EVOLVE: f64 = 0.04;
-/// Default of the greatest number of designs that are listed with all their ties. A tie is a design that differs only
-/// in drives of equal mass, torsion curve and bearing stiffness.
+/// Default of the greatest number of designs that are listed with all their ties. A tie is a design that differs from
+/// another only in drives of equal mass, torsion curve and bearing stiffness.
 const MOST_WITH_TIES: usize = 20_000;
 
 /// A search for the exact front. Other threads can watch and stop it.
@@ -95,7 +95,7 @@ pub struct Exact<'p> {
 }
 
 /// How the passes of a search ended. `gap` is the gap that was proved (relative; `None` if no gap was proved). `open`
-/// holds the bounds of the boxes or regions that are not searched to the end; it is empty after a complete search.
+/// are the bounds of the boxes or regions that are not searched to the end; there are none after a complete search.
 struct Ended {
     gap: Option<f64>,
     open: Vec<BoxBound>,
@@ -125,7 +125,8 @@ impl<'p> Exact<'p> {
         }
     }
 
-    /// Takes joints that are tabulated already. They are those of a space with the same joints and cases.
+    /// Makes the search use joints that are tabulated already. They may come from another space, if it has the same
+    /// joints and cases.
     pub(crate) fn with_joints(self, joints: TabulatedJoints<'p>) -> Self {
         Self { joints: OnceLock::from(joints), ..self }
     }
@@ -134,8 +135,8 @@ impl<'p> Exact<'p> {
         self.joints.get_or_init(|| TabulatedJoints::new(self.space, self.catalogs))
     }
 
-    /// Searches the space region by region if it has more designs than this. The default is 1e14. It changes the time
-    /// of the search, not its result.
+    /// Searches the space region by region if it has more than `designs` designs. The default is 1e14. The number
+    /// changes the time of the search, not its result.
     #[must_use]
     pub fn by_regions_from(self, designs: f64) -> Self {
         Self { regions_from: designs, regions_to: designs.min(FEW), ..self }
@@ -163,14 +164,15 @@ impl<'p> Exact<'p> {
         Self { only: Some(objective), regions_from: f64::INFINITY, ..self }
     }
 
-    /// Searches one shard of the space ([`found`](Self::found)); [`joined`](Self::joined) makes the front of all.
+    /// Makes [`found`](Self::found) search one shard of the space. [`joined`](Self::joined) makes one front of the
+    /// findings of all shards.
     #[must_use]
     pub fn of_shard(self, shard: Shard) -> Self {
         Self { shard, ..self }
     }
 
-    /// Goes on where an earlier process ended, and keeps states for the next one. They are of the same calls of
-    /// [`run`](Self::run) and [`run_of_material`](Self::run_of_material), in the same order.
+    /// Goes on where an earlier process ended, and saves states for a later one. All these processes must make the same
+    /// calls of [`run`](Self::run) and [`run_of_material`](Self::run_of_material), in the same order.
     ///
     /// # Errors
     /// Returns a message if the bytes are not a saved state of an exact search.
@@ -184,8 +186,8 @@ impl<'p> Exact<'p> {
         Known { boxes: self.budget.boxes(), ..self.live.known() }
     }
 
-    /// Finds the front. `known` holds the objectives of designs that are known already. They prune boxes, but these
-    /// designs are not listed.
+    /// Finds the front. `known` are the objectives of designs that are known already. These designs prune boxes, but
+    /// they are not listed.
     pub fn run(&self, known: &[Objectives]) -> ExactOutcome {
         let mut state = SearchState::toward(self.only);
         known.iter().for_each(|objectives| state.enter(objectives));
@@ -214,8 +216,9 @@ impl<'p> Exact<'p> {
         Problem::with_joints(self.space, self.joints(), takes, ties)
     }
 
-    /// Searches a part of the study from a state, or takes what an earlier process found in it. The flag tells whether no
-    /// designs are known at the start.
+    /// Searches one part of the study (all designs, or those of one material) and starts with a state. If an earlier
+    /// process has finished this part, its result is returned. `whole` is the compiled space of the part; `None` if it
+    /// has no design. The flag tells whether no designs are known at the start.
     pub(super) fn search_part(
         &self,
         whole: Option<&Problem<'p>>,
@@ -253,7 +256,7 @@ impl<'p> Exact<'p> {
         found
     }
 
-    /// Lists what was found, with all ties.
+    /// Lists the designs found. All ties are listed if there are not too many.
     pub(super) fn listed(&self, whole: Option<&Problem<'p>>, found: FoundInShard) -> ExactOutcome {
         let FoundInShard { designs_evaluated, boxes, boxes_open, gap, decided: mut front, undecided, .. } =
             found;
@@ -266,7 +269,7 @@ impl<'p> Exact<'p> {
         // Tied kinds may stand for the same design.
         front.dedup_by_key(|c| c.number);
         ExactOutcome {
-            // Also of a space of which nothing was compiled because no option of a level can hold.
+            // The number is that of the study, even if the space was not compiled because a level has no usable option.
             designs_total: self.space.designs_with(self.joints()).unwrap_or(u128::MAX),
             designs_evaluated,
             boxes,
@@ -291,7 +294,7 @@ impl<'p> Exact<'p> {
         live: Option<&Live>,
     ) -> Ended {
         let (designs, by_regions) = (whole.designs() as f64, self.is_by_regions(whole));
-        // Small spaces need no passes with slack. With given designs there is something to prune with from the start.
+        // Small spaces need no passes with slack. If designs are given, boxes can be pruned from the start.
         let in_passes = is_new && (by_regions || designs > LARGE);
         let early = live.filter(|_| in_passes).map(|live| Early::new(&self.budget, whole, live));
         let mut begun = self.journal.begun();

@@ -133,13 +133,13 @@ impl SearchState {
         }
     }
 
-    /// The designs found that no other design dominates, in ascending order, and the undecided designs.
+    /// The designs found that no other design dominates, by ascending number, and the undecided designs.
     pub(super) fn into_found(self) -> [Vec<Candidate>; 2] {
         [nondominated(self.kept), self.undecided]
     }
 }
 
-/// The designs that no other of them dominates, in ascending order.
+/// The designs of the list that no other design of the list dominates, by ascending number.
 pub(super) fn nondominated(mut front: Vec<Candidate>) -> Vec<Candidate> {
     clear(&mut front);
     front.sort_unstable_by_key(|c| c.number);

@@ -67,8 +67,8 @@ impl Shape {
         shape
     }
 
-    /// One step of inverse iteration of this shape towards the lowest mode of an ideal arm that is orthogonal to the
-    /// shapes in `others`.
+    /// One step of inverse iteration of this shape, towards a mode of an ideal arm: the lowest of those modes that are
+    /// orthogonal to the shapes in `others`.
     pub(super) fn improve(&mut self, pose: &Pose, ideal: &Ideal, others: &[Self], work: &mut Work) {
         self.iterate(pose, ideal, &Twist::zeros(), work);
         self.clear_of(pose, ideal, others);
@@ -100,8 +100,8 @@ impl Shape {
         kinetic
     }
 
-    /// Replaces this shape `x` by `C M x`, one step of inverse iteration, in which the base moves by `base`. Then it is
-    /// scaled.
+    /// Replaces this shape `x` by `C M x`, one step of inverse iteration, in which the base moves by `base`. Then the
+    /// shape is scaled.
     fn iterate(&mut self, pose: &Pose, ideal: &Ideal, base: &Twist, work: &mut Work) {
         inertia_forces(pose, ideal.inertia, base, &self.x, work);
         let mut largest = 0.0f64;
@@ -255,7 +255,8 @@ impl PosedPiece {
         }
     }
 
-    /// Stiffness of a coordinate of the piece for these section or joint stiffnesses; 0 for a rigid coordinate.
+    /// Stiffness of a coordinate of the piece; 0 for a rigid coordinate. `stiffness` are the stiffnesses of the tube's
+    /// section, or of the joint and its bearing.
     #[inline]
     pub(super) fn coordinate_stiffness(&self, coordinate: usize, stiffness: &[f64; STIFFNESSES]) -> f64 {
         match self {
@@ -267,8 +268,8 @@ impl PosedPiece {
     }
 }
 
-/// Adds the motion that the two tilts of a joint's bearing cause to `twist`, the motion of everything outboard. `x`
-/// holds the coordinates of the joint.
+/// Adds the motion that the two tilts of a joint's bearing cause to `twist`, the motion of everything outboard. `x` are
+/// the coordinates of the joint.
 #[inline]
 fn add_tilts(across: &Option<[Twist; 2]>, x: &[f64], twist: &mut Twist) {
     for (tilt, x) in across.iter().flatten().zip(&x[TILT..]) {
@@ -305,7 +306,7 @@ fn displacement(twist: &Twist, at_m: &Vector3<f64>) -> Vector3<f64> {
 }
 
 impl PosedTube {
-    /// Adds the motion of the tube's end relative to its root to `twist`, the motion of everything outboard. `x` holds
+    /// Adds the motion of the tube's end relative to its root to `twist`, the motion of everything outboard. `x` are
     /// the strain coordinates of the tube.
     #[inline]
     fn carry(&self, twist: &mut Twist, x: &[f64]) {

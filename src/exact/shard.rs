@@ -1,13 +1,15 @@
 //! Shards of an exact search: subtrees of the space, each searched by itself.
 //!
-//! The box of all designs is halved until there are enough boxes, always the one with the most designs and always at its
-//! level with the most options. That depends on the space alone, so every process that knows the space makes the same
-//! subtrees. They are dealt to the shards in turn. A subtree is named by the halves that lead to it; such names tell
-//! by themselves whether some subtrees hold every design once ([`refuse_holes`]).
+//! The box of all designs is halved, and its halves again, until there are enough boxes. The box with the most designs
+//! is halved first, always at its level with the most options. The subtrees thus depend on the space alone, and every
+//! process makes the same ones. They are dealt to the shards in turn. The name of a subtree lists the halves that lead
+//! to it. The names of some subtrees therefore tell whether these subtrees together contain every design exactly once
+//! ([`refuse_holes`]).
 //!
-//! What a shard prunes is infeasible, or dominated by a design that it found or was given, or by one with a lighter drive
-//! that lies in any subtree (`dominance.rs`). So the union of what all shards found lacks no design of the front, and what is
-//! left of it by the rule of one machine is the front of one machine.
+//! A shard prunes only designs that are infeasible or dominated. The dominating design was found by the shard or given
+//! to it, or has a lighter drive and may lie in any subtree (`dominance.rs`). So the findings of all shards together
+//! contain every design of the front. Dominated designs are then removed by the same rule as in a search by one
+//! process, and the fronts are equal.
 
 use super::bound::DesignBox;
 use super::outcome::{ExactOutcome, FoundInShard};
@@ -18,16 +20,19 @@ use crate::search::sweep::Shard;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Number of subtrees of each shard in a search by boxes. Of many small ones no shard gets the hard ones alone.
+/// Number of subtrees of each shard in a search by boxes. With several small subtrees in each shard, no single shard
+/// gets all the hard ones.
 const SUBTREES: usize = 8;
-/// The same in a search by regions: each subtree looks through all regions.
+/// Number of subtrees of each shard in a search by regions. It is one, because the search of each subtree goes through
+/// all regions.
 const SUBTREES_BY_REGIONS: usize = 1;
-/// No space is halved this often.
+/// Greatest length of the name of a subtree, which is the number of halvings that lead to it. No space needs as many
+/// halvings.
 const LONGEST_NAME: usize = 256;
 
 impl<'p> Exact<'p> {
-    /// Searches the shard for the front of all designs, or for that of the designs of one material. `given` are findings of
-    /// the same study in whichever part of the space; they prune boxes and are part of what is found.
+    /// Searches the shard for the front of all designs, or for that of the designs of one material. `given` are earlier
+    /// findings of the same study, from any part of the space. They prune boxes, and the result includes them.
     pub fn found(&self, material_index: Option<usize>, given: &[FoundInShard]) -> FoundInShard {
         let mut state = SearchState::toward(self.only);
         for FoundInShard { decided, undecided, .. } in given {
@@ -41,7 +46,8 @@ impl<'p> Exact<'p> {
         self.search_part(self.space_of(material_index).as_ref(), (state, given.is_empty()), live)
     }
 
-    /// The result of a search whose shards found this. They must hold every design ([`refuse_holes`]).
+    /// The result of a search whose shards have the findings `shards`. Their subtrees must contain every design exactly
+    /// once ([`refuse_holes`]).
     pub fn joined(&self, material_index: Option<usize>, shards: &[FoundInShard]) -> ExactOutcome {
         let all = |of: fn(&FoundInShard) -> &Vec<_>| shards.iter().flat_map(of).copied().collect();
         let sum = |of: fn(&FoundInShard) -> u64| shards.iter().map(of).sum();
@@ -72,7 +78,8 @@ impl<'p> Exact<'p> {
 }
 
 impl Problem<'_> {
-    /// Disjoint boxes that hold every design, at most so many, by their names.
+    /// Disjoint boxes that together contain every design, each with its name and sorted by name. There are at most
+    /// `most` of them.
     fn divided(&self, most: usize) -> Vec<(String, DesignBox)> {
         let size = |design_box: &DesignBox| self.members(design_box).to_bits();
         let root = self.root();
@@ -109,10 +116,10 @@ impl Problem<'_> {
     }
 }
 
-/// Checks that some subtrees of one space hold every design once.
+/// Checks that some subtrees of one space, given by their names, together contain every design exactly once.
 ///
 /// # Errors
-/// The name of a subtree that is missing, or of one that is there twice or lies in another, in words.
+/// A sentence that names a subtree that is missing, that is listed twice, or that lies in another one.
 pub fn refuse_holes(mut subtrees: Vec<&str>) -> Result<(), String> {
     subtrees.sort_unstable();
     match subtrees.iter().find(|name| name.len() > LONGEST_NAME) {
@@ -121,7 +128,8 @@ pub fn refuse_holes(mut subtrees: Vec<&str>) -> Result<(), String> {
     }
 }
 
-/// Checks that the subtrees below a subtree hold its designs once. They are sorted, and their names begin with its name.
+/// Checks that the subtrees `below` together contain every design of the subtree `name` exactly once. They are sorted,
+/// and their names begin with `name`.
 fn holds_all(name: &str, below: &[&str]) -> Result<(), String> {
     match below {
         [] => Err(format!("subtree \"{name}\" is in none of them")),

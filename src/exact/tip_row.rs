@@ -10,8 +10,8 @@ use super::work::Work;
 pub(super) struct TipRow {
     /// Index of the case.
     pub case: usize,
-    /// Displacement of the tip along the direction per newton of each piece's weight \[m/N\]. It comes about through
-    /// tubes, bearings and those gears that keep a single slope.
+    /// Displacement of the tip along the direction per newton of each piece's weight \[m/N\]. The deflections of tubes,
+    /// bearings and those gears that keep a single slope contribute to it.
     pub per_n: Vec<f64>,
     /// Displacement of the tip along the direction per radian of each joint's torsion \[m/rad\]; 0 for other pieces.
     pub joints: Vec<f64>,
@@ -48,7 +48,7 @@ impl TipRow {
                 fixed_m += tip_per_unit * if tip_per_unit > 0.0 { less } else { more };
                 let known = matches!(problem.parts[row.piece], Part::Drives { .. } | Part::Given { .. });
                 // A gear whose slope may change is evaluated at a torque of its own, which extra rows force to equal
-                // the torque of the weights.
+                // the torque that the weights cause.
                 if !known || !curve.keeps_its_slope(play, [least_nm, most_nm], breaks) {
                     continue;
                 }

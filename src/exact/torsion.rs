@@ -68,7 +68,7 @@ impl CurveBox {
         Some(Self { stiff: torsion, soft: torsion, k1_in_modes: !matches!(curve, Curve::Windup(_)) })
     }
 
-    /// Whether every gear of the box has a single slope in the modes, and a single play, under all torques whose
+    /// Whether every gear of the box vibrates with a single slope and a single play under all static torques whose
     /// magnitude lies between `least_nm` and `most_nm` \[N m\]. `breaks` are the break points of the gears' curves.
     pub(super) fn keeps_its_slope(
         &self,
@@ -85,14 +85,14 @@ impl CurveBox {
         keeps_its_segment && play.is_none_or(|play| play.stays(most_nm))
     }
 
-    /// Greatest slope that a gear of the box may have in the modes \[N m/rad\] under torques whose magnitude lies
+    /// Greatest slope with which a gear of the box may vibrate \[N m/rad\] under static torques whose magnitude lies
     /// between `least_nm` and `most_nm` \[N m\].
     pub(super) fn stiffest(&self, least_nm: f64, most_nm: f64) -> f64 {
         self.slopes(&self.stiff.windup, least_nm, most_nm).fold(0.0, f64::max)
     }
 
-    /// Least slope that a gear of the box may have in the modes \[N m/rad\] under torques whose magnitude lies between
-    /// `least_nm` and `most_nm` \[N m\].
+    /// Least slope with which a gear of the box may vibrate \[N m/rad\] under static torques whose magnitude lies
+    /// between `least_nm` and `most_nm` \[N m\].
     pub(super) fn softest(&self, least_nm: f64, most_nm: f64) -> f64 {
         self.slopes(&self.soft.windup, least_nm, most_nm).fold(f64::INFINITY, f64::min)
     }
@@ -103,8 +103,8 @@ impl CurveBox {
         slopes(&self.stiff.windup, least_nm, most_nm).fold(0.0, f64::max)
     }
 
-    /// The least and the greatest twist over the members, with play \[rad\], under torques between `low` and `high` \[N
-    /// m\].
+    /// The least and the greatest twist \[rad\] of any gear of the box with its play, under torques between `low` and
+    /// `high` \[N m\].
     pub(super) fn twist(&self, play: Option<&JointPlay>, [low, high]: [f64; 2]) -> [f64; 2] {
         let least = if low >= 0.0 { &self.stiff } else { &self.soft }.angle_rad(low);
         let most = if high >= 0.0 { &self.soft } else { &self.stiff }.angle_rad(high);
@@ -112,15 +112,15 @@ impl CurveBox {
         [least + less, most + more]
     }
 
-    /// The least and the greatest twist that play adds over the members \[rad\], under torques in the interval
-    /// `between_nm` \[N m\].
+    /// The least and the greatest twist \[rad\] that play adds to the twist of any gear of the box, under torques in
+    /// the interval `between_nm` \[N m\].
     pub(super) fn twist_of_play(&self, play: Option<&JointPlay>, between_nm: [f64; 2]) -> [f64; 2] {
         let middle = [&self.stiff, &self.soft].map(|torsion| torsion.compliance[1]);
         play.map_or([0.0; 2], |play| play.twist(middle, between_nm))
     }
 
-    /// The slopes that the curve `w` may have in the modes \[N m/rad\] under torques whose magnitude lies between
-    /// `least_nm` and `most_nm` \[N m\].
+    /// The slopes of the curve `w` with which a gear may vibrate \[N m/rad\] under static torques whose magnitude lies
+    /// between `least_nm` and `most_nm` \[N m\].
     fn slopes(&self, w: &Windup, least_nm: f64, most_nm: f64) -> impl Iterator<Item = f64> {
         let (least_nm, most_nm) = if self.k1_in_modes { (0.0, 0.0) } else { (least_nm, most_nm) };
         slopes(w, least_nm, most_nm)

@@ -37,7 +37,7 @@ const WHOLE: u32 = 1 << 31;
 /// One node of a [`Tree`].
 pub(super) struct Node<B> {
     pub bounds: B,
-    /// The coordinates by which the node is separated from others; `None` for a node that no tree will stand on.
+    /// The coordinates by which the node is separated from others; `None` for a node over which no other tree is built.
     key: Option<Key>,
     /// Number of options below the node.
     pub members: u32,
@@ -122,7 +122,7 @@ impl<B: Bounds> Tree<B> {
             }
         };
         match &self.whole {
-            // => The root contains every node over which the tree is built.
+            // The root contains every node over which the tree is built.
             Some(_) if node == 0 => self.stands_on.iter().for_each(|&at| enter(at + WHOLE)),
             Some(_) => {
                 let mut open = vec![node];
@@ -274,7 +274,8 @@ fn grow<'b, B: Bounds + 'b>(
     let of =
         |half: &[Item], at: u32| nodes.get(at as usize).map_or_else(|| leaf(&half[0]).1, |node| &node.bounds);
     let bounds = of(low, halves[0]).join(of(high, halves[1]));
-    // A tree stands on nodes of the base tree alone, and logarithms take long.
+    // Only nodes of the base tree need keys, because other trees are built over them. The logarithms of a key take
+    // time.
     let key = kind.map(|_| bounds.key());
     let members = items.iter().map(|item| item.members).sum();
     nodes[here] = Node { bounds, key, members, kind: NodeKind::Split(halves) };

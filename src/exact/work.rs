@@ -44,17 +44,18 @@ pub(super) struct Work {
     /// Tilt of each joint's output bearing per moment, as an interval \[rad/(N m)\]; 0 for a bearing that does not
     /// tilt.
     pub(super) tilts: Vec<[f64; 2]>,
-    /// Lever of each link as an interval \[m\]: the distance along the axis of the joint inboard from the joint's
-    /// bearing to where the link attaches.
+    /// Lever of each link as an interval \[m\]: the distance along the axis of the joint directly inboard from the face
+    /// of the joint's flange to the point where the link attaches.
     pub(super) levers: Vec<[f64; 2]>,
-    /// Least and greatest space that each link leaves for the gear and motor of the joint that carries it.
+    /// Least and greatest space that each link leaves for the gear and motor of the joint inboard.
     pub(super) rooms: Vec<[LinkRoom; 2]>,
     /// Break points of the torsion curves that each joint may have.
     pub(super) breaks: Vec<BreakPoints>,
-    /// Least and greatest magnitude of the torque on each joint, in each judged case \[N m\].
+    /// Least and greatest magnitude of the torque on each joint in each judged case \[N m\]: first index the case,
+    /// second the piece.
     pub(super) torques: Vec<Vec<[f64; 2]>>,
     /// The judged case in which the least tip deflection of the box is greatest, and the direction in which the tip
-    /// moves there.
+    /// moves in this case.
     pub(super) worst_tip: Option<(usize, Vector3<f64>)>,
     /// For each judged case, the direction of the tip's displacement when it is least over the box.
     pub(super) tip_directions: Vec<Vector3<f64>>,
@@ -124,8 +125,8 @@ impl Work {
         }
     }
 
-    /// Writes the stiffnesses, inertias, mass and weight of a tube into this memory. `links` holds the intervals over
-    /// the options of the box.
+    /// Writes the stiffnesses, inertias, mass and weight of a tube into this memory. `links` has the intervals over the
+    /// options of the box.
     pub(super) fn tube(&mut self, problem: &Problem, piece: usize, length_m: f64, links: &LinkBox) {
         // An infinite stiffness becomes 0, which stands for a rigid coordinate. Infinity times zero strain would be
         // NaN.

@@ -32,7 +32,7 @@ pub struct Key {
     pub about: &'static str,
 }
 
-/// The values that are allowed.
+/// The kind of value that a key allows.
 #[derive(Debug, Clone, Copy)]
 pub enum Kind {
     /// Any JSON value.

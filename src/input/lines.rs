@@ -1,7 +1,7 @@
 //! Line numbers of the records in a CSV file.
 
-/// Counts the lines up to the first byte of a record. The CSV reader itself gives the line at which the record
-/// before ends. This differs after blank lines and with CRLF line ends.
+/// Counts the lines up to the first byte of a record. The CSV reader itself gives the line at which the record before
+/// ends. After blank lines and with CRLF line ends, the record begins at another line.
 pub struct LineCounter<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -30,7 +30,7 @@ impl<'a> LineCounter<'a> {
         self.line
     }
 
-    /// The first position from here on that is not in a blank line or a comment.
+    /// The first position at or after `from` that is not in a blank line or a comment.
     fn skipped(&self, from: usize) -> usize {
         let mut at = from;
         loop {

@@ -1,7 +1,7 @@
 //! A bill of materials: every part of an arm with its mass. The masses add up to the mass of the arm.
 //!
-//! An arm file states one mass for gear and motor together. If the catalogs know both parts and their masses add up
-//! to it, the bill has a row for each.
+//! An arm file states one mass for gear and motor together. If the catalogs know both parts and their masses add up to
+//! this mass, the bill has a row for each part.
 
 use super::csv_text::csv_text;
 use crate::arm::section::Section;
@@ -114,8 +114,8 @@ fn stated(at: &str, part: String, kind: &'static str, mass_kg: f64) -> Row {
     }
 }
 
-/// The row of the bill for a catalog part that is used at the element `at`. `from` is where the catalog has its numbers
-/// from.
+/// The row of the bill for a catalog part that is used at the element `at`. `from` states from where the catalog has
+/// the numbers of the part.
 fn bought(at: &str, part: &str, kind: &'static str, mass_kg: f64, from: &Provenance) -> Row {
     let (source, confidence) = (from.source.clone(), from.confidence.to_string());
     Row { source, confidence, ..stated(at, part.into(), kind, mass_kg) }

@@ -332,7 +332,7 @@ fn to_urdf(asked: &Asked) -> Export {
     }
 }
 
-/// What holds the driven joints of a rigid arm.
+/// The torques and forces that hold the driven joints. A rigid arm has no other expected results.
 fn torques_and_forces(snapshot: &Snapshot) -> Value {
     let mut expected = snapshot.expected();
     if let Some(expected) = expected.as_object_mut() {

@@ -5,9 +5,9 @@
 //! {"joints": {"shoulder": {"stiffness_nm_per_rad": 2e4}, "elbow": {"gear": "CSG-20-100", "motor": "ILM70x18"}}}
 //! ```
 //!
-//! Each joint has the keys that it has in an arm file: `stiffness_nm_per_rad` (null is rigid), `windup` or `gear`;
-//! `motor`; `bearing`. A prismatic joint has `stiffness_n_per_m`, `guide` and `moves`. The masses of the named parts
-//! and of bearings are not added, because the bodies of a URDF include them.
+//! Each joint has the keys that it has in an arm file: one of `stiffness_nm_per_rad` (null means rigid), `windup` and
+//! `gear`, and in addition `motor` and `bearing`. A prismatic joint has `stiffness_n_per_m`, `guide` and `moves`. The
+//! masses of the named parts and of bearings are not added, because the bodies of a URDF include them.
 
 use crate::arm::bearing::Bearing;
 use crate::arm::file::{read_curve, read_joint_bearing};
@@ -52,7 +52,7 @@ pub(crate) enum GivenSprings {
 }
 
 impl GivenSprings {
-    /// Whether the file states that the joint is rigid about its axis or along its travel.
+    /// Whether the stiffness file states that the joint is rigid about its axis or along its travel.
     pub(crate) fn is_rigid(&self) -> bool {
         match self {
             Self::Hinge { curve, .. } => *curve == Curve::Rigid,
@@ -61,7 +61,7 @@ impl GivenSprings {
     }
 }
 
-/// A joint for which the file may state elastic properties.
+/// A joint for which the stiffness file may state elastic properties.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct MovingJoint<'a> {
     /// Name of the joint.

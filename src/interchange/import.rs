@@ -207,8 +207,8 @@ impl<'t> Walk<'t> {
         self.lump(link, self.at, None);
     }
 
-    /// A name that no other element has. In a URDF a link and a joint may have the same name, in an arm no two
-    /// elements may.
+    /// A name for a link, made from `name`, that no other element has. In a URDF a link and a joint may have the same
+    /// name. In an arm no two elements may have the same name.
     fn free_name(&mut self, name: &str) -> String {
         let mut free = name.to_string();
         while !self.taken.insert(free.clone()) {
@@ -217,8 +217,8 @@ impl<'t> Walk<'t> {
         free
     }
 
-    /// Passes a joint on the path to the tip, and goes on to the URDF link behind it. `motion` says how the joint
-    /// moves; a joint that does is added to the arm, with its elastic properties in `given`.
+    /// Goes past a joint on the path to the tip, to the URDF link that is its child. `motion` says how the joint moves.
+    /// A joint that moves is added to the arm, with the elastic properties that `given` states for it.
     fn pass(&mut self, joint: &'t urdf_rs::Joint, motion: Moves, given: &[GivenJoint]) {
         let axis = Unit::new_normalize(Vector3::from(joint.axis.xyz.0));
         let child = joint.child.link.as_str();
@@ -263,8 +263,8 @@ impl<'t> Walk<'t> {
     }
 
     /// Adds the body of the URDF link `link`, whose frame is `at`, and the bodies of all side branches that hang on it,
-    /// to the link of the arm that is being built. `by` is the joint that holds the link if it is itself in a side
-    /// branch.
+    /// to the link of the arm that is being built. If the link is itself in a side branch, `by` is the joint by which
+    /// it hangs.
     fn lump(&mut self, link: &str, at: Isometry3<f64>, by: Option<&urdf_rs::Joint>) {
         let tree = self.tree;
         let Some(found) = tree.link(link) else { return };

@@ -82,8 +82,8 @@ impl Remainder {
         }
     }
 
-    /// Lets every joint turn by its own drive alone, joint by joint, for files in which no standing motor turns a joint with
-    /// others.
+    /// Removes, joint by joint, that a joint turns with other joints because its motor sits inboard of them. Each joint
+    /// is then turned by its own drive alone. This is for files that cannot state motors that sit elsewhere.
     pub(crate) fn without_turning_with_others(&mut self) {
         let turned = self.structure.joints().filter(|joint| !joint.turns_with.is_empty());
         let names: Vec<String> = turned.map(|joint| joint.name.clone()).collect();
@@ -101,8 +101,8 @@ impl Remainder {
         }
     }
 
-    /// Removes the compliance of every link, one by one, so that the loss of each is recorded. `why` is the reason for
-    /// the record.
+    /// Removes the compliance of every link, one by one, so that the loss of each is recorded. `why` is the reason that
+    /// is recorded.
     pub(crate) fn without_flexible_links(&mut self, why: &str) {
         let names: Vec<String> = self
             .structure
@@ -120,7 +120,7 @@ impl Remainder {
         }
     }
 
-    /// Removes the compliance of the link `name`. `why` is the reason for the record.
+    /// Removes the compliance of the link `name`. `why` is the reason that is recorded.
     pub(crate) fn without_flexible_link(&mut self, name: &str, why: &str) {
         self.remove("link_compliance", name, why, |structure| {
             for piece in &mut structure.pieces {
@@ -134,8 +134,8 @@ impl Remainder {
         });
     }
 
-    /// Removes the force and the moment at the tip, and returns the case without them. `why` is the reason for the
-    /// record.
+    /// Removes the force and the moment at the tip, and returns the case without them. `why` is the reason that is
+    /// recorded.
     pub(crate) fn without_tip_load(&mut self, why: &str) -> LoadCase {
         let bare =
             LoadCase { tip_force_n: Vector3::zeros(), tip_moment_nm: Vector3::zeros(), ..self.case.clone() };
@@ -149,7 +149,8 @@ impl Remainder {
         self.case.clone()
     }
 
-    /// Removes all springs of joints, bearings and frames, for files without springs.
+    /// Records all springs of joints, bearings and frames as left out, for files without springs. `why` is the reason
+    /// that is recorded.
     pub(crate) fn without_springs(&mut self, why: &str) {
         let statics = {
             let snapshot = Snapshot::new(self.structure.clone(), &self.case, self.case.links);

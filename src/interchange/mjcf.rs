@@ -13,12 +13,13 @@ use crate::arm::structure::JointAngle;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeMap;
 
-/// Mass \[kg\] and moment of inertia \[kg m²\] that a body without any gets; the moment is also added to those of all
-/// bodies. MuJoCo accepts no moving body without mass and inertia.
+/// Mass \[kg\] of a body that has none, and moment of inertia \[kg m²\] that is added to the moments of every body.
+/// MuJoCo accepts no moving body without mass and inertia.
 const LEAST: f64 = 1e-9;
 
-/// Inertia that stands in for a rotor that nobody knows, at the joint \[kg m²; kg where it slides\]. Without any, motor and gear would be two hinges of
-/// one axis with nothing between them, and the mass matrix singular. With motors held it changes nothing.
+/// Inertia at the joint that is assumed where the inertia of the rotor is not known \[kg m², or kg for a joint that
+/// slides\]. Without any inertia, motor and gear would be two hinges of one axis with nothing between them, and the
+/// mass matrix would be singular. The assumed inertia changes nothing while the motors are held.
 pub(crate) const STAND_IN_KGM2: f64 = 0.1;
 
 /// Inertia and torque of the motor of a joint.
@@ -30,7 +31,7 @@ pub(crate) struct Motor {
     pub peak_nm: Option<f64>,
 }
 
-/// An MJCF file, with a remark.
+/// An MJCF file, and whether MuJoCo must change inertias in it.
 pub(crate) struct Mjcf {
     /// The text of the file.
     pub text: String,

@@ -3,7 +3,7 @@
 //!
 //! - Import: `import` makes an arm of the path from the root of a URDF file (`urdf_file`, read by the crate `urdf-rs`)
 //!   to a tip. `given` reads the stiffness of the joints, which a URDF does not have. `report` says what became of
-//!   everything.
+//!   every link and joint of the URDF.
 //! - Export: `export` writes an arm in a load case. `snapshot` has its springs at their working points, and `tree`
 //!   converts it to a chain of rigid bodies for `mjcf` and `urdf_out`. `calculix` converts it to solids, `bill` and
 //!   `design_table` to tables. `left_out` lists what a file cannot represent, each with its part of the tip deflection.

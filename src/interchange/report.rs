@@ -102,7 +102,7 @@ impl ImportReport {
     }
 
     /// Records a joint on the path to the tip that does not move. `held_at` is the angle \[rad\] or travel \[m\] at
-    /// which it is held. `link` is the link of the arm with which the URDF link behind the joint is merged.
+    /// which it is held. The URDF link that is the child of the joint is merged with `link`, a link of the arm.
     pub(super) fn joined(&mut self, joint: &Joint, link: &str, held_at: f64) {
         self.joined.push(json!({
             "joint": joint.name, "type": word(joint), "link": joint.child.link, "onto": link,
@@ -126,7 +126,8 @@ impl ImportReport {
         }
     }
 
-    /// Records properties of the whole robot. `tip` is the frame of the tip link in the world.
+    /// Records properties of the whole robot. `tip` is the frame of the tip link in the world, and `name` is the name
+    /// of this link.
     pub(super) fn finish(&mut self, tree: &UrdfTree, tip: &Isometry3<f64>, name: &str) {
         let (roll, pitch, yaw) = tip.rotation.euler_angles();
         self.tip_frame = json!({

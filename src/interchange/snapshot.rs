@@ -23,12 +23,12 @@ const MODES: usize = 6;
 /// to one coordinate of an elastic element, such as the torsion of a joint or the tilt of a bearing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Working {
-    /// Generalized force on the coordinate \[N m\]. Of a coordinate that slides it is a force \[N\], and deflection and
-    /// compliance are in m and m/N.
+    /// Generalized force on the coordinate \[N m\]. For a coordinate that slides, it is a force \[N\]. The deflection
+    /// is then in m and the compliance in m/N.
     pub load_nm: f64,
-    /// Deflection of the coordinate under this force \[rad\].
+    /// Deflection of the coordinate under `load_nm` \[rad\].
     pub deflection_rad: f64,
-    /// Tangent compliance at this force \[rad/(N m)\].
+    /// Tangent compliance of the spring at `load_nm` \[rad/(N m)\].
     pub tangent_rad_per_nm: f64,
 }
 
@@ -38,8 +38,8 @@ impl Working {
         self.tangent_rad_per_nm == 0.0 && self.deflection_rad == 0.0
     }
 
-    /// Tangent stiffness at the load of the case \[N m/rad\]. Where the tangent compliance is zero, it is the secant
-    /// stiffness, because the tangent stiffness would be infinite.
+    /// Tangent stiffness at the load of the case \[N m/rad\]. If the tangent compliance is zero, the function returns
+    /// the secant stiffness, because the tangent stiffness would be infinite.
     pub(crate) fn tangent_nm_per_rad(&self) -> f64 {
         match self.tangent_rad_per_nm > 0.0 {
             true => 1.0 / self.tangent_rad_per_nm,
@@ -47,8 +47,8 @@ impl Working {
         }
     }
 
-    /// Secant stiffness (load over deflection) \[N m/rad\]. If the spring is unloaded it is the tangent stiffness,
-    /// because load over deflection is then undefined.
+    /// Secant stiffness (load over deflection) \[N m/rad\]. For an unloaded spring the function returns the tangent
+    /// stiffness, because load over deflection is then undefined.
     pub(crate) fn secant_nm_per_rad(&self) -> f64 {
         let secant = self.load_nm / self.deflection_rad;
         match self.load_nm.abs() > REST_NM && secant.is_finite() && secant > 0.0 {
@@ -57,8 +57,8 @@ impl Working {
         }
     }
 
-    /// Rest position \[rad\] of a linear spring that replaces this one: it has the tangent stiffness, and deflects as
-    /// much under the load of the case.
+    /// Rest position \[rad\] of a linear spring that can replace this spring. The linear spring has the tangent
+    /// stiffness. Under the load of the case it deflects as much as this spring.
     pub(crate) fn rest_rad(&self) -> f64 {
         self.deflection_rad - self.load_nm / self.tangent_nm_per_rad()
     }

@@ -1,10 +1,14 @@
 //! An arm as a chain of rigid bodies with hinges between them, at zero joint angles, as simulators and URDF files
 //! need it.
 //!
-//! A driven joint is a hinge that a motor turns, and the gear is a hinge with a spring in series with it. A bearing is two hinges
-//! in series with both. A prismatic joint is a slide that a motor moves, a slide with the spring of its drive, and up to three
-//! hinges of its guide: outboard of the motor's slide where a carriage moves, inboard of it where a ram does. A link is rigid, or it is cut into rigid pieces with springs between them: in the middle of each of `N`
-//! equal parts two hinges bend, one twists, and three slides shear and stretch. That converges with 1/N².
+//! A driven joint becomes several hinges in series: one that the motor turns, one with the spring of the gear, and two
+//! with the springs of the bearing. A prismatic joint becomes a slide that the motor moves, a slide with the spring of
+//! the drive, and up to three hinges with the springs of the guide. The hinges of the guide are outboard of the motor's
+//! slide if a carriage travels, and inboard of it if a ram travels.
+//!
+//! A link is rigid, or it is cut into rigid pieces with springs between them. The springs are in the middle of each of
+//! `N` equal parts of the link: two hinges for bending, one hinge for twist, and three slides for shear and stretch.
+//! The error of the compliance falls with 1/N².
 
 use super::snapshot::{Snapshot, Working};
 use crate::arm::LinkModel;
@@ -32,7 +36,7 @@ pub(crate) enum Role {
     Play(f64),
 }
 
-/// One axis about which a body rotates relative to the body before it, or along which it slides.
+/// One axis about which a body rotates relative to the body inboard of it, or along which it slides.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Hinge {
     /// Name of the hinge.
@@ -49,16 +53,16 @@ pub(crate) struct Hinge {
     pub role: Role,
 }
 
-/// A rigid body, and the hinges that connect it to the body before it.
+/// A rigid body, and the hinges that connect it to the body inboard of it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Node {
     /// Name of the body.
     pub name: String,
     /// Origin of the body's frame in the world at zero joint angles \[m\].
     pub origin_m: Vector3<f64>,
-    /// Hinges between the body before and this one, base to tip. The first body has none.
+    /// Hinges between the body inboard of this body and this body, base to tip. The first body has none.
     pub hinges: Vec<Hinge>,
-    /// Inertia matrix about the world's origin at zero joint angles.
+    /// Inertia matrix (6 x 6, mass included) about the world's origin at zero joint angles.
     pub inertia: Matrix6<f64>,
     /// Rods for drawing: both ends in the world and radius \[m\].
     pub rods: Vec<(Vector3<f64>, Vector3<f64>, f64)>,
@@ -133,8 +137,8 @@ impl Builder<'_> {
         self.nodes.last_mut().expect("the base is opened first")
     }
 
-    /// Adds the hinges of a joint, of its bearing or guide, or of a frame. `carriage` is the joint whose guide this is, if the
-    /// guide travels.
+    /// Adds the hinges of a joint, of its bearing or guide, or of a frame. If the element is the guide of a carriage,
+    /// `carriage` is its prismatic joint.
     fn springs(&mut self, element: &ElasticElement, workings: &[Working], carriage: Option<&PrismaticPiece>) {
         let slides = matches!(element.compliance, Compliance::Slide { .. });
         let is_joint = slides || matches!(element.compliance, Compliance::Joint(_));

@@ -84,7 +84,7 @@ impl UrdfTree {
         self.joints.iter().filter(move |joint| joint.parent.link == link)
     }
 
-    /// The joints on the path from the root to a link, in this order.
+    /// The joints on the path from the root to the link `tip`, in the order of the path.
     pub(crate) fn path_to(&self, tip: &str) -> Vec<&Joint> {
         let mut path = Vec::new();
         let mut link = tip;

@@ -69,10 +69,11 @@ fn ends(xml: &mut Xml, parent: &str, child: &str, xyz_m: &Vector3<f64>) {
     xml.leaf("origin", &[("xyz", triple(xyz_m)), ("rpy", "0 0 0".into())]);
 }
 
-/// The range of a prismatic joint, which a URDF must have and an arm does not \[m\].
+/// Travel to either side that is written as the range of a prismatic joint \[m\]. A URDF must state a range, and an arm
+/// has none.
 pub(crate) const TRAVEL_M: f64 = 1e3;
 
-/// A joint. An arm has no ranges, so its joints are continuous where they turn.
+/// Writes a joint. An arm states no ranges, so a joint that turns is written as `continuous`.
 fn joint(xml: &mut Xml, snapshot: &Snapshot, (from, parent): (&str, &Node), (to, node): (&str, &Node)) {
     let slides = node.hinges.first().is_some_and(|hinge| hinge.slides);
     let kind = if slides { "prismatic" } else { "continuous" };

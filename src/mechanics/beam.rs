@@ -62,9 +62,9 @@ pub enum Strain {
 /// Mass and rotary inertia of a link per metre of its length.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct LineInertia {
-    /// Mass per length that counts for motion along the link \[kg/m\].
+    /// Mass per length for motion along the link \[kg/m\].
     pub along_kg_per_m: f64,
-    /// Mass per length that counts for motion across the link \[kg/m\]. It includes the added mass of water.
+    /// Mass per length for motion across the link \[kg/m\]. It includes the added mass of water.
     pub across_kg_per_m: f64,
     /// Rotary inertia per length about the axis of the link \[kg m\].
     pub polar_kg_m: f64,

@@ -252,8 +252,8 @@ impl Chain {
         walk
     }
 
-    /// Forces of the springs on the arm in a pose. They depend on where their ends are, so a first walk from base to
-    /// tip without springs finds these positions.
+    /// Forces of the springs on the arm in a pose. The forces depend on the positions of the springs' ends, so a first
+    /// walk from base to tip without springs finds these positions.
     fn spring_loads(&self, pose_rad: &[f64]) -> Vec<EndLoad> {
         match self.springs.is_empty() {
             true => Vec::new(),
@@ -269,7 +269,7 @@ impl Chain {
         self.springs.iter().filter_map(|spring| Some((spring.name.as_str(), drawn(spring)?))).collect()
     }
 
-    /// The linkages that turn the passive joints.
+    /// The linkages of the arm: every joint that turns another.
     pub fn linkages(&self) -> &[Linkage] {
         &self.linkages
     }

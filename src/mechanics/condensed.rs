@@ -37,8 +37,8 @@ pub(crate) struct CondensedLink {
     /// End coordinates caused by the weight of the bodies on the link, if gravity acts along each axis of the
     /// section.
     pub end_under_bodies: SMatrix<f64, 6, 3>,
-    /// For each point of the axis at which a spring acts: end coordinates per unit of force (columns 0-2) and moment
-    /// (columns 3-5) there, in the section frame.
+    /// For each point of the axis at which a spring acts: end coordinates per unit of force (columns 0-2) and of moment
+    /// (columns 3-5) at this point, in the section frame.
     pub end_per_pull: Vec<Matrix6<f64>>,
     /// Sum of `1/λ` over the inner modes with root and end held \[s²\]. As a sum of positive numbers it is an upper
     /// bound of each `1/λ`.

@@ -1,4 +1,5 @@
-//! Passive joints: a linkage turns them together with their driving joint, and its deflection as well.
+//! Passive joints: a linkage turns a passive joint together with its driving joint, also when the driving joint
+//! deflects.
 //!
 //! When the driving joint (the *driver*) deflects by a unit angle, everything outboard of it moves. In addition the
 //! linkage turns the passive joint by its factor, which moves everything outboard of that joint. The generalized

@@ -79,8 +79,10 @@ pub(super) const SHOWN_ERROR: f64 = 1e-13;
 /// Largest last step of an accepted root, relative to `1/λ`. A larger step could jump over another mode between the
 /// last two points.
 pub(super) const LAST_STEP: f64 = 5e-8;
-/// Stands in for the size of the steps before the first one, relative to `1/λ`. It is so small that no root is accepted
-/// before real steps have shown how large `C` is, unless a step is practically zero.
+/// Size of the "previous" step that the first steps of the iteration are compared with, relative to `1/λ`. The factor
+/// `C` of [`SHOWN_ERROR`] is estimated from a step divided by the two steps before it. With previous steps as small as
+/// this one the estimate is very large, so that no root is accepted before the iteration has taken real steps, unless
+/// its step is practically zero.
 pub(super) const UNKNOWN_STEP: f64 = 1e-9;
 /// The value of [`LAST_STEP`] that is used when one chain is solved by itself. It is stricter, because one more pass
 /// then costs little.
@@ -137,9 +139,9 @@ fn quick_root<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> Option<f6
 
 /// The lowest eigenvalue λ₁ \[1/s²\], by the secant method on the product of all pivots times a power of `x = 1/λ`.
 ///
-/// This product is about `Π (x - x_i)`, where the `x_i` are the reciprocals of the eigenvalues. Beyond the largest `x_i` it
-/// is convex, so secants from above approach this root without overshooting, however near the next root is. Rounding, or the
-/// inner modes of links, may still make a step overshoot; the interval is then bisected.
+/// This product is about `Π (x - x_i)`, where the `x_i` are the reciprocals of the eigenvalues. Beyond the largest
+/// `x_i` it is convex, so secants from above approach this root without overshooting, however near the next root is.
+/// Rounding, or the inner modes of links, may still make a step overshoot; the interval is then bisected.
 fn careful_root<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> f64 {
     let product = |x: f64| {
         let here = pass(steps, 1.0 / x);
@@ -175,8 +177,9 @@ pub(crate) fn frequency_hz(eigenvalue: f64) -> f64 {
     eigenvalue.sqrt() / TAU
 }
 
-/// One pass from the tip to the base at the trial value `lambda`: computes the apparent inertia and collects the
-/// pivots.
+/// One elimination pass over the chain from the tip to the base, at the trial value `lambda` of the eigenvalue `ω²`
+/// \[1/s²\]. After each step, everything outboard of it is reduced to its apparent inertia at this frequency. The
+/// pivots of the elimination are collected in the result.
 #[inline]
 fn pass<const N: usize>(steps: &[Step<'_, N>], lambda: f64) -> Pass {
     let mut apparent = SMatrix::<f64, N, N>::zeros();

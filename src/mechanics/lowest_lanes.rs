@@ -1,7 +1,7 @@
 //! The lowest natural frequency of eight chains at once.
 //!
 //! The eight chains share everything outboard of one piece. The pass is the same as in [`lowest`](super::lowest): it
-//! takes the apparent inertia from the tip to the base, with one pivot for each strain coordinate. One pass serves
+//! computes the apparent inertia from the tip to the base, with one pivot for each strain coordinate. One pass serves
 //! all eight chains, each at its own `λ`. The shared part is read from memory once.
 
 // loops over row and column indices read better here than iterators
@@ -265,7 +265,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
         add_lower!(self.apparent, |i, j| mass * V::splat(inertia[(i, j)]));
     }
 
-    /// Adds a rigid link, one for each of the eight chains. Only its inertia over the motion of the root counts.
+    /// Adds a rigid link, one for each of the eight chains. Only its inertia over the motion of the root is used.
     #[inline(always)]
     pub(crate) fn rigid(&mut self, link: &LaneLink<N>) {
         add_lower!(self.apparent, |i, j| V::load(&link.root[0][i][j]));
@@ -380,7 +380,7 @@ pub(crate) fn roots<V: Lanes, const N: usize>(
     let one = V::splat(1.0);
     let mut open = wanted;
     let mut x = one / guess;
-    // for the first step `w` is taken as constant; then 1/λ - w has the slope 1
+    // the first step takes the slope 1, which is exact if the other modes are far away
     let (mut result, mut slope) = (x, one);
     let (mut x_before, mut y_before) = (V::zero(), V::zero());
     let unknown = V::splat(UNKNOWN_STEP) * x;

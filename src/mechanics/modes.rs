@@ -38,8 +38,8 @@ pub struct Modes {
     pub(crate) shapes: DMatrix<f64>,
 }
 
-/// Relative threshold: a computed `1/ω²` that is smaller than this fraction of the largest one counts as zero. It is
-/// then a zero with rounding errors.
+/// Relative threshold: a computed `1/ω²` that is smaller than this fraction of the largest one is taken as zero,
+/// because it is then a zero with rounding errors.
 const SINGULAR: f64 = 1e-13;
 /// Fraction of the kinetic energy in one plane of the world above which a mode counts as planar.
 const PLANAR: f64 = 0.99;

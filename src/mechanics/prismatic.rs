@@ -18,7 +18,8 @@ use nalgebra::{Matrix3, Vector3};
 pub struct GuideLoad {
     /// Name of the joint.
     pub name: String,
-    /// Force along the travel, which the drive holds, and forces across it along the y and z axes of the guide \[N\].
+    /// Force along the travel, which loads the drive, and forces across the travel, along the y and z axes of the guide
+    /// \[N\].
     pub force_n: Vector3<f64>,
     /// Moment about the travel (roll), about the y axis (pitch) and about the z axis (yaw) of the guide \[N m\].
     pub moment_nm: Vector3<f64>,

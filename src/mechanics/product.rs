@@ -32,7 +32,8 @@ pub(crate) fn add_transposed_product(out: &mut DMatrix<f64>, a: DMatrixView<f64>
 
 /// The left factor of a product, stored in panels of eight rows. The last panel is filled up with rows of zeros.
 pub(crate) struct Panels {
-    /// For each panel and each term of the sums, the eight factors.
+    /// For each panel, and in it for each column of the left factor (each term of the sums), the eight entries of the
+    /// panel's rows.
     eights: Vec<Eight>,
     rows: usize,
     terms: usize,

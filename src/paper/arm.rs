@@ -163,8 +163,8 @@ impl PaperArm {
         Payload { mass_kg: self.load_kg, ..Payload::default() }
     }
 
-    /// Statics of the stretched arm under its load, and its modes in the vertical plane. `links` tells which
-    /// deformations of the links count.
+    /// Statics of the stretched arm under its load, and its modes in the vertical plane. `links` is the link model,
+    /// which tells which deformations of the links are included.
     pub fn solve(&self, links: LinkModel) -> Solved {
         self.solve_changed(links, |_| {})
     }

@@ -21,7 +21,7 @@ impl Claim {
         Self { id, statement: statement.to_string(), evidence: evidence.into(), holds }
     }
 
-    /// `holds` or `does not hold`.
+    /// The verdict in words: `holds` or `does not hold`.
     pub fn verdict(&self) -> &'static str {
         if self.holds { "holds" } else { "does not hold" }
     }

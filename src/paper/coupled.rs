@@ -62,8 +62,8 @@ impl CoupledArm {
         coefficients
     }
 
-    /// Static displacement of the tip per vertical tip force, for a right-hand side of Eq 16 \[m/N\]. `None` if the
-    /// stiffness matrix is singular.
+    /// Static displacement of the tip per vertical force at the tip \[m/N\]. `right_side_m` is the right-hand side of
+    /// Eq 16, divided by this force. `None` if the stiffness matrix is singular.
     pub fn tip_compliance_m_per_n(&self, right_side_m: &Vector3<f64>) -> Option<f64> {
         let angles = self.stiffness.lu().solve(right_side_m)?;
         Some(self.lengths_m.dot(&angles))

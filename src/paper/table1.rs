@@ -164,7 +164,7 @@ fn summary(study: &Table1) -> String {
 }
 
 /// Frequency response of the load to a vertical harmonic force of 1 N at the load, for the arm of Table 1: pairs of
-/// frequency \[Hz\] and vertical amplitude \[µm\]. `links` tells which deformations of the links count.
+/// frequency \[Hz\] and vertical amplitude \[µm\]. `links` is the link model.
 fn response(links: LinkModel) -> Vec<(f64, f64)> {
     let arm = PaperArm::table_1();
     let frequencies_hz: Vec<f64> = (0..=600).map(|i| libm::pow(10f64, f64::from(i) / 200.0)).collect();

@@ -66,7 +66,8 @@ impl Archive {
         );
         let (Some(row), Some(column)) = (row, column) else { return };
         let hz = round_down(o.lowest_mode_hz);
-        // a cell that already has as high a mode has passed it on to all cells beyond, so these need no change
+        // if a cell has as high a mode already, so have all cells of larger mass and deflection, and none of them
+        // changes
         for cells in self.best_hz.chunks(self.columns).skip(row) {
             let worse = |cell: &&AtomicU32| cell.load(Ordering::Relaxed) < hz;
             let mut entered = false;

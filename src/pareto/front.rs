@@ -40,8 +40,8 @@ pub(crate) fn all_numbers(points: &[[f64; 3]]) -> Result<(), NotANumber> {
     faulty.map_or(Ok(()), |point| Err(NotANumber { point }))
 }
 
-/// The front: indices, ascending, of the points that no other point dominates. A point dominates another if it is nowhere
-/// larger and somewhere smaller. Comparisons are exact, and equal points are all kept.
+/// The front: indices, ascending, of the points that no other point dominates. A point dominates another if it is
+/// larger in no objective and smaller in at least one. Comparisons are exact, and equal points are all kept.
 ///
 /// # Errors
 /// [`NotANumber`] with the first point that has a NaN.
@@ -62,8 +62,8 @@ pub fn exact_front(points: &[[f64; 3]]) -> Result<Vec<usize>, NotANumber> {
     Ok(front)
 }
 
-/// The front after rounding to twelve digits, as groups of ties. The points of a group are equal to 12 digits in
-/// all three objectives. Groups are sorted by the objectives, and the indices within a group ascend.
+/// The front after rounding to twelve digits, as sets of ties. The points of a set are equal to 12 digits in all three
+/// objectives. Sets are sorted by the objectives, and the indices within a set ascend.
 ///
 /// # Errors
 /// [`NotANumber`] with the first point that has a NaN.
@@ -121,8 +121,8 @@ pub fn not_clearly_beaten(points: &[[f64; 3]], slack: f64) -> Vec<usize> {
     kept
 }
 
-/// For each rank of the second objective, the largest rank whose value is not above the value of the first after
-/// `lowered` was applied to it. `None` if there is none.
+/// Takes the value of each rank of the second objective, applies `lowered` to it, and finds the largest rank whose
+/// value is not above the result. `None` if there is no such rank.
 fn reaches(second: &[f64], lowered: impl Fn(f64) -> f64) -> Vec<Option<u32>> {
     let mut below = 0;
     let count = second.iter().map(|&x| {

@@ -56,8 +56,8 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// The points are numerous enough for the sieve to be used. `steps` determines how many ties there are, `bulge`
-    /// how large the front is.
+    /// The points are numerous enough for the sieve to be used. `steps` determines how many ties there are, and `bulge`
+    /// determines how large the front is.
     #[test]
     fn the_sieve_drops_no_point_of_the_front(
         seed in any::<u64>(), steps in 2u32..60, bulge in 0u8..3, digits in any::<bool>()

@@ -1,9 +1,9 @@
 //! Hypervolume: the volume that a set of points dominates below a reference point. It measures with one number how
 //! good a front is.
 //!
-//! The points are swept as for the front. Each point adds the area that it newly covers in the plane of the second and third
-//! objective, times its distance from the reference point along the first. Every term is positive, so nothing cancels, and
-//! the sum is compensated (Neumaier). The method takes O(n log n). See Beume et al. 2009 for the problem.
+//! The points are swept as for the front. Each point adds the area that it newly covers in the plane of the second and
+//! third objective, times its distance from the reference point along the first. Every term is positive, so nothing
+//! cancels, and the sum is compensated (Neumaier). The method takes O(n log n). See Beume et al. 2009 for the problem.
 
 use super::front::{NotANumber, all_numbers};
 use super::objectives::Objectives;
@@ -12,8 +12,9 @@ use super::sieve::sieve;
 use super::staircase::Staircase;
 use rayon::prelude::*;
 
-/// Volume of the space between the points and the reference point: everything that some point dominates and that dominates
-/// the reference. All three objectives are minimized. A point that is not below the reference in all three adds nothing.
+/// Volume of the space between the points and the reference point: everything that some point dominates and that
+/// dominates the reference. All three objectives are minimized. A point that is not below the reference in all three
+/// adds nothing.
 ///
 /// # Errors
 /// [`NotANumber`] with the first point that has a NaN.

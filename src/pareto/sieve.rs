@@ -1,10 +1,10 @@
 //! Sieve: drops most dominated points in two passes, before anything is sorted.
 //!
-//! The first two objectives are divided into bins of about equal content, which a sample determines. A table has
-//! the smallest third objective of each pair of bins and of all pairs below it. A point is dropped if the pairs of
-//! *lower* bins have a smaller third objective. The point that made this entry is then smaller in all three
-//! objectives, because a number in a lower bin is a smaller number. Badly chosen bins let more points through, but
-//! never drop a point that is not dominated.
+//! The first two objectives are divided into bins of about equal content, which a sample determines. A table has the
+//! smallest third objective of each pair of bins and of all pairs below it. A point is dropped if some point in *lower*
+//! bins of both objectives has a smaller third objective. That point is then smaller in all three objectives, because a
+//! number in a lower bin is a smaller number. Badly chosen bins let more points through, but never drop a point that is
+//! not dominated.
 
 use rayon::prelude::*;
 use std::cmp::Ordering;

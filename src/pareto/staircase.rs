@@ -114,8 +114,8 @@ impl RankSet {
         None
     }
 
-    /// Descends from the non-empty word at `height` and `place` to one of the members below it. `bit` selects one of
-    /// the bits of a word, for example the highest.
+    /// Descends from the bit with index `place` in the level `height` to one of the members that this bit stands for.
+    /// `bit` selects one of the bits of a word, for example the highest.
     fn descend(&self, height: usize, mut place: usize, bit: impl Fn(u64) -> usize) -> u32 {
         for level in self.levels[..height].iter().rev() {
             place = place * 64 + bit(level[place]);

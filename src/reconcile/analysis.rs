@@ -113,14 +113,15 @@ fn sought(campaign: &Campaign, forward: &Forward, nuisance: &Nuisance, few: bool
     candidates
 }
 
-/// Whether the best effects raise the logarithm of the evidence by less than [`WEAK`] above the baseline.
+/// Whether the evidence for the best effects is weak: their score exceeds that of the baseline by less than [`WEAK`].
+/// False if there are no effects.
 fn is_weak(selection: &Selection) -> bool {
     !selection.best.effects.is_empty() && selection.best.score - selection.baseline.score < WEAK
 }
 
-/// Finds the effects and the noise. If the noise of a channel shows that its readings are in another unit than
-/// stated, the search is repeated with larger standard deviations of this channel. The repetition counts, and
-/// `forward` gets these standard deviations, only if the wrong unit is then found as an effect.
+/// Finds the effects and the noise. If the noise of a channel shows that its readings are in another unit than stated,
+/// the search is repeated with larger standard deviations of this channel. The result of the repetition is used only if
+/// the wrong unit is then found as an effect. `forward` then gets the larger standard deviations too.
 fn settled(
     campaign: &Campaign,
     forward: &mut Forward,
@@ -155,7 +156,7 @@ struct Analysis<'a> {
     campaign: &'a Campaign,
     forward: &'a Forward,
     search: &'a Search<'a>,
-    /// The search `search` once more, with laws without a name appended to its candidates.
+    /// A copy of `search` to whose candidates the laws without a name are appended.
     with_laws: &'a Search<'a>,
     selection: &'a Selection,
     noise: &'a Noise,
@@ -171,7 +172,7 @@ struct Analysis<'a> {
     alternatives: Vec<Vec<Scored>>,
     /// All sets of effects that explain the readings, if the campaign has only a few rows; otherwise `None`.
     explaining: Option<Vec<Scored>>,
-    /// Test for lack of fit of calibration alone, if the evidence for the effects is weak; otherwise `None`.
+    /// Result of the test for lack of fit for calibration alone; `None` unless the evidence for the effects is weak.
     without: Option<LackOfFit>,
     /// 95 % intervals of the parameters of the best model's effects. They are computed when they are first asked for.
     ends: OnceCell<Vec<Interval>>,
@@ -235,7 +236,7 @@ impl Analysis<'_> {
         }
     }
 
-    /// The corrections of the arm. They depend on `verdict`: without an explanation, a model for the corrected arm is
+    /// The corrections of the arm. They depend on `verdict`: if it is `unexplained`, a model for the corrected arm is
     /// chosen first. `named` are the effects that the verdict names.
     fn corrections(&self, verdict: Verdict, named: &[Finding]) -> Corrections {
         let choice = (verdict == Verdict::Unexplained).then(|| self.model_without_explanation());
@@ -377,8 +378,8 @@ impl Analysis<'_> {
         )
     }
 
-    /// Sentence that lists the stiffnesses about which the readings say nothing: the fit leaves more than 90 % of
-    /// their tolerance. Empty if there are none.
+    /// Sentence that lists the stiffnesses about which the readings say nothing: their standard deviation after the fit
+    /// is more than 90 % of that before the fit, which follows from the tolerance. Empty if there are none.
     fn unidentified(&self) -> Vec<String> {
         let blind: Vec<String> = fitted::calibrated(&self.best)
             .into_iter()

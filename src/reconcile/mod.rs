@@ -7,7 +7,7 @@
 //! - [`model`] defines what is calibrated, which effects are candidates and how large they may be.
 //! - [`fit`] fits a model, gives intervals, judges the noise, and predicts held-out poses.
 //! - `select` finds the effects that are missing, and laws without a name that explain the readings better.
-//! - [`verdict`] holds the outcome, its files and its page, and proposes what to measure next.
+//! - [`verdict`] defines the outcome, writes its files and its page, and proposes what to measure next.
 //! - `positions` does all of this for absolute positions, and [`records`] for records against time.
 //! - `analysis` reaches the verdict from displacements, frequencies and bench readings, `together` from these and
 //!   positions. [`predict`] writes predictions next to readings, and [`predict_files`] reads the files for it.

@@ -22,8 +22,8 @@ use super::verdict::too_little::rows;
 use crate::arm::{Arm, Element};
 use serde_json::{Value, json};
 
-/// Reconciles a campaign with its arm. If there are absolute positions and other readings, each of the two kinds is
-/// reconciled by itself, and the two verdicts are then joined.
+/// Reconciles a campaign with its arm. If there are absolute positions and other readings, each of the two kinds gets a
+/// verdict of its own, and the two verdicts are then joined.
 ///
 /// ```
 /// use armwright::catalog::Catalogs;
@@ -80,9 +80,9 @@ fn of_readings(campaign: &Campaign) -> Outcome {
     of_both(campaign, loaded, placed)
 }
 
-/// First finds effects from `loaded` (the readings other than positions), on an arm whose geometry was calibrated
-/// from `placed` (the positions). Then finds effects that the positions still need. If the first step does not
-/// explain the readings of `loaded`, the effects that the positions show are tried on them.
+/// First finds effects from `loaded` (the readings other than positions), on an arm whose geometry was calibrated from
+/// `placed` (the positions). Then finds effects that the positions still need. If the first step does not explain the
+/// readings of `loaded`, the effects that the positions show are tried on these readings.
 fn of_both(campaign: &Campaign, mut loaded: Campaign, placed: Campaign) -> Outcome {
     let calibrated = positions::analysis::calibrated(&placed);
     loaded.arm = calibrated.arms[0].clone();
@@ -313,9 +313,9 @@ impl Both<'_> {
         out
     }
 
-    /// Root mean squares of the held-out residuals of both kinds of readings together \[standard deviations\]. The
-    /// value before is with calibration alone. For positions it is scaled by the ratio of median errors, because the
-    /// fit with the findings of the other readings already contains effects.
+    /// Root mean squares of the held-out residuals of both kinds of readings together \[standard deviations\].
+    /// `rms_before` is with calibration alone. Its part for positions is scaled by the ratio of median errors, because
+    /// the fit with the findings of the other readings already contains effects.
     fn held_out(&self) -> Option<HeldOut> {
         let (Some(loaded), Some(placed)) = (self.loaded.held_out, self.placed.held_out) else {
             return self.loaded.held_out.or(self.placed.held_out);

@@ -8,7 +8,7 @@ use crate::space::problem::ArmProblem;
 use crate::space::slot::Slot;
 
 impl Parts {
-    /// Drops the drives that cannot meet the least demand on their joint, over all remaining options outboard. If a
+    /// Drops the drives that cannot meet the least demand that any remaining options outboard put on their joint. If a
     /// joint takes the lightest drive that meets its demand, drives heavier than the lightest one that meets the
     /// greatest demand are dropped too. Returns whether any drive was dropped.
     pub(super) fn drop_drives(&mut self, problem: &ArmProblem, cases: &[CaseLoads]) -> bool {
@@ -16,7 +16,7 @@ impl Parts {
         for (slot, piece) in problem.slots().iter().enumerate() {
             let Slot::Sized(sized) = piece else { continue };
             let motion = sized.table.motion();
-            // If a duty cycle slows down longer than it speeds up, the mean torque or the motor's heat may decrease
+            // If a joint slows down for longer than it speeds up, the mean torque or the motor's heat may decrease
             // while a load grows. The ends of the intervals then prove nothing.
             let heat = &motion.heat;
             if motion.mean_torque.sum < motion.mean_torque.difference || heat.sum < heat.difference {
@@ -37,7 +37,8 @@ impl Parts {
                 let demand = motion.demand(static_nm[end] * relaxed[end], inertia_kgm2[end] * relaxed[end]);
                 demand.with_heat_times(relaxed[end]).with_room(room[end])
             });
-            // the load on a bearing has no upper bound here, so it may ask for a heavier drive than the torques
+            // the load on a bearing has no upper bound here, so the bearing may need a heavier drive than the torques
+            // do
             let by_bearing = problem.bearing_loads().checked[slot];
             let heaviest = if sized.all_fits || by_bearing { None } else { sized.table.first_fit(&most) };
             dropped |= self.keep(slot, |_, option| {

@@ -11,7 +11,8 @@ pub(super) struct Parts {
     /// For each slot, the option of the known design.
     pub known: Vec<u32>,
     mass_kg: Vec<Vec<f64>>,
-    /// Slot of every spring of a chosen gear's bearing, with the slot of the joint to which it belongs.
+    /// Slots whose option is that of a drive: each spring of a sized gear's bearing, and each motor that stands away
+    /// from its joint. Each comes with the slot of the joint to which it belongs.
     bearings: Vec<(usize, usize)>,
 }
 
@@ -40,7 +41,8 @@ impl Parts {
         Self { alive, known: known.to_vec(), mass_kg, bearings }
     }
 
-    /// Leaves every bearing only the options that its drive still has, because a bearing comes with its drive.
+    /// Leaves every bearing, and every motor that stands elsewhere, only the options that its drive still has, because
+    /// it comes with this drive.
     pub(super) fn follow_drives(&mut self) {
         for &(bearing, joint) in &self.bearings {
             self.alive[bearing] = self.alive[joint].clone();

@@ -12,13 +12,14 @@ use crate::space::problem::ArmProblem;
 const ROUNDS: usize = 4;
 /// Greatest number of solutions of the program in a round. After each solution, trial shapes or options are added.
 const STEPS: usize = 40;
-/// Relative margin for rounding of an objective.
+/// Relative amount by which a required objective is relaxed, as a margin for rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// The bound on mass for designs that meet the required objectives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MassBound {
-    /// No design with at most this deflection and at least this lowest mode is lighter \[kg\].
+    /// No design that deflects at most as far as required, and has at least the required lowest mode, is lighter than
+    /// this \[kg\].
     pub mass_lower_bound_kg: f64,
     /// The bound before it was used to drop options \[kg\]. It is close to the mass of the lightest arm whose parts
     /// are mixtures of catalog options.
@@ -161,8 +162,8 @@ impl Search<'_> {
         self.parts.with_drives(row)
     }
 
-    /// Solves the program repeatedly. After each solution, the trial shapes that the mixture violates and the
-    /// missing options are added.
+    /// Solves the program repeatedly. After each solution, two things are added to the program: the inequalities of
+    /// trial shapes that the mixture violates, and options that may make the mixture lighter.
     fn solve(&mut self) {
         let stiffness = self.stiffness();
         let mut program = Program::new(&self.parts, self.rows());

@@ -71,8 +71,8 @@ impl LinkShape {
     }
 }
 
-/// Writes the motion of everything outboard of a tube per unit of each of its coordinates into the columns of `twist` from
-/// `column` on.
+/// Writes the motion of everything outboard of a tube, per unit of each coordinate of the tube, into the columns of
+/// `twist` from `column` on.
 fn add_end_motions(
     twist: &mut DMatrix<f64>,
     beam: &PreparedBeam,

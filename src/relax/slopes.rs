@@ -18,8 +18,8 @@ pub(super) fn tangent_range(law: &JointLaw, torque_nm: [f64; 2]) -> [f64; 2] {
 }
 
 /// Least and greatest secant compliance of a joint \[rad/(N m)\] between any two torques of the interval `torque_nm`.
-/// The torque has risen from rest, so friction holds back a part of the gear's twist, until the half width of the
-/// hysteresis is reached.
+/// The torque is taken to have risen from zero. Friction then reduces the gear's twist, by at most the half width of
+/// the hysteresis.
 pub(super) fn rising_range(law: &JointLaw, torque_nm: [f64; 2]) -> [f64; 2] {
     let [least, most] = tangent_range(&as_it_twists(law), torque_nm);
     let Some(stiffness) = law.play_stiffness_nm_per_rad() else { return [least, most] };
@@ -30,8 +30,8 @@ pub(super) fn rising_range(law: &JointLaw, torque_nm: [f64; 2]) -> [f64; 2] {
     [least - held_back, most - freed]
 }
 
-/// The joint law `law` with the torsion curve that holds for static twist. A gear whose vibration is computed with its
-/// first slope alone still has all three segments in static twist.
+/// The joint law `law` with the torsion curve that is used for static twist. A gear whose vibration is computed with
+/// its first slope alone still has all three segments in static twist.
 fn as_it_twists(law: &JointLaw) -> JointLaw {
     let curve = match law.curve {
         Curve::WindupK1(windup) => Curve::Windup(windup),

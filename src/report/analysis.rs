@@ -263,7 +263,8 @@ impl Analysis {
         }
     }
 
-    /// Adds a table of the torque or force of each element and of its share in the displacement of the tip.
+    /// Adds a table of the elements: the torque or force of each joint, and the share of each element in the
+    /// displacement of the tip.
     fn shares_text(&self, out: &mut String) {
         let total = self.statics.tip_displacement_m;
         let _ = writeln!(out, "  element          torque Nm    moves the tip by mm (x, y, z)      share");
@@ -318,8 +319,8 @@ impl Analysis {
     }
 }
 
-/// Adds what is doubtful or left out at joints: bodies whose inertia no solid has, bearings that count as rigid, and
-/// joints where nothing beyond gear, motor and bearing is weighed.
+/// Adds remarks on the joints: bodies with an inertia that no solid can have, bearings that count as rigid, and joints
+/// for which the file states no masses in addition to gear, motor and bearing.
 fn joints_remarks_text(arm: &Arm, out: &mut String) {
     let impossible = arm.impossible_bodies();
     if !impossible.is_empty() {
@@ -357,7 +358,8 @@ fn rigid_bearings(arm: &Arm) -> Vec<&str> {
     arm.chain.iter().filter(|element| rigid(element)).map(Element::name).collect()
 }
 
-/// The joints whose output bearing counts as rigid because nobody knows how it tilts, with the gear.
+/// The joints whose output bearing counts as rigid because its tilting stiffness is unknown, each with the name of its
+/// gear.
 fn bearings_without_stiffness(arm: &Arm) -> Vec<String> {
     let named = |element: &Element| {
         let Element::Joint(joint) = element else { return None };
@@ -368,7 +370,7 @@ fn bearings_without_stiffness(arm: &Arm) -> Vec<String> {
     arm.chain.iter().filter_map(named).collect()
 }
 
-/// The joints with a gear and a motor beside which the file weighs nothing.
+/// The joints with a gear and a motor for which the file states no further masses (`extras`).
 fn without_extras(arm: &Arm) -> Vec<&str> {
     let is_bare = |element: &&Element| {
         matches!(element, Element::Joint(joint)
@@ -377,7 +379,7 @@ fn without_extras(arm: &Arm) -> Vec<&str> {
     arm.chain.iter().filter(is_bare).map(Element::name).collect()
 }
 
-/// An output bearing and what it carries at rest.
+/// An output bearing, and the load on it while its joint is at rest.
 struct OnBearing<'a> {
     load: &'a JointLoad,
     bearing: Bearing,

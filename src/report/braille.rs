@@ -7,7 +7,8 @@ const DOTS: [[u8; 4]; 2] = [[0x01, 0x02, 0x04, 0x40], [0x08, 0x10, 0x20, 0x80]];
 /// Width of the numbers on the vertical axis \[characters\].
 const MARGIN: usize = 7;
 
-/// A plot of points, `width` characters wide. An axis that spans more than a decade is logarithmic.
+/// A plot of points, `width` characters wide, with `height` lines for the points. An axis that spans more than a decade
+/// is logarithmic.
 pub(crate) fn plot(
     title: &str,
     x_label: &str,
@@ -42,7 +43,7 @@ pub(crate) fn plot(
     out
 }
 
-/// Two blocks of lines, printed side by side. The right block starts at the column `width`.
+/// Two lists of lines as one text, side by side. The right list starts at the column `width`.
 pub(crate) fn beside(left: &[String], right: &[String], width: usize) -> String {
     let blank = String::new();
     let line = |i: usize| {

@@ -39,8 +39,8 @@ pub struct NextPart {
 pub enum PieceKind {
     /// A joint: its drive, with the masses that belong to it.
     Joint,
-    /// The output bearing of a joint. It has its own share of the deflection; its mass and its changes per kilogram
-    /// are counted with the joint.
+    /// The output bearing of a joint, or the guide of a prismatic joint. It has its own share of the deflection. Its
+    /// mass and its changes per kilogram are included in those of the joint.
     Bearing,
     /// A link: its tube.
     Link,
@@ -56,17 +56,17 @@ impl PieceKind {
     }
 }
 
-/// One piece of an arm, and the effect of one more kilogram there.
+/// One piece of an arm, and the effect of one more kilogram at this piece.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BudgetRow {
-    /// Name of the joint, of the output bearing (`NAME.bearing`) or of the link.
+    /// Name of the joint, of the output bearing (`NAME.bearing`), of the guide (`NAME.guide`) or of the link.
     pub piece: String,
     /// Kind of the piece.
     pub kind: PieceKind,
-    /// Mass of the piece \[kg\]; 0 for a bearing, whose mass is counted with its joint.
+    /// Mass of the piece \[kg\]; 0 for a bearing, whose mass is included in that of its joint.
     pub mass_kg: f64,
-    /// Share of the tip deflection in the worst case that this piece causes, from 0 to 1; negative if the piece
-    /// reduces the deflection.
+    /// Share of the piece in the tip deflection of the worst case, from 0 to 1; negative if the piece reduces the
+    /// deflection.
     pub share: f64,
     /// Changes of deflection and lowest mode per kilogram if mass and stiffness of the piece grow in proportion; `None`
     /// for a bearing, which grows with its joint.
@@ -102,7 +102,8 @@ pub struct PickBudget {
     pub extras_mass_kg: f64,
     /// Lower bounds on the mass of an equally good design; `None` if they could not be computed.
     pub bound: Option<PickBound>,
-    /// One row for each piece that has mass, from base to tip.
+    /// One row for each joint and link that has mass, and for each bearing or guide that is compliant, from base to
+    /// tip.
     pub rows: Vec<BudgetRow>,
 }
 
@@ -293,8 +294,8 @@ fn opposed(budgets: &[PickBudget]) -> bool {
     budgets.iter().any(|b| b.bound.is_some_and(|b| b.loads_oppose))
 }
 
-/// The stiffness budget as a block of the terminal's summary, within `width` columns: the budget of the knee and the
-/// bounds of all picks.
+/// The stiffness budget as a part of the summary on the terminal, within `width` columns: the budget of the knee and
+/// the bounds of all picks.
 pub fn budget_text(budgets: &[PickBudget], width: usize) -> String {
     let Some(pick) = shown(budgets) else { return String::new() };
     let mut out = format!("What one more kilogram buys at each joint and link: {}\n", pick.title());

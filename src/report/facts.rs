@@ -19,8 +19,8 @@ pub struct SummaryFacts {
     pub designs_evaluated: u128,
     /// Number of designs excluded because a drive, a link or a limit rules them out.
     pub designs_excluded: u128,
-    /// Gap of a search that was stopped or asked for a gap: for every design of the study, some listed design is
-    /// worse by at most this fraction in each objective.
+    /// Gap of an exact search: for every design of the study, some listed design is worse by at most this fraction in
+    /// each objective. 0 means that the front is whole. `None` for an exhaustive search, or if no gap was proved.
     pub gap: Option<f64>,
     /// Duration of the search \[s\].
     pub elapsed_s: f64,

@@ -34,7 +34,7 @@ pub fn file_name(name: &str) -> String {
     unique_file_name(name, &mut HashSet::new())
 }
 
-/// A file name for `name` that differs from all names in `taken`. It is added to `taken`.
+/// A file name for `name` that differs from all names in `taken`. The file name is added to `taken`.
 pub(crate) fn unique_file_name(name: &str, taken: &mut HashSet<String>) -> String {
     let plain = not_empty_and_short(name);
     let numbered = (2..).map(|number: u64| format!("{plain}-{number}"));
@@ -45,8 +45,8 @@ pub(crate) fn unique_file_name(name: &str, taken: &mut HashSet<String>) -> Strin
     free
 }
 
-/// The letters and digits of a name. If the name is too long or has none, a hash of the whole name makes the file
-/// name unique.
+/// The letters and digits of a name. If the name has none, is too long, or is one of [`DEVICES`], a hash of the whole
+/// name is added.
 fn not_empty_and_short(name: &str) -> String {
     let plain = letters_and_digits(name);
     let hash = || blake3::hash(name.as_bytes()).to_hex()[..HASH_LETTERS].to_string();
@@ -92,7 +92,7 @@ mod tests {
             assert!(name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-'), "{name}");
             assert!(!DEVICES.contains(&name.as_str()) && !name.starts_with('-'), "{name}");
         }
-        // the third name gets another number, because a name does not take what another one was given
+        // the third name would give `pa6-x-2`, but the second name has this already; so the third gets a further number
         assert_eq!(made[..3], ["pa6-x", "pa6-x-2", "pa6-x-2-2"]);
     }
 

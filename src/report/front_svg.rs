@@ -1,8 +1,9 @@
 //! A picture of fronts: tip deflection and lowest mode over mass, by material.
 //!
-//! With three objectives, a front is a cloud of points on each panel, and the clouds of nine materials hide one
-//! another. So every design is a small dot. On top of all dots the edge of each front is drawn: the best value of
-//! the panel's objective at each mass, joined by a line, with the markers of the legend.
+//! The picture has two panels, one for each of these objectives. With three objectives, a front is a cloud of points on
+//! each panel, and the clouds of nine materials hide one another. So every design is a small dot. On top of all dots
+//! the edge of each front is drawn. It is a line through the designs that have the best value of the panel's objective
+//! for their mass, with the markers of the legend.
 
 use super::front_table::FrontTable;
 use super::number::significant;
@@ -18,9 +19,9 @@ const HEIGHT_PX: f64 = 460.0;
 /// An axis whose ends differ by more than this factor is logarithmic. On a linear axis light arms would crowd at
 /// the left.
 pub(crate) const WIDE: f64 = 5.0;
-/// Points of one series that are closer than this fraction of an axis are drawn once.
+/// Of the designs of one front that are closer together than this fraction of each axis, only one is drawn.
 const GRAIN: f64 = 1.0 / 200.0;
-/// Least distance between markers on an edge, in units of [`GRAIN`].
+/// Least distance between two markers on the line of best designs of a front, in units of [`GRAIN`].
 const MARKER_STEPS: f64 = 3.0;
 
 /// A front in the picture.
@@ -186,8 +187,8 @@ impl Grain {
         Series { marker_px: 1.6, ..Series::scatter("", front.style(index), points) }
     }
 
-    /// The edge of a front on this panel, as a line with markers: for every mass, the best value of the objective that
-    /// the panel shows over mass.
+    /// The edge of a front on this panel: a line with markers through the designs that have the best value of the
+    /// panel's objective among all designs of no more mass.
     fn edge(&self, front: &Drawn, index: usize) -> Series {
         let over = self.axes[1].0;
         let mut rising: Vec<&Design> = front.designs.iter().collect();
@@ -210,7 +211,7 @@ impl Grain {
                 shown = Some(d);
             }
         }
-        // beyond the number of colours in the palette they repeat, and hollow markers tell the fronts apart
+        // if there are more fronts than colours, the colours repeat, and hollow markers tell the fronts apart
         let open = !front.muted && (index / PALETTE.len()) % 2 == 1;
         let marker_px = if front.muted { 2.5 } else { 4.0 };
         let stroke = Stroke::Patterned;

@@ -156,7 +156,7 @@ pub struct Pick {
     pub design: Design,
 }
 
-/// The check of a drive that is nearest to its limit in a design.
+/// Of all checks of the drives of a design, the one that is nearest to its limit.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct TightestCheck {
     /// Name of the joint.
@@ -167,8 +167,8 @@ pub(crate) struct TightestCheck {
     pub margin: f64,
 }
 
-/// The tightest check of the design in a row of a front, by the columns `<joint>_margin` and `<joint>_binds`; `None` if no
-/// drive was checked.
+/// The tightest check of the design in a row of a front, by the columns `<joint>_margin` and `<joint>_binds`. `None` if
+/// no drive was checked.
 pub(crate) fn tightest_check(front: &FrontTable, row: usize) -> Option<TightestCheck> {
     let cells = &front.rows[row];
     let of_column = |(column, name): (usize, &String)| {

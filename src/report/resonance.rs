@@ -1,5 +1,6 @@
-//! Warnings about gears that excite the arm. A wave generator passes two waves in each turn. At its critical speed,
-//! their frequency equals the lowest mode. Picks whose motors cruise near this speed are reported.
+//! Warnings about gears that excite the arm. A gear excites the arm twice in each turn of its input. At the critical
+//! speed of the input, the frequency of this excitation equals the lowest mode. Picks whose motors cruise near this
+//! speed are reported.
 
 use super::front_table::FrontTable;
 use super::number::significant;

@@ -3,7 +3,7 @@
 use super::table::Table;
 use serde::Serialize;
 
-/// A picture, with the numbers behind it.
+/// A picture, with the numbers that it shows.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Figure {
     /// Name of the picture's files, without ending.
@@ -12,7 +12,7 @@ pub struct Figure {
     pub caption: String,
     /// The picture as SVG.
     pub svg: String,
-    /// The numbers behind the picture as CSV; empty if they are in another file.
+    /// The numbers of the picture as CSV; empty if they are in another file.
     pub csv: String,
 }
 

@@ -11,8 +11,8 @@ use super::number::{fixed, percent, significant};
 /// Largest tip displacement, as a fraction of the arm's reach, for which no warning is given.
 pub(crate) const SMALL_PART: f64 = 0.05;
 
-/// The warning for a tip displacement, in words that continue "the tip". `None` if the displacement is small, or if
-/// the arm has no reach: an arm with prismatic joints only moves without turning.
+/// The warning for a tip displacement, in words that continue "the tip". `None` if the displacement is small, or if the
+/// arm has no reach. An arm whose joints are all prismatic has no reach, because it moves without turning.
 pub(crate) fn too_far(tip_m: f64, reach_m: f64) -> Option<String> {
     (reach_m > 0.0 && tip_m > SMALL_PART * reach_m).then(|| {
         format!(

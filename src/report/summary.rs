@@ -20,7 +20,7 @@ const PLOT_ROWS: usize = 8;
 /// The front of the designs of one material.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MaterialFront {
-    /// Whether all designs are listed that differ only in drives of equal mass and torsion curve.
+    /// Whether designs that differ only in drives of equal mass and torsion curve are all rows of the front.
     pub ties_listed: bool,
     /// Name of the material.
     pub name: String,
@@ -187,7 +187,7 @@ impl Found {
     }
 }
 
-/// Marks before and after the timing, so that the rest can be compared between runs.
+/// Marks before and after the timing in a summary. They allow a comparison of all other text between runs.
 const TIMING: [&str; 2] = ["<!-- timing -->", "<!-- /timing -->"];
 
 /// The answer to the study's question in two sentences.
@@ -316,8 +316,8 @@ fn picks_table(picks: &[Pick], headers: [&str; 6]) -> Table {
     table
 }
 
-/// The check of a drive that is nearest to its limit in each pick, in a sentence; empty if the study sizes no drive. It shows
-/// where the parts on offer, rather than the tubes, decide how good a design can be.
+/// A sentence that names, for each pick, the check of a drive that is nearest to its limit. Empty if the study sizes no
+/// drive. The sentence shows where the drives of the catalogs, and not the tubes, decide how good a design can be.
 fn tightest_words(front: &FrontTable, picks: &[Pick]) -> String {
     let words: Vec<String> = picks
         .iter()

@@ -1,9 +1,9 @@
 //! A small plot writer: one self-contained SVG, legible in colour, in greyscale and by a screen reader.
 //!
 //! Series differ by colour (the palette of Okabe and Ito, for colour-blind readers) *and* by marker shape; `open`
-//! markers and dashed lines mark variants of the same thing. The legend is outside the frame, so that it never
-//! covers data. Notes are moved until they are inside the frame. A point takes only its two coordinates in the
-//! file, so that the picture of thousands of points stays small.
+//! markers and dashed lines mark variants of the same thing. The legend is outside the frame, so that it never covers
+//! data. Notes are moved until they are inside the frame. The file has only the two coordinates of each point, so that
+//! the picture of thousands of points stays small.
 //!
 //! ```
 //! use armwright::report::svg::{Axis, Plot, Scale, Series};

@@ -9,14 +9,14 @@ use super::table::{Column, Table, csv_line};
 use super::words::{TERMINAL, wrap};
 use serde_json::{Value, json};
 
-/// Name of the file that lists the results of every design.
+/// Name of the file with the results of every design under scatter.
 pub const FILE: &str = "tolerance.csv";
-/// Key of these results in `run.json`.
+/// Key of the results under scatter in `run.json`.
 pub const KEY: &str = "tolerance";
 
 /// What a design may be picked for, in the order of [`Fate::picked`].
 pub const PICKS: [&str; 4] = ["lightest", "stiffest", "highest mode", "knee"];
-/// Percentiles of the objectives that are given \[%\].
+/// The percentiles that are computed for each objective \[%\].
 pub const PERCENTILES: [u32; 3] = [5, 50, 95];
 
 /// The results of one design of the front over all samples.
@@ -228,8 +228,8 @@ pub fn percentile(sorted: &[f64], percent: u32) -> f64 {
     sorted[below] + (place - below as f64) * (sorted[above] - sorted[below])
 }
 
-/// [`PERCENTILES`] of tip deflection \[mm\], mass \[kg\] and lowest mode \[Hz\] of a design over `samples`, its
-/// objectives in each sample.
+/// [`PERCENTILES`] of tip deflection \[mm\], mass \[kg\] and lowest mode \[Hz\] of a design. `samples` has the
+/// objectives of the design in each sample.
 pub fn percentiles(samples: &[Design]) -> [[f64; 3]; 3] {
     Objective::ALL.map(|objective| {
         let mut values: Vec<f64> = samples.iter().map(|d| objective.of(d)).collect();

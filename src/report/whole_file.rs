@@ -12,8 +12,8 @@ use std::time::Duration;
 
 /// Beginning and end of the names of temporary files.
 const TEMPORARY: [&str; 2] = [".armwright-", ".tmp"];
-/// A temporary file is removed if it is older than this and no process has locked it. A process that was stopped
-/// has left it.
+/// A temporary file is removed if it is older than this and no process has locked it. Such a file was left by a process
+/// that was stopped.
 const LEFT_BEHIND_AFTER: Duration = Duration::from_secs(10);
 
 /// Replaces a file as a whole: a reader sees either the old or the new content, and after a fault the old one is
@@ -41,8 +41,8 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     sync_folder(&folder)
 }
 
-/// Sets the permissions. Temporary files are otherwise private to their owner, but results should be as readable as
-/// other files of the user.
+/// Gives a temporary file the permissions of any new file. It would otherwise be private to its owner, but results
+/// should be as readable as other files of the user.
 #[cfg(unix)]
 fn as_any_new_file(builder: &mut tempfile::Builder) {
     use std::os::unix::fs::PermissionsExt;

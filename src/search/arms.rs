@@ -14,16 +14,17 @@ use crate::space::problem::ArmProblem;
 pub(crate) struct EightArms {
     /// Bit mask, one bit per arm: the arms that have met every limit checked so far.
     pub held: u8,
-    /// If no arm is left in `held`: number of the drives chosen inboard of the row level that had been added when the
-    /// last arm failed. The other rows that begin with the same drives fail too, so the sweep skips them.
+    /// If no arm is left in `held`: how many of the drives that the search chooses inboard of the row level had been
+    /// added when the last arm failed. A row with the same arm outboard and the same drives up to this number fails
+    /// too, so the sweep skips it.
     pub failed_with: usize,
     /// Mass of each arm, summed over the slots added so far \[kg\].
     pub mass_kg: Eight,
     /// Mass \[kg\] of the drive in each inner slot (the slots from the row level to the base). The masses of given
     /// drives are set from the beginning.
     pub masses_kg: Vec<Eight>,
-    /// The largest single term of Dunkerley's sums (each the sum of `1/λ` over the eigenvalues of a block) that one
-    /// joint or one tube coordinate adds \[s²\]. The lowest eigenvalue is at most the reciprocal of this term.
+    /// The largest of the terms that single joints and tube coordinates add to Dunkerley's sums \[s²\]. Each sum is
+    /// that of `1/λ` over the eigenvalues of a block. The lowest eigenvalue is at most the reciprocal of this term.
     pub largest_s2: Eight,
     /// The eight arms in each case.
     pub cases: Vec<CaseArms>,

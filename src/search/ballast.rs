@@ -1,8 +1,8 @@
 //! Ballast: parts that a design has only for their weight.
 //!
-//! The torsion curve of a gear becomes steeper with torque. Weight outboard loads the gear past a break point of its
-//! curve. Its tangent stiffness then rises, and the lowest mode with it. A design can be on a front for that reason
-//! alone.
+//! A gear becomes stiffer with torque: K1, K2 and K3 grow along its torsion curve. Weight outboard may load the gear
+//! past a break point of this curve. Its tangent stiffness then rises, and the lowest mode with it. A design can be on
+//! a front for that reason alone.
 //!
 //! A part is reported as ballast if a lighter part that is at least as stiff in every way exists for its place, and
 //! if the design with this lighter part weighs less and deflects no more. Only its lowest mode is lower, because a
@@ -118,9 +118,9 @@ impl<'p, 'c> Weighed<'p, 'c> {
         }
     }
 
-    /// Replaces the part in `slot` by the lighter `option`. If this shows the part to be ballast, the finding is
-    /// returned with the mass of the lighter design \[kg\]. It does so if the lowest mode is the only objective that
-    /// gets worse, and if a joint inboard that became softer is the reason. Otherwise `None`.
+    /// Replaces the part in `slot` by the lighter `option`. The part is ballast if the lowest mode is the only
+    /// objective that gets worse, and if the reason is that a joint inboard became softer. Then the finding is
+    /// returned, with the mass of the lighter design \[kg\]. Otherwise `None`.
     fn without_weight(&self, level: usize, slot: usize, option: u32) -> Option<(f64, Ballast)> {
         let relieved = self.relieved(slot, option)?;
         let mut options = self.options.clone();

@@ -25,8 +25,8 @@ pub trait FinishRows: OutwardIn {
     /// Allocates the working space of one worker.
     fn scratch(&self) -> Self::Scratch;
 
-    /// Completes and evaluates all designs of the rows `rows` and reports them to `keep`. `compiled` is what all rows
-    /// have in common, and `scratch` is the working space.
+    /// Completes and evaluates all designs of the rows `rows` and reports them to `keep`. `compiled` has the numbers
+    /// that all rows have in common, and `scratch` is the working space.
     fn finish<K: Keep>(
         &self,
         compiled: &Self::Compiled,
@@ -52,8 +52,8 @@ pub(crate) fn finish_one_by_one<P: OutwardIn>(
     }
 }
 
-/// The row level of an arm, with every number that is the same in all rows. It holds `None` if eight designs at once
-/// are not possible; then the designs are evaluated one by one.
+/// The row level of an arm, with every number that is the same in all rows. It is `None` if eight designs cannot be
+/// evaluated at once. The designs are then evaluated one by one.
 pub struct CompiledArm(Option<Row>);
 
 impl FinishRows for ArmProblem<'_> {

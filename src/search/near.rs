@@ -1,20 +1,20 @@
 //! Near designs: designs that are not on the front, but worse than some design of it by at most a stated percentage.
 //!
-//! The *shortfall* `s` of a design says how near it is to the front. It is the smallest number for which some design
-//! of the front is better by at most the fraction `s` in every objective. It is the multiplicative epsilon of
-//! multi-objective optimization. With mass m, deflection u and lowest mode f (index d: the design; index f: a design
-//! of the front):
+//! The *shortfall* `s` of a design says how near it is to the front. It is the smallest number for which some design of
+//! the front is better by at most the fraction `s` in every objective. It is the multiplicative epsilon of
+//! multi-objective optimization. With mass m, deflection u and lowest mode f (index d: the design; index k: a design of
+//! the front):
 //!
 //! ```text
-//! s(d) = min over f of the front of max(m_d/m_f, u_d/u_f, f_f/f_d) - 1
+//! s(d) = min over k of the front of max(m_d/m_k, u_d/u_k, f_k/f_d) - 1
 //! ```
 //!
 //! The shortfall of a design of the front is zero.
 //!
 //! All designs are visited a second time, after the front is known. The designs of the front, each made worse by the
-//! slack, fill a table (`Archive`) that rejects most designs at once. The table rejects no near design: a design that
-//! is dominated by a worsened design of the front lies beyond the slack of every design of the front, because these
-//! do not dominate each other. The other designs are compared with the front one by one. The search needs memory in
+//! slack, fill a table (`Archive`) that rejects most designs at once. The table rejects no near design: a design that a
+//! worsened design of the front dominates lies beyond the slack of every design of the front, because no design of the
+//! front dominates another. The other designs are compared with the front one by one. The search needs memory in
 //! proportion to the number of near designs that are asked for.
 
 use super::finish::FinishRows;

@@ -1,8 +1,9 @@
 //! The saved state of a sweep, from which another process can continue.
 //!
-//! A sweep is divided into tasks. Each task is a range of designs. The state contains the set of completed tasks,
-//! their counts, and the candidates found so far. A task that was begun but not completed is done again from its
-//! start. It finds the same candidates again, so the result is the same as without the interruption.
+//! A sweep is divided into tasks. Each task is a range of designs. The state contains the set of completed tasks, the
+//! numbers of designs that these tasks evaluated and excluded, and the candidates found so far. A task that was begun
+//! but not completed is done again from its start. It finds the same candidates again, so the result is the same as
+//! without the interruption.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

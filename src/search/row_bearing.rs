@@ -20,11 +20,13 @@ pub(crate) struct RowBearing {
     pub k: usize,
     /// The bearing in each sizing case. Each entry has the index of the case and the bearing's loads in it.
     cases: Vec<(usize, BearingCase)>,
-    /// Lever of the radial force about the bearing.
+    /// The lever: the distance along the joint's axis from the face of its flange to the point at which the link
+    /// attaches. The moment on the bearing includes the radial force times this lever.
     lever: RowLever,
 }
 
-/// Where the lever from the face of the flange to the point at which the link attaches \[m\] comes from.
+/// Source of the lever: the distance \[m\] along the joint's axis from the face of its flange to the point at which the
+/// link attaches.
 enum RowLever {
     /// The lever does not depend on the link of the row: it is stated, or the link is given or outboard of the row.
     /// The number is the slot of the joint.
@@ -45,12 +47,13 @@ struct BearingCase {
     ramps: Vec<Ramp>,
 }
 
-/// Load on a bearing while one joint accelerates at its ramp and the other joints are at rest.
+/// Load on a bearing while one joint accelerates and the other joints are at rest.
 struct Ramp {
-    /// Number of the accelerating joint in the list of all movers.
+    /// Number of the accelerating joint in the list of all movers (the driven joints, tip first).
     mover: usize,
-    /// Acceleration of everything outboard of the joint that moves: its twist (a kinematic vector) times its angular
-    /// acceleration. `None` if the joint is outboard of the row, since then the load is known from the outboard arm.
+    /// Acceleration of everything outboard of the accelerating joint: the twist of this joint (a kinematic vector)
+    /// times its angular acceleration. `None` if the joint is outboard of the row, since then the load is known from
+    /// the outboard arm.
     inner: Option<Wrench>,
     /// Load that the accelerated inertia of the row's link and of the inner pieces makes. The load from the arm
     /// outboard of the row is added later.
@@ -65,8 +68,8 @@ struct Source {
     fixed: Components,
     /// For each inner drive that is chosen or sized: its inner slot, and the load per kilogram of the drive.
     per_kg: Vec<(usize, Components)>,
-    /// Load from the link of the row level, with each of its options, eight in a chunk. Empty if the row level is not a
-    /// link.
+    /// Load from the row's link. Each entry is for a chunk: five components, each with one value for each of the
+    /// chunk's eight options. Empty if the row level is not a link.
     link: Vec<[Eight; 5]>,
 }
 
@@ -149,7 +152,7 @@ impl BearingCase {
 }
 
 impl RowBearing {
-    /// Prepares the bearings that are checked, of the joints inboard of the row level. `first` is the slot of the row
+    /// Prepares those bearings of the joints inboard of the row level that are checked. `first` is the slot of the row
     /// level. If the row level is itself a joint, its bearing is left out, because its load is the same for all drives
     /// of the row.
     pub(crate) fn all(problem: &ArmProblem, first: usize) -> Vec<Self> {

@@ -24,13 +24,15 @@ pub struct RowScratch {
 pub(crate) struct Begun {
     /// The numbers that depend on the case, one entry for each case.
     pub cases: Vec<CaseBegun>,
-    /// For each inner joint (from the row level to the base), the step of the drive table at which the drive of the
-    /// last design was found. The search for the next drive starts there, because the demands of neighbouring designs
-    /// are similar.
+    /// For each inner joint (from the row level to the base), the place of the last design's drive in the ladder of the
+    /// drive table. The ladder lists, lightest first, the drives that can be the lightest one for some demand. The
+    /// search for the drive of the next design starts at this place, because the demands of neighbouring designs are
+    /// similar.
     pub steps: Vec<usize>,
     /// Loads on the output bearing of the joint that is the row level; zero if the row level is a link.
     pub of_row: BearingDemand,
-    /// Room for the gear and motor of the joint that is the row level; unlimited if the row level is a link.
+    /// Largest outer diameters of gear and motor at the joint that is the row level; unlimited if the row level is a
+    /// link.
     pub room_of_row: LinkRoom,
     /// Loads that everything outboard of the row makes on the output bearings inboard of the row level.
     pub bearings: BearingsBegun,
@@ -40,8 +42,8 @@ pub(crate) struct Begun {
 pub(crate) struct CaseBegun {
     /// The arm outboard of the row, prepared for the lowest modes.
     pub outboard: CaseOutboard,
-    /// Torque and inertia about each hinge that everything outboard of the row and the inner pieces with a given mass
-    /// cause.
+    /// Torque and inertia about each hinge, caused by everything outboard of the row and by the inner pieces whose mass
+    /// is given.
     pub at: AtJoints,
     /// The entries of the inertia matrix of everything outboard that count in Dunkerley's sum (the sum of `1/λ` over
     /// the eigenvalues). Entries off the diagonal are doubled. The order is that of
@@ -55,8 +57,8 @@ pub(crate) struct CaseBegun {
     pub at_root: [f64; 4],
 }
 
-/// The arm outboard of a row as the computation of the lowest mode needs it: two blocks of three motions, or one of
-/// six.
+/// The arm outboard of a row as the computation of the lowest mode needs it: two blocks of three motions each in a
+/// planar pose, or one block of six motions in a spatial one.
 pub(crate) enum CaseOutboard {
     Planar(Box<[Outboard<3>; 2]>),
     Spatial(Box<Outboard<6>>),
@@ -84,7 +86,7 @@ impl RowScratch {
 }
 
 impl Begun {
-    /// Allocates the numbers of one row of a problem.
+    /// Allocates memory for the numbers of one row of a problem.
     fn new(problem: &ArmProblem) -> Self {
         let inner = &problem.slots()[problem.row_slot().unwrap_or(0)..];
         let numbers = hinge_numbers(inner);

@@ -1,5 +1,6 @@
-//! The numbers of a row that depend on the case, but not on the option of the row level: what turns each hinge, and
-//! what the eigenvalue problem of the case counts. The file `row` says what inner slots and hinges are.
+//! The numbers of a row that depend on the case, but not on the option of the row level: the torques and inertias about
+//! the hinges, and the numbers that the eigenvalue problem of the case needs. The file `row` says what inner slots and
+//! hinges are.
 
 use crate::mechanics::{Twist, Wrench};
 use crate::space::slot::Slot;
@@ -38,7 +39,7 @@ pub(crate) struct RowCase {
     /// Torque and inertia about each hinge per kilogram of the drive in an inner slot; first index the inner slot of
     /// the drive, second the number of the hinge.
     pub per_kg: Vec<AtJoints>,
-    /// Torque and inertia about each hinge that the inner pieces with a given mass cause.
+    /// Torque and inertia about each hinge, caused by the inner pieces whose mass is given.
     pub fixed: AtJoints,
     /// Torque \[N m\] on each hinge per newton of the weight of the row's link. All options of a link have the same
     /// centre of mass, so one number serves for all.
@@ -48,8 +49,8 @@ pub(crate) struct RowCase {
     pub link_weight_at_root: [f64; 4],
     /// Whether bending of the row's link (the link of the row level) can move the tip in x, in y and in z.
     pub bends: [bool; 3],
-    /// The entries (block, row, column) of the inertia matrix of everything outboard that count in Dunkerley's sum.
-    /// They are those that the end of the row's link sets in motion.
+    /// Positions (block, row, column) of the entries of the outboard inertia matrix that enter Dunkerley's sum. Row and
+    /// column are motions of the block in which the end of the row's link can move. Empty if the row's link is rigid.
     pub spread_entries: Vec<(usize, usize, usize)>,
     /// For each block of the eigenvalue problem, the range of `spread_entries` that belongs to it.
     pub spread_of: [Range<usize>; 2],
@@ -60,7 +61,7 @@ pub(crate) struct RowCase {
     /// level is not a link).
     pub links_yield: bool,
     /// Contribution of the given tubes to Dunkerley's sum (the sum of `1/λ` over the eigenvalues) of each block \[s²\].
-    /// It counts the mass of each tube itself, without the mass outboard of it.
+    /// Only the mass of each tube itself is included, and not the mass outboard of it.
     pub tubes_trace_s2: [f64; 2],
     /// Whether the case counts for deflection and lowest mode.
     pub judged: bool,
@@ -108,7 +109,8 @@ impl Hinge {
 
 impl RowCase {
     /// Computes the numbers of the case `station`. `pieces` are the inner slots, and `first` is the slot of the row
-    /// level. `judged` and `sizing` tell what the case counts for.
+    /// level. `judged` tells whether the case counts for deflection and lowest mode, and `sizing` whether drives are
+    /// checked in it.
     pub(super) fn new(
         station: &Station,
         pieces: &[Slot],
@@ -221,7 +223,7 @@ impl AtJoint {
 }
 
 /// Contribution of the given tubes to Dunkerley's sum (the sum of `1/λ` over all eigenvalues) of each block \[s²\].
-/// Only the mass of each tube itself counts here, and not the mass outboard of it.
+/// Only the mass of each tube itself is included, and not the mass outboard of it.
 fn tubes_trace_s2(slots: &[StationSlot]) -> [f64; 2] {
     let mut sum_s2 = [0.0; 2];
     for slot in slots {
@@ -294,8 +296,8 @@ fn last_yielding<const N: usize>(block: &Block<N>, first: usize, links_yield: bo
     inner.unwrap_or(usize::from(of_row))
 }
 
-/// Entries (block, row, column) of the lower triangle of the outboard inertia matrix that the ends of links in each
-/// block set in motion. No other entry counts in Dunkerley's sum.
+/// Positions (block, row, column) of the entries in the lower triangle of the outboard inertia matrix that enter
+/// Dunkerley's sum. Row and column are both motions of the same block.
 fn spread_entries(modal: &Modal) -> Vec<(usize, usize, usize)> {
     let lower = |block: usize, motions: &[usize]| -> Vec<(usize, usize, usize)> {
         let pairs = motions.iter().flat_map(|&i| motions.iter().map(move |&j| (i, j)));

@@ -20,7 +20,7 @@ pub(crate) struct Chunk {
     pub of_one_material: bool,
     /// Bit mask, one bit per option: the options whose wall is too slender.
     pub slender: u8,
-    /// Factors from which the stress in the link follows with each option.
+    /// For each option, the factors that turn the loads on the link into its stress.
     pub stress: StressEight,
     /// The eight options in each case.
     pub cases: Vec<CaseChunk>,

@@ -15,7 +15,7 @@ pub(crate) struct DriveAttributes {
     /// Whether a mode uses the compliance of the first segment at every torque (`Curve::WindupK1`), and not the
     /// tangent compliance.
     pub first_in_modes: bool,
-    /// Torques \[N m\] at which the first and the second segment end.
+    /// Torques \[N m\] at which the first and the second segment end, in one list for each of the two ends.
     pub ends_nm: [Vec<f64>; 2],
 }
 

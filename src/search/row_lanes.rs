@@ -1,7 +1,7 @@
 //! The inner loop of the sweep: it evaluates eight designs of a row at once.
 //!
 //! The slots from the row level to the base are added to eight arms at a time, one design in each lane of a vector
-//! register. Then follow [the lowest modes](super::row_modes). A design that breaks a limit, or that is surely
+//! register. Then the [lowest modes](super::row_modes) are computed. A design that breaks a limit, or that is surely
 //! dominated, is only counted.
 //!
 //! The functions are `#[inline(always)]` because this code is compiled once for each set of vector instructions. A
@@ -87,7 +87,7 @@ impl<K: Keep> LaneWork for RowsWork<'_, '_, K> {
 }
 
 impl RowChunk<'_, '_> {
-    /// Evaluates eight designs. `valid` is a bit mask of the lanes that hold a design. The tests go from the cheapest
+    /// Evaluates eight designs. `valid` is a bit mask of the lanes that have a design. The tests go from the cheapest
     /// to the most expensive, and the function returns as soon as every design breaks a limit or is below its bar (the
     /// lowest mode that it needs for not being dominated).
     #[inline(always)]
@@ -130,7 +130,7 @@ impl RowChunk<'_, '_> {
         FinishedEight { held, below_bar, unsure }
     }
 
-    /// Reports the designs whose lowest mode is above the bar to `keep`. `done` is the outcome of the eight designs.
+    /// Reports to `keep` the designs whose lowest mode is above the bar. `done` is the outcome of the eight designs.
     /// The function is rarely called, so it is not inlined into the loop.
     #[inline(never)]
     fn hand_over(

@@ -67,9 +67,9 @@ impl<'a, 'c> Question<'a, 'c> {
     }
 
     /// The designs among `held` that are shown to be dominated by a single bar for all eight. A bar is the lowest mode
-    /// that a design of known mass and deflection needs for not being dominated. This one belongs to an imagined design
-    /// with the least mass and the least deflection of the eight, so the bar of each of the eight is at least as high.
-    /// `tip_m2` has the squares of the deflections \[m²\].
+    /// that a design of known mass and deflection needs for not being dominated. The bar that is used here is that of
+    /// an imagined design with the least mass and the least deflection of the eight, so the bar of each of the eight is
+    /// at least as high. `tip_m2` has the squares of the deflections \[m²\].
     #[inline(always)]
     pub(crate) fn below_one_bar<V: Lanes>(&self, keep: &impl Keep, tip_m2: &Eight, held: u8) -> u8 {
         if !self.at.of_one_group() {
@@ -111,7 +111,7 @@ impl<'a, 'c> Question<'a, 'c> {
     }
 
     /// The lowest eigenvalue of each arm over all judged cases \[1/s²\], and a bit mask of the arms for which the
-    /// iteration did not converge. `held` is a bit mask of the arms in question.
+    /// iteration did not converge. `held` is a bit mask of the arms for which it is computed.
     #[inline(always)]
     pub(crate) fn lowest<V: Lanes>(&self, held: u8) -> (V, u8) {
         let (mut lowest, mut unsure) = (V::splat(f64::INFINITY), 0);

@@ -17,7 +17,8 @@ pub(crate) struct RowRoom {
 enum RoomOf {
     /// A link that is given or outboard of the row. The number is the slot of the joint.
     Slot(usize),
-    /// The link of the row: the room \[m\] for gear and for motor, for each chunk of its options.
+    /// The link of the row. Each entry is for a chunk of its options: the largest outer diameters \[m\] of the gear and
+    /// of the motor, for eight options.
     Chunk(Vec<[Eight; 2]>),
 }
 

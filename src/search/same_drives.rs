@@ -23,10 +23,10 @@ pub struct OnSameDrives {
 }
 
 impl ArmProblem<'_> {
-    /// An arm that is lighter than the design with these `options`, has its first-fit drives, and is no worse in
-    /// deflection and lowest mode. It is found by exchanging one part at a time for the one that gives the lightest
-    /// arm, so it need not be the lightest of all. `None` if no joint is sized by first fit, if no exchange helps, or
-    /// if first fit would give the lighter arm the same drives.
+    /// An arm that is lighter than the design with these `options`, has the same drives at the joints sized by first
+    /// fit, and is no worse in deflection and lowest mode. It is found by exchanging one part at a time for the one
+    /// that gives the lightest arm, so it need not be the lightest of all. `None` if no joint is sized by first fit, if
+    /// no exchange helps, or if first fit would give the lighter arm the same drives.
     pub fn lighter_on_same_drives(&self, options: &[u32]) -> Option<OnSameDrives> {
         let design = self.walk(options, |_, _| {}).ok()?;
         let first_fit = |slot: &Slot| matches!(slot, Slot::Sized(sized) if !sized.all_fits);

@@ -4,8 +4,8 @@
 //! K1, K2 and K3, while the break points T1 and T2 stay. The factor of a material's modulus applies to E and to G.
 //! Masses of gears and motors have factors of their own. A factor belongs to a row of a catalog, so it is the same in
 //! every joint and every design that uses the row. The stiffness of an output bearing has a factor too. It belongs to
-//! the row of the gear if the bearing comes with the chosen gear; a bearing that is stated at a joint has a factor
-//! for this joint. The compliance that an effect adds to the tilt is exact.
+//! the row of the gear if the bearing comes with the chosen gear; a bearing that is stated at a joint has a factor for
+//! this joint. The compliance that an effect adds to the tilt has no factor.
 //!
 //! The designs are not sized again: they keep their drives and sections, whatever the sampled ratings are.
 

@@ -19,8 +19,8 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Relative difference in an objective up to which the sweep keeps both of two designs. The full model decides
-/// between them later, because the fast model has rounding errors.
+/// When candidates are compared exactly, one is dropped only if another one is better by more than this fraction in
+/// every objective. The full model decides between closer candidates later, because the fast model has rounding errors.
 pub const SLACK: f64 = 1e-7;
 /// Number of added candidates after which the dominated candidates are removed.
 const BUFFER: usize = 1 << 15;
@@ -218,7 +218,7 @@ impl Pool {
         *lock(&self.candidates) = (candidates, 0);
     }
 
-    /// The candidates that no other candidate found so far clearly dominates, by number.
+    /// The candidates that no other candidate found so far clearly dominates, in the order of their numbers.
     fn candidates(&self) -> Vec<Candidate> {
         let mut all = lock(&self.candidates).0.clone();
         clear_dominated(&mut all);
@@ -234,8 +234,9 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Number of blocks that the first `shards` of `of` shards have together, if there are `all` blocks: `all * shards /
-/// of`, rounded down. The result is exact even where the product would overflow.
+/// Number of blocks (sets of designs with the same arm outboard of the row level) that the first `shards` of `of`
+/// shards have together. There are `all` blocks. The result is `all * shards / of`, rounded down. It is exact even
+/// where the product would overflow.
 fn share(all: u128, shards: u32, of: u32) -> u128 {
     let (shards, of) = (u128::from(shards), u128::from(of));
     all / of * shards + all % of * shards / of

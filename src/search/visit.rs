@@ -14,8 +14,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Number of tasks to aim for: enough to give all threads equal work and to report progress.
 const TASKS: u128 = 512;
-/// Smallest number of tasks if each task gets a whole batch of rows. A smaller space is divided into smaller tasks
-/// than a batch, because idle threads cost more than incomplete batches.
+/// A task has at least a whole batch of rows, unless this would give fewer than this number of tasks. In a small space
+/// tasks are smaller than a batch, because idle threads cost more than incomplete batches.
 const LEAST_TASKS: u128 = 64;
 /// Largest number of rows in a batch. All rows of a batch are evaluated together, so that each chunk of the row level
 /// is read from memory once for the batch.
@@ -23,7 +23,7 @@ const BATCH: usize = 16;
 /// Largest number of designs in a batch.
 const BATCH_DESIGNS: usize = 1 << 18;
 
-/// Largest number of designs of a task: some seconds of work. This is what is lost when a task is interrupted.
+/// Largest number of designs of a task, which take some seconds. This work is lost if the task is interrupted.
 const TASK_DESIGNS: u128 = 1 << 24;
 
 /// A visit to all designs of a tree. Other threads can read its progress and stop it.
@@ -111,8 +111,8 @@ pub(crate) fn blocks(problem: &impl FinishRows) -> (u128, u128) {
     (product(outer), u128::from(row) * product(inner))
 }
 
-/// Number of options at each level, in three groups: the levels outboard of the row level, the row level itself, and
-/// the levels inboard of it.
+/// Number of options at each level, in three parts: the levels outboard of the row level, the row level itself, and the
+/// levels inboard of it.
 struct Levels<'p> {
     outer: &'p [u32],
     row: u32,
@@ -138,7 +138,7 @@ struct Walker<'v, 'p, P: FinishRows, K> {
     keeper: K,
     /// The partial arms outboard of the last row: the empty arm, the arm with one level, with two levels, and so on.
     begun: Vec<P::Partial>,
-    /// The options with which these arms were built, tip first.
+    /// The options with which the arms in `begun` were built, tip first.
     options: Vec<u32>,
     /// Rows that wait to be evaluated together.
     batch: Vec<DesignRow<P::Partial>>,
@@ -206,8 +206,8 @@ impl<'v, 'p, P: FinishRows, K: Keep> Walker<'v, 'p, P, K> {
         row >= rows.end
     }
 
-    /// Builds the arm outboard of the rows of the block with the number `arm`. `outer` are the numbers of options of
-    /// the levels outboard of the row level.
+    /// Builds the arm with the number `arm` among all arms outboard of the row level. `outer` are the numbers of
+    /// options of the levels outboard of the row level.
     ///
     /// # Errors
     /// The level at which the arm breaks a limit, whatever the options of the later levels are.

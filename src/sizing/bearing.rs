@@ -3,17 +3,18 @@
 //! The vendor compares three things with what a bearing is rated for (Harmonic Drive LLC, FHA-C manual, pages 20 to 23;
 //! Harmonic Drive AG, engineering data 1021387, pages 43 and 45):
 //!
-//! 1. *Running*. The largest moment while the joint turns is at most the permissible one. That is a limit of deflection
-//!    and not of life, so it holds however short the load lasts. `M = M₀ + R F_r`, with R the distance from the bearing's
-//!    centre to the face of the flange.
-//! 2. *Static safety*. `fs = C₀ / P₀` with `P₀ = F_r + 2 M / d_p + 0.44 F_a` is at least 1.5 in normal use, 2 with shocks
-//!    and 3 for high precision. Here: [`SAFETY_AT_REST`] at rest, [`SAFETY_IN_A_STOP`] in an emergency stop.
-//! 3. *Life*. `L₁₀ = 10⁶ / (60 n) · (C / (f_w P_c))^(10/3)` hours with `P_c = X (F_r + 2 M / d_p) + Y F_a`. X and Y are 1
-//!    and 0.45 while `F_a` is at most 1.5 times the bracket, else both are 0.67. n is the mean speed of the joint over its
-//!    cycle, so the same formula holds for joints that swing: a swing of ±θ travels 4θ in each oscillation.
+//! 1. *Running*. The largest moment while the joint turns is at most the permissible one. That is a limit of
+//!    deflection and not of life, so it applies however short the load lasts. `M = M₀ + R F_r`, with the moment M₀ at
+//!    the face of the flange, and R the distance from the bearing's centre to this face.
+//! 2. *Static safety*. `fs = C₀ / P₀` with `P₀ = F_r + 2 M / d_p + 0.44 F_a` is at least 1.5 in normal use, 2 with
+//!    shocks and 3 for high precision. Here: [`SAFETY_AT_REST`] at rest, [`SAFETY_IN_A_STOP`] in an emergency stop.
+//! 3. *Life*. `L₁₀ = 10⁶ / (60 n) · (C / (f_w P_c))^(10/3)` hours with `P_c = X (F_r + 2 M / d_p) + Y F_a`. X and Y
+//!    are 1 and 0.45 while `F_a` is at most 1.5 times `F_r + 2 M / d_p`, else both are 0.67. n is the mean speed of the
+//!    joint over its cycle, so the same formula holds for joints that swing: a swing of ±θ travels 4θ in each
+//!    oscillation.
 //!
-//! Each of the three loads grows with every force and moment, so a bearing is a set of thresholds, as the rest of a
-//! drive is.
+//! Each of the three loads grows with every force and moment. So a bearing is described by a set of thresholds, as the
+//! rest of a drive is.
 
 use crate::arm::bearing::Bearing;
 
@@ -21,14 +22,15 @@ use crate::arm::bearing::Bearing;
 pub(crate) const SAFETY_AT_REST: f64 = 3.0;
 /// Static safety in an emergency stop: the vendor's value for shocks.
 pub(crate) const SAFETY_IN_A_STOP: f64 = 2.0;
-/// Load factor f_w of the life: the vendor's value for its own tables, which lies in the range of normal use, 1.2 to 1.5.
+/// Load factor f_w of the life: the vendor's value for its own tables, which lies in the range of normal use, 1.2 to
+/// 1.5.
 pub(crate) const LOAD_FACTOR: f64 = 1.3;
 /// Factor of the axial force in the static equivalent load P₀.
 pub(super) const AXIAL_SHARE: f64 = 0.44;
 /// Number of turns for which the dynamic load rating C is defined.
 const RATED_TURNS: f64 = 1e6;
 
-/// The load on a bearing: forces on its face and the moment of everything outboard.
+/// The load on a bearing: the forces and the moment that everything outboard puts on it, at the face of its flange.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BearingLoad {
     /// Moment across the axis at the face of the flange \[N m\].
@@ -39,9 +41,8 @@ pub struct BearingLoad {
     pub axial_n: f64,
 }
 
-/// The loads on the output bearing of a joint that a study asks for. Each number is the largest over the sizing cases
-/// and over the ramps or stops of single joints. The numbers of one load may come from different cases, which is on the
-/// safe side.
+/// The loads on the output bearing of a joint in a study. Each number is the largest over the sizing cases and over the
+/// ramps or stops of single joints. The numbers of one load may come from different cases, which is on the safe side.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BearingDemand {
     /// Loads from gravity, payload and tip force alone, with all joints at rest.
@@ -96,7 +97,7 @@ impl BearingLoad {
 }
 
 impl BearingDemand {
-    /// Whether every load is zero: nothing loads the bearing, or there is none.
+    /// Whether every load is zero: nothing loads the bearing, or the joint has no bearing.
     pub fn is_zero(&self) -> bool {
         *self == Self::default()
     }
@@ -199,8 +200,8 @@ impl BearingLimits {
     }
 
     /// Dynamic equivalent load P_c \[N\]. The vendor changes from one pair of X and Y to the other where the axial
-    /// force is 1.5 times the bracket. On either side of this point the vendor's value is the larger of the two, so
-    /// no case distinction is needed.
+    /// force is 1.5 times `F_r + 2 M / d_p`. On either side of this point the vendor's value is the larger of the two,
+    /// so no case distinction is needed.
     #[inline]
     pub fn dynamic_load_n(&self, load: &BearingLoad) -> f64 {
         let across_n = self.across_n(load);

@@ -13,21 +13,23 @@ use crate::catalog::gear::Gear;
 /// A gear whose output bearing fails a check.
 struct Overloaded<'t> {
     gear: &'t str,
-    /// The failed check of the bearing with the smallest margin.
+    /// The failed check of this gear's bearing. If several fail, it is the one with the smallest margin.
     check: Check,
     /// Whether the bearing is the only reason why the gear is rejected.
     is_alone: bool,
 }
 
 impl DriveTable<'_> {
-    /// What is to be said of the output bearings of this joint, in sentences: how many gears they reject and what helps,
-    /// which ratings are blank, and which bearings count as rigid. Empty if every bearing holds and all figures are known.
+    /// Sentences about the output bearings of this joint: how many gears they exclude and what helps, which ratings are
+    /// blank, and which bearings are taken as rigid. Empty if every bearing passes its checks and all numbers are
+    /// known.
     pub fn explain_bearings(&self, demand: &JointDemand) -> Vec<String> {
         let said = self.overloaded_bearings(demand).into_iter().chain(self.blank_bearings());
         said.chain(self.rigid_bearings()).collect()
     }
 
-    /// The bearings whose tilting stiffness is blank, one line each; a stated bearing is the same with every gear.
+    /// The bearings whose tilting stiffness is blank, one line each. A stated bearing is the same with every gear and
+    /// gets a single line.
     fn rigid_bearings(&self) -> Vec<String> {
         let rigid = |gear: &Gear| {
             let (whose, rigid) =
@@ -39,7 +41,7 @@ impl DriveTable<'_> {
         lines
     }
 
-    /// Whose bearing the joint has with a gear.
+    /// Whose bearing the joint has if `gear` is its gear, for messages: the name of the gear, or "the stated bearing".
     fn whose<'g>(&self, gear: &'g Gear) -> &'g str {
         match self.bearing_source() {
             BearingSource::OfGear => &gear.id,
@@ -68,8 +70,8 @@ impl DriveTable<'_> {
         ))
     }
 
-    /// `gear` with the failed check of its output bearing that has the smallest margin, or `None` if its bearing
-    /// passes.
+    /// `gear` with the failed check of its output bearing, or `None` if its bearing passes. If several checks of the
+    /// bearing fail, it is the one with the smallest margin.
     fn overloaded<'t>(&self, gear: &'t Gear, demand: &JointDemand) -> Option<Overloaded<'t>> {
         let bearing = self.bearing_of(gear);
         let checks = gear_checks(gear, self.gear_mass(), bearing.as_ref(), self.motion(), demand);

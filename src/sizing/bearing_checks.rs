@@ -102,7 +102,7 @@ impl BlankRatings {
 /// Names of the tilting stiffness: a column of the catalog of gears, and a key of a bearing that a file states.
 const STIFFNESS: [&str; 2] = ["tilting_stiffness_nm_per_rad", "tilt_stiffness_nm_per_rad"];
 
-/// A bearing whose tilting stiffness is unknown: it counts as rigid.
+/// A bearing whose tilting stiffness is unknown, so that it is taken as rigid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct RigidBearing {
     /// Name of the stiffness that is blank.
@@ -110,7 +110,8 @@ pub(crate) struct RigidBearing {
 }
 
 impl RigidBearing {
-    /// The bearing of a joint with this gear; `None` if its stiffness is known or the joint has no bearing.
+    /// The output bearing of a joint with this gear, if its stiffness is unknown. `None` if the stiffness is known, the
+    /// joint has no bearing, or the joint slides.
     pub(crate) fn of(source: &BearingSource, gear: &Gear, which: GearMass) -> Option<Self> {
         let has_stiffness = source.with_gear(gear, which)?.tilt_stiffness_nm_per_rad.is_some();
         let lacks = match source {
@@ -120,8 +121,8 @@ impl RigidBearing {
         (!has_stiffness && !gear.kind.slides()).then_some(Self { lacks })
     }
 
-    /// A bearing that a file states, or that of the gear which the file names; `None` if its stiffness is known. The second
-    /// is whose bearing it is, if it is the gear's.
+    /// A bearing that a file states, or the bearing of the gear that the file names, if its stiffness is unknown; else
+    /// `None`. The second value is the name of the gear if the bearing is the gear's.
     pub(crate) fn of_given<'g>(bearing: &Bearing, gear: Option<&'g Gear>) -> Option<(Self, Option<&'g str>)> {
         if bearing.tilt_stiffness_nm_per_rad.is_some() {
             return None;
@@ -133,8 +134,8 @@ impl RigidBearing {
         }
     }
 
-    /// `rigid output bearing: TPMA-50-55 lacks tilting_stiffness_nm_per_rad (the tip deflects more than printed)`, where
-    /// `whose` has the bearing.
+    /// The message, such as `rigid output bearing: TPMA-50-55 lacks tilting_stiffness_nm_per_rad (the tip deflects more
+    /// than printed)`. `whose` lists the gears that have this bearing.
     pub(crate) fn words(&self, whose: &[&str]) -> String {
         let lack = if whose.len() > 1 { "lack" } else { "lacks" };
         format!(
@@ -145,8 +146,8 @@ impl RigidBearing {
     }
 }
 
-/// The rating with which a bearing of the joint's own would pass a check that fails, in words; `None` for checks of other
-/// parts.
+/// In words, the rating with which a separate bearing of the joint would pass the failed check `check`. `None` for
+/// checks of other parts.
 pub(super) fn bearing_that_holds(check: &Check) -> Option<String> {
     let times = check.torque_margin().map(|margin| (100.0 / margin).ceil() / 100.0);
     let rating = match check.kind {

@@ -48,7 +48,7 @@ pub enum CheckKind {
     MotorWidth,
     /// The bore of the gear is wide enough for the cables.
     GearBore,
-    /// The bore of the motor behind the gear is wide enough for the cables.
+    /// The bore of a motor that is mounted behind the gear is wide enough for the cables.
     MotorBore,
     /// The drive is no longer than the space that the study states for this joint.
     DriveLength,
@@ -152,9 +152,9 @@ impl CheckKind {
         matches!(self, GearWidth | MotorWidth | GearBore | MotorBore | DriveLength)
     }
 
-    /// Whether a drive is excluded if the rating that this check needs is blank. It is not for an output bearing and
-    /// for sizes: these are then left unchecked. Nor is it for buckling and ratcheting torques, which few vendors
-    /// state; both lie above the momentary peak torque, which must be known.
+    /// Whether a drive is excluded if the rating that this check needs is blank. Blank ratings of an output bearing and
+    /// blank sizes do not exclude it; they are left unchecked. Nor do blank buckling and ratcheting torques, which few
+    /// vendors state; both lie above the momentary peak torque, which must be known.
     pub fn needs_its_rating(self) -> bool {
         !self.is_bearing()
             && !self.is_fit()
@@ -203,7 +203,7 @@ pub struct Check {
 }
 
 impl Check {
-    /// Unit of needed and allowed.
+    /// Unit of the needed and of the allowed value.
     pub fn unit(&self) -> &'static str {
         match self.kind.unit() {
             "N m" if self.slides && self.kind.is_gear() => "N",

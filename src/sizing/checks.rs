@@ -77,8 +77,8 @@ pub(super) fn torsion_checks(gear: &Gear) -> Vec<Check> {
     missing.map(|rating| Check::not_made(CheckKind::Torsion, rating)).collect()
 }
 
-/// The checks of a motor behind its gear. Heating of the motor is checked unless the study turns that off. If the
-/// mass of gear and motor is unknown, this is listed as a check that could not be made.
+/// The checks of the motor of a drive. Heating of the motor is checked unless the study turns that off. If the mass of
+/// gear and motor is unknown, this is listed as a check that could not be made.
 pub fn motor_checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Vec<Check> {
     let mut checks = vec![motor_hold(drive, motion, demand), motor_peak(drive, motion, demand)];
     if motion.checks_motor_heat {

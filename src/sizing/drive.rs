@@ -62,13 +62,13 @@ pub struct Drive<'c> {
     pub gear: &'c Gear,
     /// The motor.
     pub motor: &'c Motor,
-    /// Which mass of the gear counts.
+    /// Which mass of the gear is used: that of the component set or of the housed unit.
     pub gear_mass: GearMass,
     /// Where the output bearing comes from.
     pub bearing: BearingSource,
     /// Where the masses beyond gear, motor and bearing come from.
     pub extras: ExtrasSource,
-    /// Belt, chain or spur stage between motor and gear; its mass is not the drive's.
+    /// Belt, chain or spur stage between motor and gear. Its mass is not part of the mass of the drive.
     pub stage: Stage,
 }
 
@@ -135,7 +135,8 @@ impl Drive<'_> {
         Ok((sum_kg * PER_KG).round() / PER_KG)
     }
 
-    /// Eq 9: J_in = rotor + input of the gear (wave generator), motor side \[kg m²\], with that of a stage between both.
+    /// Eq 9: J_in, the inertia of rotor and gear input (wave generator), referred to the motor \[kg m²\]. It includes
+    /// the inertia of a stage between motor and gear.
     ///
     /// # Errors
     /// The name of the inertia that the catalog leaves blank.

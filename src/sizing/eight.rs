@@ -55,8 +55,8 @@ impl<V: Lanes> EightLoad<V> {
         Self { moment: V::zero(), radial: V::zero(), axial_n: V::zero() }
     }
 
-    /// Replaces each component of this load by the given one in the lanes where that is larger. `radial` and `moment`
-    /// are squares of norms.
+    /// Replaces each component of this load by the given component in the lanes where the given one is larger. `radial`
+    /// and `moment` are squares of norms.
     #[inline(always)]
     fn max_of_squares(&mut self, radial: V, axial_n: V, moment: V) {
         self.radial = self.radial.max(radial);
@@ -259,8 +259,8 @@ impl DriveTable<'_> {
     /// For each lane (arm) in the mask `wanted`, the index of the lightest drive that meets its demand, and the bit
     /// mask of the lanes that have such a drive.
     ///
-    /// The search for the first step of the ladder that may meet a demand begins at `step`, and stores there the step
-    /// that it found. Successive demands are similar, so the next search is short.
+    /// The search for the first step of the ladder that may meet a demand begins at `step`. The step that it finds is
+    /// stored in `step`. Successive demands are similar, so the next search is short.
     #[inline(always)]
     pub(crate) fn first_fits<V: Lanes>(
         &self,

@@ -26,16 +26,16 @@ pub enum RejectedPart {
         /// Name of the nearest motor, whose smallest margin is the largest.
         nearest_motor: String,
     },
-    /// A motor that fails behind some of the gears that pass their own checks. The checks listed are those with the
+    /// A motor that fails with some of the gears that pass their own checks. The checks listed are those with the
     /// nearest gear: the gear with which the smallest margin of the motor is the largest.
     Motor {
         /// Name of the motor.
         motor: String,
-        /// The gear with which the checks were made.
+        /// Name of the nearest gear, with which the listed checks were made.
         nearest_gear: String,
-        /// Names of all gears that pass and behind which this motor fails.
+        /// Names of all gears that pass their own checks, but with which this motor fails a check.
         rejected_with: Vec<String>,
-        /// Names of all gears behind which this motor passes.
+        /// Names of all gears with which this motor passes every check.
         fits_with: Vec<String>,
     },
 }
@@ -167,8 +167,8 @@ struct Trial<'c> {
 
 impl<'c> DriveTable<'c> {
     /// Why parts were rejected for `demand`. The list has every gear that fails by itself, every gear that passes but
-    /// has no motor that passes behind it, and every motor that fails behind some gear that passes. Gears come first;
-    /// gears and motors are each in the order of the catalog.
+    /// has no motor that passes with it, and every motor that fails with some gear that passes. Gears come first; gears
+    /// and motors are each in the order of the catalog.
     pub fn explain(&self, demand: &JointDemand) -> Vec<Rejection> {
         let (mut rejections, trials) = (Vec::new(), self.trials(demand));
         for gear in self.gears() {
@@ -320,8 +320,8 @@ impl<'c> DriveTable<'c> {
     }
 }
 
-/// The pair of gear and motor whose smallest margin is the largest. Equal ones are ranked by the number of failed
-/// checks, then by their order.
+/// The pair of gear and motor whose smallest margin is the largest. Of pairs with equal margins, it is the one with the
+/// fewest failed checks, then the first one.
 fn nearest_trial<'t, 'c: 't>(trials: impl Iterator<Item = &'t Trial<'c>>) -> Option<&'t Trial<'c>> {
     let nearness = |t: &Trial| (t.worst_margin, std::cmp::Reverse(t.failed.len()));
     trials.reduce(|best, t| if nearness(t) > nearness(best) { t } else { best })

@@ -1,15 +1,16 @@
 //! Checks of size: whether gear and motor fit into the space at their joint.
 //!
-//! | asked | compared |
-//! |---|---|
-//! | gear at the link that the joint carries | outer diameter of the gear; factor times width of the link |
-//! | motor in the hollow of that link | outer diameter of the motor; the smaller clear width of the hollow |
-//! | cables along the axis | bore of the gear, and of a motor behind it; the smallest bore that the study states |
-//! | space at the joint | length of the gear, plus that of a motor behind it; the largest length stated |
+//! | asked | size of the parts | limit |
+//! |---|---|---|
+//! | gear at the link that the joint carries | outer diameter of the gear | factor times width of the link |
+//! | motor in the hollow of that link | outer diameter of the motor | the smaller clear width of the hollow |
+//! | cables along the axis | bore of the gear, and of a motor behind it | at least the bore that the study states |
+//! | space at the joint | length of the gear, plus that of a motor behind it | the length that the study states |
 //!
-//! A size that the catalog leaves blank is not checked and excludes nothing; of component sets it has no sizes at all. The first two follow from the link, so they are part
-//! of the [demand](super::demand::JointDemand) on the joint; the others exclude a drive whatever the arm. Where a part is does
-//! not depend on these sizes: the geometry of a chain is stated.
+//! A size that the catalog leaves blank is not checked and excludes nothing. Of component sets the catalog has no sizes
+//! at all. The limits of the first two checks follow from the link, so they are part of the
+//! [demand](super::demand::JointDemand) on the joint. The other two checks exclude a drive whatever the arm. The places
+//! of the parts do not depend on these sizes, because the geometry of a chain is stated.
 
 use crate::catalog::envelope::Envelope;
 
@@ -33,7 +34,8 @@ pub struct FitRequirement {
 /// Where the motor of a joint is mounted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum MotorPlace {
-    /// On the axis, behind the gear: cables pass through it, and its length adds to that of the gear.
+    /// On the axis, behind the gear: cables pass through the motor, and the length of the motor adds to that of the
+    /// gear.
     #[default]
     Behind,
     /// In the hollow of the link that the joint carries.
@@ -84,7 +86,7 @@ impl LinkRoom {
 }
 
 impl DriveWidths {
-    /// The widths of a gear and a motor that count under a requirement.
+    /// The diameters of a gear and a motor. A diameter that the requirement `fit` does not limit is zero.
     pub(super) fn of(gear: &Envelope, motor: &Envelope, fit: &FitRequirement) -> Self {
         let counts = |asked: bool, width_m: Option<f64>| width_m.filter(|_| asked).unwrap_or(0.0);
         Self {
@@ -139,7 +141,8 @@ impl FitRequirement {
         }
     }
 
-    /// Whether a gear and a motor fit whatever the link: their bores and their length, as far as they are known.
+    /// Whether the bores and the length of a gear and a motor are within the limits, whatever the link. A size that is
+    /// unknown is not checked.
     pub(super) fn allows(&self, gear: &Envelope, motor: &Envelope) -> bool {
         let bore_holds = |bore_m: Option<f64>| match (self.least_bore_m(), bore_m) {
             (Some(least_m), Some(bore_m)) => least_m <= bore_m,

@@ -5,7 +5,8 @@ use super::drive::{Drive, Rating, known};
 use super::fit::{FitRequirement, LinkRoom, MotorPlace};
 use crate::catalog::gear::{Gear, GearMass};
 
-/// The size of a gear that is blank, by its column; component sets have no columns.
+/// Name of a blank size of a gear, for messages: its column or, for a component set, words that say that the catalog
+/// has no such size.
 fn size_of(which: GearMass, column: &'static str) -> &'static str {
     match which {
         GearMass::ComponentSet => "the size of the component set, which the catalog does not have",
@@ -13,7 +14,7 @@ fn size_of(which: GearMass, column: &'static str) -> &'static str {
     }
 }
 
-/// What is asked of the sizes of a gear.
+/// The checks of the diameter and the bore of a gear.
 pub(super) fn gear_fits(
     gear: &Gear,
     which: GearMass,

@@ -23,10 +23,10 @@
 //!
 //! *Monotonicity.* If the cycle slows down no longer than it speeds up, the mean square grows with T, with T_lin, and
 //! with each number of a [`MotorHeat`]: the phase of speeding up has the largest torque and rises at least as fast as
-//! that of slowing down falls. Two things follow. The least T and T_lin of a box of designs, put on the least numbers
-//! of a box of drives, give a lower bound for every member. And a drive that has no number larger than another drive
-//! passes wherever the other passes. The `tests` check this against random members, and against a motion simulated
-//! step by step.
+//! that of slowing down falls. Two things follow. The least T and T_lin of a box of designs, together with the least
+//! numbers of a box of drives, give a lower bound for every member. And a drive that has no number larger than another
+//! drive passes wherever the other passes. The `tests` check this against random members, and against a motion
+//! simulated step by step.
 //!
 //! *Continuous torque.* It is taken at the motor's speed while the joint cruises, see [`motor_curve`].
 //!

@@ -183,8 +183,8 @@ fn any_cycle() -> impl Strategy<Value = HeatWeights> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(4000))]
 
-    /// The lower bound of the exact search: the least torques of a box of designs, put on the least numbers of a box
-    /// of drives, heat no member more.
+    /// The lower bound of the exact search: the least torques of a box of designs, together with the least numbers of a
+    /// box of drives, give no more heat than any member has.
     #[test]
     fn the_least_numbers_of_a_box_bound_the_heat_of_every_member(
         drives in prop::collection::vec(any_heat(), 1..5),
@@ -247,8 +247,8 @@ fn the_default_cycle_slows_down_as_long_as_it_speeds_up() {
 }
 
 /// Harmonic Drive SE, manual of the CHA series, 1018854 (12/2015), pages 64 to 67: an FHA-25C-50 with 0.86 kg m² at its
-/// output turns 1.3 kg m² against 5 N m up to 40 rpm. It speeds up, moves and slows down for 0.1 s each and rests 1.0 s without
-/// torque. The manual rounds: 93 and 95 N m of 151, 35 N m as root mean square, 6 rpm as mean.
+/// output turns 1.3 kg m² against 5 N m up to 40 rpm. It speeds up, moves and slows down for 0.1 s each and rests 1.0 s
+/// without torque. The manual rounds: 93 and 95 N m of 151, 35 N m as root mean square, 6 rpm as mean.
 #[test]
 fn the_makers_example_of_an_integrated_actuator_comes_out() {
     let gear = Gear {

@@ -5,8 +5,8 @@
 //! point. Without a curve the motor gives its rated torque up to the rated speed. Beyond it constant power is
 //! assumed, T_rated n_rated / n. If the rated speed is blank, the rated torque is taken at every speed.
 //!
-//! *Peak torque.* A ramp passes through every speed up to the cruising speed, so the smallest peak torque of the
-//! curve up to there counts.
+//! *Peak torque.* A ramp passes through every speed up to the cruising speed, so the smallest peak torque of the curve
+//! up to this speed is taken.
 
 use super::drive::{Rating, known};
 use crate::catalog::motor::{Motor, MotorCurvePoint};
@@ -45,8 +45,8 @@ pub(super) fn largest_speed_rpm(motor: &Motor) -> Option<f64> {
     motor.curve.last().map(|point| point.speed_rpm)
 }
 
-/// The torque that `torque_nm` takes from the points of the motor's curve, at a speed \[N m\]: linear between the
-/// points that state it, constant outside of them. `None` if no point states it.
+/// The torque that the function `torque_nm` returns for the points of the motor's curve, interpolated at a speed \[N
+/// m\]: linear between the points that state it, constant outside of them. `None` if no point states it.
 fn at(motor: &Motor, torque_nm: impl Fn(&MotorCurvePoint) -> Option<f64>, speed_rpm: f64) -> Option<f64> {
     let points: Vec<[f64; 2]> =
         motor.curve.iter().filter_map(|point| Some([point.speed_rpm, torque_nm(point)?])).collect();

@@ -1,19 +1,23 @@
 //! Drives of prismatic joints: ball screws, and racks with their pinions, as gears.
 //!
-//! A screw of lead p turns the motor by `2π/p` radians a metre, a pinion of radius r by `1/r`, times the ratio of a gear at it.
-//! With this ratio every equation of a joint holds along a travel, with a force \[N\] for the torque, a speed \[m/s\] for the
-//! angular speed and a stiffness \[N/m\]: the motor's torque is `F / (N η) + J N a` (Eqs 9 to 12). So a screw *is* a
-//! [`Gear`] whose ratings are forces.
+//! A screw of lead p turns the motor by `2π/p` radians per metre of travel. A pinion of radius r turns it by `1/r`,
+//! times the ratio of a gear at the pinion. With this ratio N every equation of a joint holds along a travel, with a
+//! force \[N\] in place of the torque, a speed \[m/s\] in place of the angular speed, and a stiffness \[N/m\]. The
+//! motor's torque is `F / (N η) + J N a` (Eqs 9 to 12). So a screw *is* a [`Gear`] whose ratings are forces.
 //!
 //! | of a screw | formula | source |
 //! |---|---|---|
-//! | buckling | F = 0.5 η₁ π² E I / L², η₁ = 1/4, 1, 2, 4 by the ends (Euler) | THK, general catalog 514E, page A15-30 |
-//! | critical speed | n = 0.8 · 60 λ² / (2π L²) √(E I / ρ A), λ = 1.875, π, 3.927, 4.730 | MISUMI 2025, page 1677; λ: the roots of the uniform beam |
-//! | life of the nut | L10 = (C / F_m)³ · 10⁶ turns, F_m the cubic mean over the way | definition of C: linearwizard.com, screw drives, calculation principles |
-//! | stiffness of the shaft | E A / L, with both ends fixed 4 E A / L: where the nut is farthest from what holds the shaft | the bar, the bar held at both ends |
+//! | buckling | F = 0.5 η₁ π² E I / L² (Euler) | THK, general catalog 514E, page A15-30 |
+//! | critical speed | n = 0.8 · 60 λ² / (2π L²) √(E I / ρ A) | MISUMI 2025, page 1677 |
+//! | life of the nut | L10 = (C / F_m)³ · 10⁶ turns | linearwizard.com, screw drives, calculation principles |
+//! | stiffness of the shaft | E A / L, with both ends fixed 4 E A / L | the bar, the bar held at both ends |
 //!
-//! I, A are those of the root of the thread, E = 206 GPa and ρ = 7850 kg/m³ those of steel. The mass of the shaft turns with the motor and does not
-//! travel.
+//! The factors depend on the ends of the shaft. In the order of [`Ends`], η₁ is 1/4, 1, 2, 4, and λ is 1.875, π, 3.927,
+//! 4.730, a root of the uniform beam. F_m is the cubic mean of the force over the way; the source gives the definition
+//! of C. The stiffness is that with the nut farthest from the supports of the shaft.
+//!
+//! I and A are those of the root of the thread. E = 206 GPa and ρ = 7850 kg/m³ are those of steel. The mass of the
+//! shaft turns with the motor and does not travel.
 
 use crate::catalog::gear::{Gear, GearKind, LifeLaw};
 use crate::catalog::{Confidence, Provenance};
@@ -23,9 +27,9 @@ use std::f64::consts::PI;
 const YOUNGS_MODULUS_PA: f64 = 2.06e11;
 /// Density of the shaft \[kg/m³\].
 const DENSITY_KG_M3: f64 = 7850.0;
-/// Part of Euler's load that the makers allow (THK, page A15-30).
+/// Fraction of Euler's buckling load that the makers allow (THK, page A15-30).
 const OF_EULER: f64 = 0.5;
-/// Part of the critical speed that the makers allow (MISUMI, page 1677).
+/// Fraction of the critical speed that the makers allow (MISUMI, page 1677).
 const OF_CRITICAL: f64 = 0.8;
 /// Turns for which the dynamic load rating is defined.
 const RATED_TURNS: f64 = 1e6;
@@ -52,7 +56,7 @@ impl Ends {
         ("fixed_fixed", Self::Fixed),
     ];
 
-    /// Euler's load over that of supported ends.
+    /// Euler's buckling load with these ends, divided by that with both ends supported.
     fn buckling(self) -> f64 {
         match self {
             Self::FixedFree => 0.25,
@@ -62,7 +66,7 @@ impl Ends {
         }
     }
 
-    /// The lowest root λ of the beam with these ends.
+    /// The lowest root λ of the uniform beam with these ends, which determines the critical speed.
     fn root(self) -> f64 {
         match self {
             Self::FixedFree => 1.875_104,
@@ -78,23 +82,24 @@ impl Ends {
 pub struct Screw {
     /// Name.
     pub name: String,
-    /// Way of the nut a turn \[m\].
+    /// Travel of the nut per turn of the screw \[m\].
     pub lead_m: f64,
     /// Diameter at the root of the thread \[m\].
     pub root_diameter_m: f64,
-    /// Length between what holds the shaft \[m\].
+    /// Length of the shaft between its supports, or from the fixed to the free end \[m\].
     pub length_m: f64,
     /// How the ends are held.
     pub ends: Ends,
-    /// Dynamic load rating C of the nut \[N\]; `None`: no life is checked.
+    /// Dynamic load rating C of the nut \[N\]; `None` means that its life is not checked.
     pub dynamic_load_rating_n: Option<f64>,
-    /// Largest axial force \[N\], such as the static load rating over a factor; `None` is not checked.
+    /// Largest axial force \[N\], such as the static load rating divided by a factor; `None` means that it is not
+    /// checked.
     pub max_force_n: Option<f64>,
-    /// Largest speed for the balls \[rpm\]; `None` leaves the critical speed alone.
+    /// Largest speed that the balls allow \[rpm\]; `None` means that only the critical speed limits it.
     pub max_speed_rpm: Option<f64>,
     /// Efficiency.
     pub efficiency: f64,
-    /// Stiffness of nut and end bearings in series \[N/m\]; `None` is rigid.
+    /// Stiffness of nut and end bearings in series \[N/m\]; `None` means rigid.
     pub series_n_per_m: Option<f64>,
     /// Moment of inertia beyond that of the shaft, such as a coupling's \[kg m²\].
     pub further_inertia_kgm2: f64,
@@ -115,13 +120,13 @@ impl Screw {
         DENSITY_KG_M3 * self.area_m2() * self.length_m
     }
 
-    /// Force that the shaft bears without buckling \[N\]: half of Euler's.
+    /// Axial force up to which the shaft does not buckle \[N\]: half of Euler's buckling load.
     pub fn buckling_n(&self) -> f64 {
         let euler_n = PI * PI * YOUNGS_MODULUS_PA * self.second_moment_m4() / self.length_m.powi(2);
         OF_EULER * self.ends.buckling() * euler_n
     }
 
-    /// Largest speed \[rpm\]: 80 % of the shaft's critical speed, or that of the balls.
+    /// Largest speed \[rpm\]: 80 % of the shaft's critical speed, or the speed that the balls allow if that is smaller.
     pub fn max_speed_rpm(&self) -> f64 {
         let rigidity = YOUNGS_MODULUS_PA * self.second_moment_m4() / (DENSITY_KG_M3 * self.area_m2());
         let critical_rad_s = (self.ends.root() / self.length_m).powi(2) * rigidity.sqrt();
@@ -129,14 +134,15 @@ impl Screw {
         self.max_speed_rpm.map_or(bent_rpm, |balls_rpm| bent_rpm.min(balls_rpm))
     }
 
-    /// Stiffness along the travel \[N/m\]: shaft, nut and bearings in series, with the nut where the shaft is most compliant.
+    /// Stiffness along the travel \[N/m\]: shaft, nut and bearings in series, with the nut where the shaft is most
+    /// compliant.
     pub fn stiffness_n_per_m(&self) -> f64 {
         let held = if self.ends == Ends::Fixed { 4.0 } else { 1.0 };
         let shaft = self.length_m / (held * YOUNGS_MODULUS_PA * self.area_m2());
         1.0 / (shaft + self.series_n_per_m.map_or(0.0, |k| 1.0 / k))
     }
 
-    /// Moment of inertia at the motor \[kg m²\]: shaft, and what turns with it.
+    /// Moment of inertia of the shaft and of the parts that turn with it, referred to the motor \[kg m²\].
     pub fn inertia_kgm2(&self) -> f64 {
         self.shaft_kg() * self.root_diameter_m.powi(2) / 8.0 + self.further_inertia_kgm2
     }
@@ -169,9 +175,9 @@ pub struct Rack {
     pub ratio: f64,
     /// Efficiency of pinion and gear.
     pub efficiency: f64,
-    /// Largest force that rack and pinion transmit \[N\]; `None` is not checked.
+    /// Largest force that rack and pinion transmit \[N\]; `None` means that it is not checked.
     pub max_force_n: Option<f64>,
-    /// Largest speed of the gear's input \[rpm\]; `None` is not checked.
+    /// Largest speed of the gear's input \[rpm\]; `None` means that it is not checked.
     pub max_speed_rpm: Option<f64>,
     /// Stiffness along the travel \[N/m\].
     pub stiffness_n_per_m: f64,
@@ -195,7 +201,7 @@ impl Rack {
     }
 }
 
-/// A gear along a travel of which nothing but ratio \[rad/m\] and efficiency is known.
+/// A gear of a prismatic joint of which nothing but the ratio \[rad/m\] and the efficiency is known.
 fn linear(kind: GearKind, name: &str, ratio: f64, efficiency: f64) -> Gear {
     let provenance = Provenance {
         source: "the study".into(),
@@ -209,7 +215,7 @@ fn linear(kind: GearKind, name: &str, ratio: f64, efficiency: f64) -> Gear {
 }
 
 impl Gear {
-    /// The same with a mass in either build \[kg\].
+    /// This gear with `mass_kg` \[kg\] as its mass, both as a component set and as a housed unit.
     fn weighing(self, mass_kg: f64) -> Self {
         Self { mass_component_set_kg: Some(mass_kg), mass_housed_unit_kg: Some(mass_kg), ..self }
     }
@@ -262,8 +268,8 @@ mod tests {
         of(Ends::Fixed, 21.9);
     }
 
-    /// The worked example of the program MITCalc (ball screws, sections 1.1 to 1.25): lead 20 mm, 1000 N with a load factor of
-    /// 1.2, 2400 rpm, 20 000 h ask for C = 17 073.1 N; with an efficiency of 0.9484 the torque is 3.3564 N m.
+    /// The worked example of the program MITCalc (ball screws, sections 1.1 to 1.25): lead 20 mm, 1000 N with a load
+    /// factor of 1.2, 2400 rpm, 20 000 h ask for C = 17 073.1 N; with an efficiency of 0.9484 the torque is 3.3564 N m.
     #[test]
     fn a_worked_example_of_life_and_torque_comes_out() {
         let screw =
@@ -277,7 +283,7 @@ mod tests {
         assert!((life_h / 20_000.0 - 1.0).abs() < 1e-4, "{life_h}");
     }
 
-    /// A screw held at both ends gives way most in its middle, as two halves side by side.
+    /// A screw held at both ends is most compliant in its middle, where its two halves act in parallel.
     #[test]
     fn a_shaft_yields_as_a_bar_and_in_series_with_its_nut() {
         let bar = 2.06e11 * PI / 4.0 * 0.0125f64.powi(2) / 0.8;

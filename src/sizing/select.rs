@@ -30,7 +30,7 @@ pub struct DriveFilter {
     pub gear_series: Option<Vec<String>>,
     /// Allowed reduction ratios.
     pub ratios: Option<Vec<f64>>,
-    /// Allowed kinds of gears. For actuators [`Self::actuator_ids`] counts instead.
+    /// Allowed kinds of gears. For actuators [`Self::actuator_ids`] decides instead.
     pub gear_kinds: Option<Vec<GearKind>>,
     /// Names of the allowed gears.
     pub gear_ids: Option<Vec<String>>,
@@ -115,15 +115,15 @@ pub struct DriveTable<'c> {
     /// lighter one has no stricter limit.
     ladder: Vec<u32>,
     ladder_limits: Vec<DriveLimits>,
-    /// For each step of the ladder, the largest value of each limit among the drives up to this step. If these limits
-    /// do not meet a demand, no drive up to this step does, so the search for the lightest drive starts behind it.
+    /// For each step of the ladder, the weakest value of each limit among the drives up to this step. If these limits
+    /// do not meet a demand, no drive up to this step does, so the search for the lightest drive starts after it.
     ladder_reach: Vec<DriveLimits>,
-    /// For each group of [`FLIGHT`] successive steps of the ladder, the largest value of each limit.
+    /// For each flight, which is [`FLIGHT`] successive steps of the ladder, the weakest value of each limit.
     ladder_flights: Vec<DriveLimits>,
 }
 
-/// Number of successive steps of the ladder that are skipped together if even their largest limits do not meet a
-/// demand.
+/// Number of successive steps of the ladder that form a flight. They are skipped together if even the weakest of their
+/// limits do not meet a demand.
 const FLIGHT: usize = 8;
 
 /// The ladder: the drives that can be the lightest one for some demand, lightest first.
@@ -136,8 +136,8 @@ pub(super) struct Ladder<'t> {
 }
 
 impl<'t> Ladder<'t> {
-    /// The steps of the ladder from `start` on, in groups of [`FLIGHT`]: the largest limits of each group, and the
-    /// range of its steps.
+    /// The steps of the ladder from `start` on, in flights of [`FLIGHT`] steps: the weakest limits of each flight, and
+    /// the range of its steps.
     #[inline(always)]
     pub(super) fn flights_from(self, start: usize) -> impl Iterator<Item = (&'t DriveLimits, Range<usize>)> {
         let flights = self.flights.iter().enumerate().skip(start / FLIGHT);
@@ -207,8 +207,8 @@ impl<'c> DriveTable<'c> {
                 legal.push((mass_kg, drive, pair, limits));
             }
         }
-        // places are sorted, because the limits are large; names settle ties, so that the order of the catalog files does
-        // not matter
+        // places are sorted, because the limits are large; names settle ties, so that the order of the catalog files
+        // does not matter
         let mut places: Vec<usize> = (0..legal.len()).collect();
         places.sort_by(|&a, &b| {
             let (a, b) = (&legal[a], &legal[b]);
@@ -241,7 +241,8 @@ impl<'c> DriveTable<'c> {
         }
     }
 
-    /// Whether a step of the ladder covers these limits. No step of a flight does if the largest limits of the flight do not.
+    /// Whether some step of the ladder has no limit that is stricter than the same one of `limits`. No step of a flight
+    /// is such a step if the weakest limits of the flight are not.
     fn is_covered(&self, limits: &DriveLimits) -> bool {
         let flights = self.ladder_flights.iter().zip(self.ladder_limits.chunks(FLIGHT));
         let mut near = flights.filter(|(most, _)| most.cover(limits)).flat_map(|(_, flight)| flight);

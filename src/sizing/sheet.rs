@@ -64,7 +64,7 @@ pub struct JointSizingRow {
     pub motor_speed_rpm: f64,
     /// Speed of the gear's input while the joint cruises \[rpm\]: that of the motor, unless a stage lies between.
     pub input_speed_rpm: f64,
-    /// Mean speed of the motor over the cycle, rests included \[rpm\].
+    /// Mean speed of the gear's input over the cycle, rests included \[rpm\].
     pub mean_input_speed_rpm: f64,
     /// Number of emergency stops that the gear may see in its life. `None` also for gears that have no such limit.
     pub emergency_stops_allowed: Option<f64>,
@@ -79,7 +79,8 @@ pub struct JointSizingRow {
     pub margin: Option<f64>,
     /// L10 life of the wave-generator bearing \[h\].
     pub life_h: Option<f64>,
-    /// Whether the joint slides: its torques are then forces \[N\], and its speed is in m/s times 30/π.
+    /// Whether the joint slides. Its torques are then forces \[N\], and `joint_speed_rpm` is its speed in m/s times
+    /// 30/π.
     pub slides: bool,
     /// Mass of the drive \[kg\].
     pub mass_kg: Option<f64>,
@@ -91,7 +92,7 @@ pub struct JointSizingRow {
     pub checks: Vec<Check>,
     /// Messages of the checks that fail. There are some only if the drive was fixed by the user.
     pub fails: Vec<String>,
-    /// Checks that could not be made, and a bearing that counts as rigid for want of a stiffness, in words.
+    /// Checks that could not be made, and a bearing that is taken as rigid because its stiffness is unknown, in words.
     pub not_checked: Vec<String>,
 }
 
@@ -254,7 +255,7 @@ fn of_rails<const N: usize>(headers: [Header; N]) -> [Header; N] {
     })
 }
 
-/// What the output bearings carry.
+/// Columns of the third table: numbers of the output bearings.
 const BEARING_HEADERS: [Header; 7] = [
     ("joint", "", false),
     ("moment", "N m", true),

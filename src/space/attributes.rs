@@ -52,8 +52,8 @@ impl StressCheck {
     }
 
     /// Ratio of the von Mises stress (bending, axial force and torsion) to the strength, at the point `at_m` \[m\] of
-    /// the link's axis. `wrench` is the force and moment that the section there transmits, with the moment taken about
-    /// the world's origin. `place` is the position and attitude of the link.
+    /// the link's axis. `wrench` is the force and moment that the section at this point transmits, with the moment
+    /// taken about the world's origin. `place` is the position and attitude of the link.
     pub(crate) fn ratio(&self, wrench: &Vector6<f64>, at_m: &Vector3<f64>, place: &Place) -> f64 {
         let [axial_n, torsion_nm, moment_y_nm, moment_z_nm] = place.local(wrench, at_m);
         let (y, z) = (moment_y_nm.abs() * self.per_moment_y, moment_z_nm.abs() * self.per_moment_z);

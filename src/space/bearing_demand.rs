@@ -1,13 +1,14 @@
 //! Loads on output bearings, from the masses outboard of a joint.
 //!
-//! A bearing transmits the force and the moment of everything outboard of it: of gravity and load, and of the
-//! acceleration or emergency stop of one joint while the others are at rest. A joint *outboard* of the bearing
-//! accelerates only what is outboard of that joint. The joint of the bearing and the joints *inboard* of it
-//! accelerate everything outboard of the bearing. In this way the stop of a shoulder tilts the bearing of the waist
-//! below it.
+//! A bearing transmits the force and the moment of everything outboard of it. These are due to gravity and load, and to
+//! the acceleration or emergency stop of one joint while the others are at rest. A joint *outboard* of the bearing
+//! accelerates only what is outboard of that joint. The joint of the bearing and the joints *inboard* of it accelerate
+//! everything outboard of the bearing. In this way the stop of a shoulder also loads the bearing of the waist, which is
+//! inboard of the shoulder.
 //!
-//! Forces are added as vectors before their norms are taken. The link attaches at some distance along the axis (the
-//! lever). The lever times the radial force is added to the moment, as in the vendor's `M = F_r (L_r + R) + F_a L_a`.
+//! Forces are added as vectors before their norms are taken. The link attaches at some distance along the joint's axis
+//! from the face of the flange (the lever). The lever times the radial force is added to the moment, as in the vendor's
+//! `M = F_r (L_r + R) + F_a L_a`.
 
 use super::bearing_loads::{Components, PosedBearing};
 use super::problem::ArmProblem;
@@ -67,8 +68,9 @@ fn take(largest: &mut [f64; 3], load: [f64; 3]) {
 }
 
 impl ArmProblem<'_> {
-    /// Loads on the bearing of the joint in a slot in some cases, when an arm of these states and options is everything outboard of it;
-    /// zero if it has none.
+    /// Loads on the output bearing of the joint in `slot`: the largest over the cases with the indices `cases`. The arm
+    /// outboard of the joint has the states `states`, one for each case, and the options `options`, one for each slot.
+    /// The loads are zero if the joint has no bearing.
     pub(crate) fn bearing_demand(
         &self,
         cases: &[usize],
@@ -103,9 +105,9 @@ impl ArmProblem<'_> {
         }
     }
 
-    /// Stores in each state the wrench with which the joint in `slot`, when it accelerates, loads the bearings inboard
-    /// of it. The function is called just before the joint is added to the arm, when the state has everything outboard
-    /// of the joint.
+    /// Stores in the state of each sizing case the wrench with which the joint in `slot` loads the bearings inboard of
+    /// it while it accelerates. The function is called just before the joint is added to the arm, when the state has
+    /// everything outboard of the joint.
     pub(crate) fn keep_ramp(&self, slot: usize, states: &mut [StationState]) {
         let loads = self.bearing_loads();
         let Some(k) = loads.movers.iter().position(|mover| mover.slot == slot).filter(|_| loads.any()) else {

@@ -19,7 +19,8 @@ use nalgebra::Vector3;
 pub(crate) struct BearingLoads {
     /// The driven joints of the chain, tip first.
     pub movers: Vec<Mover>,
-    /// Where the link attaches to the joint in each slot; `None` if it has no bearing.
+    /// For each slot, the lever of its joint: how far from the face of the flange the link attaches. `None` if the slot
+    /// has no joint with a bearing.
     pub levers: Vec<Option<Lever>>,
     /// Whether the bearing in each slot can exclude a design. One whose ratings are unknown cannot.
     pub checked: Vec<bool>,
@@ -36,7 +37,7 @@ pub(crate) struct Mover {
 }
 
 /// The lever: the distance, along the axis of a joint, from the face of its flange to the point at which the link
-/// attaches.
+/// attaches. A lever that the study states is measured from the bearing's centre instead.
 pub(crate) struct Lever {
     /// Slot of the link on which the lever depends; `None` if the lever does not depend on a link.
     pub link_slot: Option<usize>,
@@ -75,8 +76,9 @@ impl Lever {
     }
 }
 
-/// The bearing of a joint with its lever as a number. If the arm states no lever, it is the offset of the flange plus
-/// half the extent of the link `next` to the joint along the joint's `axis`.
+/// The bearing of a joint with its lever as a number: the distance from the bearing's centre to the point at which the
+/// link attaches. If the arm states no lever, the lever is the distance from the centre to the face of the flange, plus
+/// half the extent along the joint's `axis` of the next element, `next`.
 pub(crate) fn resolved(bearing: Bearing, axis: &Vector3<f64>, next: Option<&Element>) -> Bearing {
     let half_m = match next {
         Some(Element::Link(Link { vector_m, body: LinkBody::Tube { section, .. }, .. })) => {
@@ -88,7 +90,7 @@ pub(crate) fn resolved(bearing: Bearing, axis: &Vector3<f64>, next: Option<&Elem
     Bearing { offset_m: bearing.offset_m.or(Some(lever_m)), ..bearing }
 }
 
-/// The output bearings of an arm by the names of their joints, each with its lever resolved.
+/// The output bearings of an arm by the names of their joints, each with its lever as a number ([`resolved`]).
 pub(crate) fn bearings_of(arm: &Arm) -> impl Iterator<Item = (&str, Bearing)> {
     arm.chain.iter().enumerate().filter_map(|(at, element)| {
         let Element::Joint(joint) = element else { return None };
@@ -96,7 +98,8 @@ pub(crate) fn bearings_of(arm: &Arm) -> impl Iterator<Item = (&str, Bearing)> {
     })
 }
 
-/// What a bearing with a resolved lever carries under the load on its joint, with the moment at its centre.
+/// Load on a bearing whose lever is a number ([`resolved`]), with the moment taken at the bearing's centre. `load` is
+/// the load on the joint, with the moment taken at the joint's position in the chain.
 pub(crate) fn at_centre(load: &JointLoad, bearing: &Bearing) -> BearingLoad {
     let JointLoad { moment_nm, radial_n, axial_n } = *load;
     BearingLoad { moment_nm, radial_n, axial_n }.with_lever(bearing.offset_m.unwrap_or_default().abs())
@@ -111,8 +114,8 @@ fn half_width_m(axis: &Vector3<f64>, vector_m: &Vector3<f64>, section: &Section)
 }
 
 impl BearingLoads {
-    /// The data of a space. `piece_slots` has the slot of each piece, base to tip. `reaches_m` has the reach of each
-    /// joint, base to tip \[m\].
+    /// Collects these data of a space. `piece_slots` has the slot of each piece, base to tip. `reaches_m` has, for each
+    /// joint, base to tip, the largest distance of the tip from its axis \[m\].
     pub(crate) fn new(space: &DesignSpace, slots: &[Slot], piece_slots: &[usize], reaches_m: &[f64]) -> Self {
         let mut levers: Vec<Option<Lever>> = slots.iter().map(|_| None).collect();
         let mut checked = vec![false; slots.len()];
@@ -150,7 +153,8 @@ fn has_bearing(slot: &Slot, joint: &SpaceJoint) -> bool {
     }
 }
 
-/// Whether the bearing of a joint can limit what it carries.
+/// Whether some rating of the bearing of a joint is known, so that the bearing can fail a check. For a sized joint,
+/// whether this is so with some drive.
 fn is_checked(slot: &Slot, joint: &SpaceJoint) -> bool {
     match slot {
         Slot::Sized(sized) => {

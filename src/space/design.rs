@@ -199,7 +199,7 @@ fn with_levers(mut chain: Vec<Element>) -> Vec<Element> {
     chain
 }
 
-/// Puts the motor of a joint on the element that carries it, if it does not stand at the joint.
+/// If the motor of a joint does not stand at the joint, adds it as a point mass to the element on which it stands.
 fn stand_elsewhere(joint: &SpaceJoint, drive: &Drive, chain: &mut [Element]) {
     let Some(MotorPlace { piece, moves, point_m }) = joint.motor_place else { return };
     let on = if moves { HungOn::Moving } else { HungOn::Start };

@@ -135,13 +135,13 @@ pub struct DesignSpace {
     pub motion: MotionRequirement,
     /// Model of the links: rigid, or with bending alone, or with all deformations.
     pub links: LinkModel,
-    /// Model of the joints: which slopes of a torsion curve count.
+    /// Model of the joints: which slopes of a torsion curve are used.
     pub joints: JointModel,
     /// The limits that every design must meet.
     pub constraints: Constraints,
     /// Effects: physics beyond the nominal model. Effects that describe a test are left out of every calculation.
     pub effects: Vec<Effect>,
-    /// Springs that balance every design. Their ends refer to elements by the numbers of `pieces`.
+    /// Springs that balance every design. The ends of a spring refer to elements by their indices in `pieces`.
     pub springs: Vec<Spring>,
 }
 
@@ -168,7 +168,7 @@ pub struct Case {
 pub enum SpacePiece {
     /// A joint that turns.
     Joint(SpaceJoint),
-    /// A prismatic joint. Its numbers are given by the study.
+    /// A prismatic joint. The study gives its guide and masses; its drive is given or sized.
     Prismatic(SpacePrismatic),
     /// A given link, or a rigid offset.
     Link(Link),
@@ -187,7 +187,8 @@ impl SpacePiece {
         }
     }
 
-    /// Where the motor of a drive that is sized stands, if not at its joint. The piece has this number.
+    /// Place of the motor of this joint, if its drive is sized and the motor does not stand at the joint; otherwise
+    /// `None`. `number` is the number of this piece.
     pub(crate) fn motor_place(&self, number: usize) -> Option<MotorPlace> {
         match self {
             Self::Joint(joint) => joint.motor_place,
@@ -225,7 +226,7 @@ pub struct SpaceJoint {
     pub axis: Unit<Vector3<f64>>,
     /// Where the output bearing of the joint comes from: it is stated, or it comes with the chosen gear.
     pub bearing: BearingSource,
-    /// Where the masses beyond gear, motor and bearing come from.
+    /// Where the masses of further parts at the joint come from, such as housing, brake, encoders and cables.
     pub extras: ExtrasSource,
     /// Rigid bodies at the joint, in addition to drive, bearing and extras.
     pub bodies: JointBodies,
@@ -249,23 +250,27 @@ pub struct SpaceJoint {
     /// passive joint is the sum of the factors times their angles. `None` for a driven joint, which has an entry in
     /// every pose.
     pub coupled: Option<Vec<(String, f64)>>,
-    /// Stages between motor, gear and joint. The compliance of the stages of a given drive is in its torsion curve already.
+    /// Stages (belts, chains, shafts or gears) between motor and gear, and between gear and joint. If the drive is
+    /// given, its torsion curve already includes their compliance.
     pub stages: Stages,
-    /// Where the motor of a drive that is sized stands, if not at the joint.
+    /// Place of the motor, if the drive is sized and the motor does not stand at the joint; otherwise `None`.
     pub motor_place: Option<MotorPlace>,
-    /// How far a driven joint turns per turn of joints inboard of it while its own motor stands; empty unless its motor sits
-    /// inboard of them.
+    /// The joints inboard that turn this driven joint along while its own motor stands still, each by name and with its
+    /// factor: the angle of this joint per angle of the joint inboard. Empty unless the motor of this joint sits
+    /// inboard of such joints.
     pub turns_with: Vec<(String, f64)>,
 }
 
 /// Where a motor stands that is not at its joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotorPlace {
-    /// Number of the piece that carries it.
+    /// Number of the piece on which the motor stands.
     pub piece: usize,
-    /// Whether it moves with that piece; if not, it stands where the chain begins.
+    /// Whether the motor moves with this piece. If not, it stands where the piece begins: at the base if the piece is
+    /// the first one.
     pub moves: bool,
-    /// Where it is, from the start of the piece in the frame that it carries \[m\].
+    /// Position of the motor \[m\], measured from the beginning of the piece, in the frame of the part on which it
+    /// stands.
     pub point_m: Vector3<f64>,
 }
 
@@ -350,7 +355,8 @@ impl SpaceJoint {
         of_gear.in_series(self.stages.before.rad_per_nm / (gear.ratio * gear.ratio))
     }
 
-    /// Mass of what sits elsewhere than the joint with this drive \[kg\]: of a motor that does, its own.
+    /// The part of the mass of `drive` that does not sit at the joint \[kg\]: the mass of the motor if the motor stands
+    /// elsewhere, otherwise 0.
     pub(crate) fn away_kg(&self, drive: &Drive) -> f64 {
         self.motor_place.and(drive.motor.mass_kg).unwrap_or(0.0)
     }
@@ -376,7 +382,7 @@ impl SpaceJoint {
 }
 
 impl DriveChoice {
-    /// Among which parts the drive is sized; `None` if it is given.
+    /// The filter that selects the parts from which the drive is sized; `None` if the drive is given.
     pub(crate) fn filter(&self) -> Option<&DriveFilter> {
         match self {
             DriveChoice::FirstFit(filter) | DriveChoice::AllFits(filter) => Some(filter),
@@ -401,8 +407,8 @@ impl LinkOption {
         Beam { material: self.material, section: self.section, flexibility: 1.0 }
     }
 
-    /// The only option of a tube that the study gives. Strength and cost are unknown, so that no limit on them
-    /// applies.
+    /// A tube that the study gives, in the form of a link's only option. Strength and cost are unknown, so that no
+    /// limit on them applies.
     pub(crate) fn given(material: LinkMaterial, section: Section) -> Self {
         Self {
             material_index: 0,
@@ -444,14 +450,15 @@ impl LinkOption {
     }
 }
 
-/// A joint that turns another beside its own drive, by the numbers of their pieces.
+/// A driven joint, and another joint that it turns along.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SpaceLinkage {
-    /// Piece of the driven joint.
+    /// Number of the piece that is the driven joint.
     pub driver: usize,
-    /// Piece of the passive joint.
+    /// Number of the piece that is the other joint. It is passive, or it is a driven joint whose motor sits inboard of
+    /// the joint `driver`.
     pub passive: usize,
-    /// Rotation of the passive joint per rotation of the driven joint.
+    /// Rotation of the other joint per rotation of the driven joint.
     pub factor: f64,
 }
 
@@ -462,12 +469,13 @@ fn in_words(list: [Option<String>; 2]) -> Option<String> {
 }
 
 impl DesignSpace {
-    /// Whether a joint turns with others: linkages turn it, or its motor sits beyond other joints.
+    /// Whether some joint turns along with others: a linkage turns it, or its motor sits inboard of other joints.
     pub fn has_linkages(&self) -> bool {
         self.joints().any(|(_, joint)| joint.coupled.is_some() || !joint.turns_with.is_empty())
     }
 
-    /// Whether a motor of a drive that is sized stands elsewhere than its joint, or at the end of a rail.
+    /// Whether the motor of some sized drive stands elsewhere than at its joint. The motor of a sized prismatic joint
+    /// always does: it stays where the joint begins.
     pub fn has_motors_elsewhere(&self) -> bool {
         self.pieces.iter().any(|piece| piece.motor_place(0).is_some())
     }
@@ -520,7 +528,7 @@ impl DesignSpace {
         })
     }
 
-    /// Every joint that turns another beside its own drive.
+    /// All pairs of a driven joint and another joint that it turns along.
     pub(crate) fn linkages(&self) -> Vec<SpaceLinkage> {
         let named = |name: &str| self.joints().find(|(_, joint)| joint.name == name);
         let direct = |name: &str| {

@@ -31,10 +31,10 @@ pub(crate) enum Layer<'s> {
     Guide(GuideSpring<'s>),
     /// A spring of the output bearing that comes with the gear chosen for a joint.
     Bearing(BearingSpring<'s>),
-    /// The motor of a joint further out whose drive is sized.
+    /// The motor of a sized drive, at the place where it stands instead of at its joint.
     Motor(MotorElsewhere),
-    /// A point mass at a joint that an effect adds: it weighs, but is none of the links and drives whose mass counts
-    /// \[kg\].
+    /// A point mass \[kg\] that an effect adds at a joint. It has weight and inertia, but does not count in the mass of
+    /// the design.
     Mass(f64),
     /// A point mass \[kg\] that an effect adds at the moving point of a prismatic joint. It has weight and inertia, but
     /// does not count in the mass of the design.
@@ -47,13 +47,14 @@ pub(crate) enum Layer<'s> {
     Springs(Side),
 }
 
-/// A motor that stands elsewhere than its joint.
+/// The motor of a sized drive that does not stand at its joint.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MotorElsewhere {
-    /// Number of the piece that is its joint.
+    /// Number of the piece that is the motor's joint.
     pub of: usize,
     pub place: MotorPlace,
-    /// Whether it stands where its piece ends rather than where it begins: outboard of a joint.
+    /// Whether the motor stands at the end of the piece `place.piece` and not at its beginning. This is so if this
+    /// piece is a joint and the motor moves with it.
     is_at_end: bool,
 }
 
@@ -198,10 +199,10 @@ impl Tilt<'_> {
 impl DesignSpace {
     /// All layers that the search adds, tip first, each with the number of its piece (base to tip).
     ///
-    /// All three springs of a joint turn about the same point, so their order does not change the mechanics. If the
-    /// bearing of a joint is stated, its springs are added before the torsion of the joint, because they can then be
-    /// computed once and not once for each drive. If the bearing comes with the gear, its springs are added after the
-    /// gear is chosen.
+    /// All three springs of a joint (the torsion of its drive and two tilts of its bearing) turn about the same point,
+    /// so their order does not change the mechanics. If the bearing of a joint is stated, its springs are added before
+    /// the torsion of the joint, because they can then be computed once and not once for each drive. If the bearing
+    /// comes with the gear, its springs are added after the gear is chosen.
     pub(crate) fn layers(&self) -> Vec<(usize, Layer<'_>)> {
         let mut out = Vec::with_capacity(self.pieces.len());
         for (index, piece) in self.pieces.iter().enumerate().rev() {
@@ -323,8 +324,8 @@ impl DesignSpace {
         }
     }
 
-    /// The linear law by which a prismatic joint deflects elastically along its travel: the displacement as a function
-    /// of the force \[m/N\]. Effects on the joint are included.
+    /// The linear law by which a prismatic joint deflects elastically along its travel: the displacement \[m\] as a
+    /// function of the force \[N\]. Effects on the joint are included.
     pub(crate) fn slide_law(&self, slide: &SpacePrismatic) -> JointLaw {
         linear_law(self.prismatic_piece(slide).m_per_n)
     }
@@ -345,14 +346,16 @@ impl DesignSpace {
         here.map(|end| along(&vector_m, &end.point_m)).collect()
     }
 
-    /// The layer with the forces of springs on the side `on` of the joint at `piece`, or on the link there. `None` if
-    /// no spring acts there.
+    /// The layer with the forces of the springs that act on `on`, which is one side of a joint, a link or the base. The
+    /// layer belongs to the piece number `piece`. `None` if no spring acts on `on`.
     fn pulled(&self, piece: usize, on: Side) -> Option<(usize, Layer<'_>)> {
         let is_pulled = self.springs.iter().any(|spring| spring.sides().contains(&on));
         is_pulled.then_some((piece, Layer::Springs(on)))
     }
 
-    /// The motors that stand on a piece and move with it, or those that do not; of a rail that is sized its screw too.
+    /// The layers of the motors that stand on the piece number `piece`. If `moves` is true, these are the motors that
+    /// move with the piece, otherwise those that stand where it begins. The layer of the motor of a sized prismatic
+    /// joint includes its screw or rack.
     fn motors_on(&self, piece: usize, moves: bool) -> impl Iterator<Item = (usize, Layer<'_>)> {
         let is_joint = !matches!(self.pieces[piece], SpacePiece::Link(_) | SpacePiece::Choice(_));
         self.pieces.iter().enumerate().filter_map(move |(of, what)| {
@@ -361,7 +364,7 @@ impl DesignSpace {
         })
     }
 
-    /// The springs of the frame at the root of a link.
+    /// The springs of the frame to which the root of a link is attached; none if no effect makes this frame compliant.
     fn root_springs(&self, link: &Link) -> impl Iterator<Item = Layer<'_>> + use<'_> {
         let springs = self.link_piece(link).root_frame.springs().into_iter();
         springs.map(|(axis, c)| Layer::Tilt(Tilt::linear(About::Fixed(axis), c)))

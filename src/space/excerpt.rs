@@ -19,7 +19,7 @@ impl DesignSpace {
         self.level_sizes_with(&TabulatedJoints::new(self, catalogs))
     }
 
-    /// As [`level_sizes`](Self::level_sizes), of joints that are tabulated already.
+    /// As [`level_sizes`](Self::level_sizes), with the joints `joints`, whose drives are already in tables.
     fn level_sizes_with(&self, joints: &TabulatedJoints) -> Vec<u32> {
         let size = |(place, piece): (usize, &SpacePiece)| match piece {
             SpacePiece::Joint(_) => joints.get(place).filter(|slot| slot.is_level()).map(Slot::options),
@@ -36,7 +36,7 @@ impl DesignSpace {
         self.designs_with(&TabulatedJoints::new(self, catalogs))
     }
 
-    /// As [`designs`](Self::designs), of joints that are tabulated already.
+    /// As [`designs`](Self::designs), with the joints `joints`, whose drives are already in tables.
     pub(crate) fn designs_with(&self, joints: &TabulatedJoints) -> Option<u128> {
         let sizes = self.level_sizes_with(joints);
         sizes.into_iter().try_fold(1u128, |n, size| n.checked_mul(u128::from(size)))
@@ -48,7 +48,7 @@ impl DesignSpace {
         self.excerpt_with(&TabulatedJoints::new(self, catalogs), designs)
     }
 
-    /// As [`excerpt`](Self::excerpt), of joints that are tabulated already.
+    /// As [`excerpt`](Self::excerpt), with the joints `joints`, whose drives are already in tables.
     pub(crate) fn excerpt_with(&self, joints: &TabulatedJoints, designs: &[u128]) -> Option<DesignSpace> {
         let sizes = self.level_sizes_with(joints);
         let mut used: Vec<BTreeSet<u32>> = vec![BTreeSet::new(); sizes.len()];
@@ -184,7 +184,7 @@ impl ArmProblem<'_> {
             .collect()
     }
 
-    /// The excerpt of each level, tip first; `None` for a level that was not reduced.
+    /// For each level, tip first, which options of its whole list were kept; `None` for a level that was not reduced.
     fn excerpts(&self) -> impl Iterator<Item = Option<&Excerpt>> {
         self.level_slots().iter().map(|&slot| match &self.space().pieces[self.piece_of_slot(slot)] {
             SpacePiece::Choice(choice) => choice.excerpt.as_ref(),

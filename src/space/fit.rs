@@ -1,7 +1,7 @@
 //! The room that links leave for the gears and motors of the joints to which they attach.
 //!
 //! The link of a joint is the first tube between it and the next joint outboard. If there are only rigid offsets, the
-//! joint has no link here, and the limits that refer to a link are not checked at it.
+//! joint has no link in this sense, and the limits that refer to a link are not checked at this joint.
 
 use super::design_space::{SpaceJoint, SpacePiece};
 use crate::arm::section::Section;
@@ -14,11 +14,12 @@ use nalgebra::{Unit, Vector3};
 /// link. The section frame of a link uses the same limit.
 const ROLLS: f64 = 0.99;
 
-/// The room that the link of one joint leaves for gear and motor.
+/// The room that the link of one joint leaves for gear and motor: their largest outer diameters.
 pub(crate) struct RoomAtJoint {
-    /// Slot of the link that leaves the room.
+    /// Slot of the link whose section limits the diameters of gear and motor.
     pub link_slot: usize,
-    /// The room for each option of the link; a single entry if the study gives the link.
+    /// The largest diameters of gear and motor with each option of the link; a single entry if the study gives the
+    /// link.
     pub rooms: Vec<LinkRoom>,
 }
 

@@ -1,7 +1,7 @@
 //! The joints of a space with the drives of the catalogs tabulated.
 //!
-//! Neither the limits of a study nor the sections of its links change which drives a joint may have. Tables take most of the
-//! time in which a small problem is made, so problems over one study share them.
+//! Neither the limits of a study nor the sections of its links change which drives a joint may have. Most of the time
+//! in which a small problem is made goes into these tables, so all problems that are made from one study share them.
 
 use super::design_space::{DesignSpace, SpacePiece};
 use super::slot::{Slot, joint_slot, rail_slot};
@@ -9,7 +9,8 @@ use super::station::reaches_m;
 use crate::catalog::Catalogs;
 use std::sync::Arc;
 
-/// The joints of a space, piece by piece from the base; `None` for any other piece.
+/// One entry for each piece of a space, base to tip: the slot of a joint, with the table of its drives; `None` for a
+/// link.
 #[derive(Clone)]
 pub(crate) struct TabulatedJoints<'c>(Arc<[Option<Slot<'c>>]>);
 
@@ -28,12 +29,13 @@ impl<'c> TabulatedJoints<'c> {
         Self(space.pieces.iter().map(slot).collect())
     }
 
-    /// The joint that is piece number `piece`, base to tip.
+    /// The slot of the joint that is piece number `piece`, base to tip; `None` if this piece is a link.
     pub(crate) fn get(&self, piece: usize) -> Option<&Slot<'c>> {
         self.0.get(piece)?.as_ref()
     }
 
-    /// A slot of the joint that is piece number `piece`; it shares the table.
+    /// A new slot for the joint that is piece number `piece`. It shares the table of drives with the slot that
+    /// [`get`](Self::get) returns.
     pub(crate) fn slot(&self, piece: usize) -> Option<Slot<'c>> {
         match self.get(piece)? {
             Slot::Given { law, mass_kg } => Some(Slot::Given { law: *law, mass_kg: *mass_kg }),

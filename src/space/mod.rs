@@ -5,7 +5,7 @@
 //!
 //! - [`design_space`] has the description of a space: what is open, in which cases the arm is judged, and the limits.
 //! - `problem` presents an arm as the tree of designs of [`levels::OutwardIn`]. The trait adds an option to a partial
-//!   arm, finds out that no design with this beginning meets the limits, and evaluates a complete arm.
+//!   arm, finds out whether a design with this beginning can meet the limits, and evaluates a complete arm.
 //! - `station` has everything about one case that does not depend on the design.
 //! - [`design`] evaluates one design by the full model.
 

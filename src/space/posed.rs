@@ -58,7 +58,7 @@ impl Station {
     }
 }
 
-/// A tube or a harness, condensed, without any pose.
+/// A tube, or a harness along a rigid offset, condensed and not yet placed in a pose.
 struct Tube {
     /// The condensed link.
     condensed: CondensedLink,
@@ -70,8 +70,8 @@ struct Tube {
 
 impl Tube {
     /// Condenses a link to the motions of its end. Springs pull on it at the points `pulled_at` (0 at the root, 1 at
-    /// the end). `structure` has gravity and water, and `model` tells which deformations count. `None` for a rigid
-    /// offset that has no mass along it, and for a link without length.
+    /// the end). `structure` has gravity and water, and `model` tells which deformations are computed. `None` for a
+    /// rigid offset that has no mass along it, and for a link without length.
     fn new(link: &LinkPiece, structure: &Structure, model: LinkModel, pulled_at: &[f64]) -> Option<Self> {
         let beam = PreparedBeam::new(link, structure, model)?;
         let condensed = CondensedLink::new(&beam, pulled_at);
@@ -107,7 +107,7 @@ fn few_at_a_time<'a>(
         .map(move |first| (first..options.min(first + AT_A_TIME)).into_par_iter().filter_map(tube).collect())
 }
 
-/// A case of which all slots are placed, but whose links have no options yet.
+/// A case whose slots are all placed in its pose. The options of its links are added one list after another.
 struct Posed {
     /// Gravity, base and water around the arm.
     structure: Structure,
@@ -251,7 +251,8 @@ impl Builder<'_> {
         self.mass_on(twist, &self.place.0)
     }
 
-    /// What moves nothing, and has a mass at a point that depends on the design.
+    /// The slot of a mass without any compliance, at the point `at_m` \[m\]. The size of the mass depends on the
+    /// design.
     fn weight_at(&self, at_m: Vector3<f64>) -> StationSlot {
         self.mass_on(Twist::zeros(), &at_m)
     }
@@ -365,7 +366,7 @@ fn station_link(
     }
 }
 
-/// Enters at every driven joint which passive joints it turns.
+/// Lists at every driven joint in `slots` the joints that it turns along.
 fn link_up(space: &DesignSpace, layers: &[(usize, Layer)], slots: &mut [StationSlot]) {
     let of_piece = |piece: usize| {
         layers

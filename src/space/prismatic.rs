@@ -8,21 +8,23 @@ use crate::sizing::requirement::MotionRequirement;
 use crate::sizing::select::DriveFilter;
 use nalgebra::{Matrix3, Vector3};
 
-/// How the drive of a prismatic joint is sized: the lightest pair of a screw or rack and a motor that holds.
+/// How the drive of a prismatic joint is sized: the lightest pair of a screw or rack and a motor that passes all
+/// checks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RailDrive {
     /// Screws and racks to choose from, as gears whose ratings are forces.
     pub gears: Vec<Gear>,
-    /// Which motors it may have.
+    /// The motors to choose from.
     pub motors: DriveFilter,
-    /// Largest speed that the study asks for \[m/s\]; `None`: that of the tip.
+    /// Largest speed that the study asks of the joint \[m/s\]; `None` if it is the speed of the tip.
     pub max_speed_m_s: Option<f64>,
-    /// Whether a brake holds the joint at rest, so that the motor need not.
+    /// Whether a brake holds the joint at rest, so that the motor does not need a holding force.
     pub has_brake: bool,
 }
 
 impl RailDrive {
-    /// The motion of the joint, with m/s for rad/s. What it moves has one acceleration, so Eq 8 is the force on its mass.
+    /// The motion of the joint, with metres in the place of radians. All masses that the joint moves have the same
+    /// acceleration, so the exact reading of Eq 8 gives mass times acceleration.
     pub(crate) fn motion(&self, asked: &MotionRequirement) -> JointMotion {
         let speed_m_s = self.max_speed_m_s.unwrap_or(asked.tip_speed_m_s);
         let motion = asked.joint_motion(1.0, Some(speed_m_s)).with_linear_reading(LinearReading::Exact);
@@ -37,9 +39,9 @@ pub struct SpacePrismatic {
     pub joint: Prismatic,
     /// Smallest and largest travel \[mm\]; `None` if the study does not state them.
     pub range_mm: Option<[f64; 2]>,
-    /// How its drive is sized; `None`: the stiffness of the joint is that of a given drive.
+    /// How the drive is sized; `None` if the drive is given, with its stiffness in `joint`.
     pub drive: Option<RailDrive>,
-    /// All that stays where the joint begins.
+    /// All masses that stay where the joint begins.
     pub(crate) staying: Vec<RigidBody>,
     /// All masses that travel. Their positions are measured from the moving point.
     pub(crate) travelling: Vec<RigidBody>,
@@ -53,7 +55,7 @@ impl SpacePrismatic {
         out
     }
 
-    /// The joint with a screw or rack of this stiffness \[N/m\].
+    /// The joint with the stiffness of the screw or rack `gear`.
     pub(crate) fn driven_by(&self, gear: &Gear) -> Prismatic {
         Prismatic { stiffness_n_per_m: gear.single_slope_nm_per_rad(), ..self.joint.clone() }
     }

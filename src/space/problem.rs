@@ -99,7 +99,7 @@ impl<'c> ArmProblem<'c> {
         Self::with_joints(space, &TabulatedJoints::new(space, catalogs))
     }
 
-    /// As [`new`](Self::new), of joints that are tabulated already.
+    /// As [`new`](Self::new), with the joints `joints`, whose drives are already in tables.
     pub(crate) fn with_joints(space: &'c DesignSpace, joints: &TabulatedJoints<'c>) -> Self {
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
         let reaches = reaches_m(space, sizing);
@@ -580,7 +580,8 @@ impl OutwardIn for ArmProblem<'_> {
     }
 
     fn objectives(&self, complete: &Partial) -> Option<Objectives> {
-        // the passes for the lowest mode do not know linkages, nor masses that depend on a drive elsewhere
+        // the fast computation of the lowest mode covers neither linkages nor masses that depend on the drive of
+        // another joint
         if self.space.has_linkages() || self.space.has_motors_elsewhere() {
             return Some(full_objectives(&self.arm_of(complete)?, &self.load_cases()));
         }

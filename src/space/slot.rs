@@ -18,9 +18,11 @@ pub(crate) enum Slot<'c> {
     Given { law: JointLaw, mass_kg: f64 },
     /// A joint whose drive comes from the catalogs.
     Sized(Arc<SizedJoint<'c>>),
-    /// A spring of the bearing of a sized joint: the slot of the joint, and the law by its drives.
+    /// A spring of the bearing of a sized joint: the slot of the joint, and the joint law of the spring with each
+    /// drive.
     Bearing { joint: usize, laws: Vec<JointLaw> },
-    /// The motor of a sized joint, which stands elsewhere: the slot of the joint, and the mass by its drives \[kg\].
+    /// The motor of a sized joint, if it does not stand at the joint: the slot of the joint, and the mass of the motor
+    /// with each drive \[kg\].
     Motor { joint: usize, masses_kg: Vec<f64> },
     /// A tube. It is a choice of the search if it is `open`; a given tube has one option.
     Link { options: Vec<OptionAttributes>, open: bool },
@@ -37,7 +39,8 @@ pub struct SizedJoint<'c> {
     /// Compliance of the output bearing against tilt \[rad/(N m)\], one entry for each drive. It is the compliance of
     /// the gear's bearing plus that which effects add.
     pub(crate) tilts_rad_per_nm: Vec<f64>,
-    /// Mass of each drive that does not sit at the joint \[kg\]: of a motor elsewhere.
+    /// For each drive of the table, the part of its mass that does not sit at the joint \[kg\], such as that of a motor
+    /// that stands elsewhere; 0 if the whole drive sits at the joint.
     pub(crate) away_kg: Vec<f64>,
     /// Whether every drive that holds is an option of the search; if not, the lightest one that holds is taken.
     pub(crate) all_fits: bool,
@@ -103,7 +106,8 @@ impl<'c> Slot<'c> {
         Slot::Bearing { joint, laws }
     }
 
-    /// The motor of the joint in an earlier slot, which stands elsewhere.
+    /// The slot of a motor that does not stand at its joint. The joint is in slot `joint`, which comes earlier in
+    /// `slots`.
     pub(crate) fn motor(joint: usize, slots: &[Slot<'c>]) -> Self {
         let masses_kg = match &slots[joint] {
             Slot::Sized(sized) => sized.away_kg.clone(),

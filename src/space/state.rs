@@ -1,10 +1,10 @@
 //! The state of a partial arm in one case, and how every slot that is added inboard changes it.
 //!
-//! A driving joint holds the torques of its passive joints as well. A radian of the driving joint turns each passive
-//! joint by its factor `f`. By virtual work its torque is therefore `t_d·w + Σ f t_p·w_p`, with the twists (kinematic
-//! vectors) `t` and the outboard wrenches `w` of the driving joint (d) and of the passive joints (p). The inertia
-//! about the driving joint is found in the same way, with the motion `t_d + Σ f t_p` of everything outboard of all
-//! these joints.
+//! The torque on a driving joint includes the torques of its passive joints. A radian of the driving joint turns each
+//! passive joint by its factor `f`. By virtual work the torque on the driving joint is therefore `t_d·w + Σ f t_p·w_p`,
+//! with the twists (kinematic vectors) `t` and the outboard wrenches `w` of the driving joint (d) and of the passive
+//! joints (p). The inertia about the driving joint is found in the same way, with the motion `t_d + Σ f t_p` of
+//! everything outboard of all these joints.
 
 use super::station::{StationJoint, StationLink, Turned};
 use crate::arm::joint_law::JointLaw;
@@ -26,8 +26,9 @@ pub(crate) struct StationState {
     pub trace_s2: [f64; 2],
     /// Tangent compliance of each slot \[rad/(N m)\], tip first; 0 for slots that are no joints or are not added yet.
     pub compliances: Vec<f64>,
-    /// Wrench that the acceleration of each joint makes while the other joints are at rest; one entry for each joint
-    /// added so far, tip first. The list is empty if no bearing is checked.
+    /// Wrench that the acceleration of each driven joint makes while the other joints are at rest. There is one entry
+    /// for each driven joint, tip first; it is zero until the joint is added. The list is empty if no joint has an
+    /// output bearing.
     pub ramps: Vec<Wrench>,
     /// The passive joints added so far, tip first. Each has its slot, and the wrench and the inertia of everything
     /// outboard of it.
@@ -59,9 +60,9 @@ impl StationState {
         self.load_torque_nm(joint) + joint.own_nm + of_passive
     }
 
-    /// Torque of weight and load outboard on the joint that is to be added next \[N m\]. A linkage makes a driving
-    /// joint hold the torques of its passive joints too, by virtual work: a radian of the driving joint turns each of
-    /// them by its factor.
+    /// Torque of weight and load outboard on the joint that is to be added next \[N m\]. The torques on the passive
+    /// joints that this joint drives are included, by virtual work: a radian of the driving joint turns each of them by
+    /// its factor.
     pub(crate) fn load_torque_nm(&self, joint: &StationJoint) -> f64 {
         let of_passive =
             |turned: &Turned| self.outboard_of(turned.slot).map_or(0.0, |(w, _)| turned.twist.dot(w));

@@ -61,7 +61,7 @@ pub(crate) struct OnTube {
 
 /// A load on a tube, at a point of its axis.
 pub(crate) struct OnAxis {
-    /// The point, from 0 (root) to 1 (end).
+    /// Place of the load on the tube's axis, from 0 (root) to 1 (end).
     pub xi: f64,
     /// Force and moment of the load, about the world's origin.
     pub wrench: Wrench,
@@ -110,19 +110,22 @@ pub(crate) struct StationJoint {
     /// The block of motions that the joint belongs to: 0 within the x-z plane, 1 across it. It is 0 if the pose is
     /// not planar.
     pub block: usize,
-    /// The passive joints that a linkage turns together with this joint. All of them are outboard of it.
+    /// The joints that this joint turns along, by a linkage or because their motors sit inboard of this joint. All of
+    /// them are outboard of it.
     pub turns: Vec<Turned>,
-    /// Whether a linkage turns the joint, so that it has no entry in the pose.
+    /// Whether another joint turns this joint along, by a linkage or because the motor of this joint sits inboard of
+    /// the other.
     pub is_passive: bool,
 }
 
-/// A passive joint, per radian of the joint that drives it.
+/// A joint that another joint, the driving joint, turns along. It is called the passive joint here, even if it has a
+/// motor of its own.
 pub(crate) struct Turned {
     /// Slot of the passive joint.
     pub slot: usize,
     /// Motion of everything outboard of the passive joint, per radian of the driving joint.
     pub twist: Twist,
-    /// Displacement of the tip through the passive joint, per radian of the driving joint \[m/rad\].
+    /// Displacement of the tip due to the rotation of the passive joint, per radian of the driving joint \[m/rad\].
     pub tip_m_per_rad: Vector3<f64>,
     /// Torque on the driving joint from the torque that acts on the passive joint in addition to weight and load \[N
     /// m\].
@@ -143,7 +146,7 @@ pub(crate) struct Place {
 
 impl Place {
     /// Axial force \[N\], torsion and both bending moments \[N m\] that the section at the point `at_m` of the link
-    /// transmits. `wrench` is the load outboard of it, about the world's origin.
+    /// transmits. `wrench` is the load outboard of this section, about the world's origin.
     pub(crate) fn local(&self, wrench: &Wrench, at_m: &Vector3<f64>) -> [f64; 4] {
         let force = self.frame.tr_mul(&linear(wrench));
         let moment = self.frame.tr_mul(&(angular(wrench) - at_m.cross(&linear(wrench))));

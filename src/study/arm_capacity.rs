@@ -1,10 +1,11 @@
-//! How much an arm file holds at rest: the largest payload in each pose for which no joint bears more torque, and no output bearing
-//! more load, than it may.
+//! The largest payload of an arm file at rest, in each pose: with it no joint exceeds its torque limit, and no output
+//! bearing its load limits.
 //!
-//! An arm file says nothing of motion and duty, so only static loads are judged. The payload's centre stays where the case has it.
-//! Torques are affine in the mass of the payload. A joint's torque is limited by what a file states, such as the `import.json` of a
-//! robot; else by the average torque of its gear and the continuous torque of its motor, if the catalogs know them. An output bearing
-//! is limited by its permissible moment and by its static safety at rest, if it has these ratings.
+//! An arm file says nothing of motion and duty, so only static loads are judged. The payload keeps the centre of
+//! gravity that the case states. Torques are affine in the mass of the payload. A file such as the `import.json` of a
+//! robot may state the torque limit of a joint. If none does, the average torque of the gear and the continuous torque
+//! of the motor are the limits, as far as the catalogs have them. An output bearing is limited by its permissible
+//! moment and by its static safety at rest, if it has these ratings.
 
 use super::capacity::{AtPose, Capacity, Limit};
 use crate::arm::load::LoadCase;
@@ -16,7 +17,7 @@ use crate::mechanics::statics::JointLoad;
 use crate::sizing::bearing::BearingLimits;
 use crate::space::bearing_loads::{at_centre, bearings_of};
 
-/// The largest torque that a joint may hold at rest.
+/// The largest torque that a joint may have at rest.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct TorqueLimit {
     /// Name of the joint.
@@ -90,7 +91,7 @@ pub(crate) fn limits_of_parts(arm: &Arm, catalogs: &Catalogs) -> Vec<TorqueLimit
 }
 
 /// The largest payload of an arm at rest, in each of its cases and in all of them, with which no joint exceeds its
-/// limit in `limits`.
+/// limit in `limits` and no output bearing exceeds its ratings.
 pub(crate) fn arm_capacity(arm: &Arm, cases: &[LoadCase], limits: &[TorqueLimit]) -> Capacity {
     let mut table: Vec<AtPose> = cases
         .iter()
@@ -115,8 +116,8 @@ pub(crate) fn arm_capacity(arm: &Arm, cases: &[LoadCase], limits: &[TorqueLimit]
     Capacity { limit, pose, table }
 }
 
-/// The largest payload in one case, and the joint that limits it. The torques are linear in the payload's mass, so two
-/// masses suffice to find it.
+/// The largest payload in one case, and the joint that limits it. The torques are affine in the payload's mass, so it
+/// is enough to compute them for two masses.
 fn limit(arm: &Arm, case: &LoadCase, limits: &[TorqueLimit]) -> Limit {
     let chain = Chain::new(&arm.structure_in(case), case.links);
     let torques_nm = |payload_kg: f64| {
@@ -141,7 +142,8 @@ fn limit(arm: &Arm, case: &LoadCase, limits: &[TorqueLimit]) -> Limit {
     least
 }
 
-/// The load of a bearing at rest as a part of what is allowed, for both checks that a standing bearing has to pass.
+/// Ratio of the load on a bearing at rest to the load that is allowed, for each of the two checks at rest, with the
+/// name of the check. `load` is the load on the joint of the bearing.
 fn uses(bearing: &Bearing, load: &JointLoad) -> [(f64, &'static str); 2] {
     let (limits, load) = (limits_at_rest(bearing), at_centre(load, bearing));
     [
@@ -150,8 +152,8 @@ fn uses(bearing: &Bearing, load: &JointLoad) -> [(f64, &'static str); 2] {
     ]
 }
 
-/// The limits of a bearing that stands. Speed and life limit what a bearing bears while it turns, and an arm file says nothing of
-/// motion.
+/// The limits of a bearing at rest. Speed and life are set to 0, because they limit only the load on a bearing that
+/// turns, and an arm file says nothing of motion.
 fn limits_at_rest(bearing: &Bearing) -> BearingLimits {
     BearingLimits::of(Some(bearing), 0.0, 0.0)
 }
@@ -164,8 +166,9 @@ pub(crate) fn has_rated_bearings(arm: &Arm) -> bool {
     })
 }
 
-/// The largest payload in a case that all output bearings hold at rest. Their loads are norms of what is affine in the payload's mass,
-/// and so convex: those of no payload and of the largest one hold everything between.
+/// The largest payload in a case with which all output bearings pass their checks at rest. The loads are norms of
+/// forces and moments that are affine in the payload's mass, so they are convex functions of this mass. If the bearings
+/// pass without payload and with some payload, they therefore pass with every payload in between.
 fn limit_of_bearings(arm: &Arm, case: &LoadCase) -> Limit {
     let chain = Chain::new(&arm.structure_in(case), case.links);
     let bearings: Vec<(&str, Bearing)> = bearings_of(arm).collect();
@@ -204,10 +207,11 @@ fn limit_of_bearings(arm: &Arm, case: &LoadCase) -> Limit {
     }
 }
 
-/// Payload beyond which nothing is said to limit an arm \[kg\].
+/// If the bearings still pass with about this payload \[kg\], they count as no limit on the payload.
 const MOST_PAYLOAD_KG: f64 = 1e9;
 
-/// Relative width of the interval in which the largest payload of the bearings is found.
+/// The search for the largest payload that the bearings allow ends when its interval is this narrow, relative to the
+/// payload.
 const SAME_PAYLOAD: f64 = 1e-13;
 
 #[cfg(test)]

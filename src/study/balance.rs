@@ -5,8 +5,7 @@ use crate::arm::springs_file::{BodiesOf, Named, hang, read_counterweights, read_
 use crate::input::json::Object;
 use crate::space::design_space::{DesignSpace, SpacePiece};
 
-/// Reads the springs of a study from `root`, and adds its counterweights as bodies to those of `pieces` that carry
-/// them.
+/// Reads the springs of a study from `root`, and adds its counterweights as bodies to the pieces on which they sit.
 pub(super) fn read_balance(root: &Object, pieces: &mut [SpacePiece]) -> Option<Vec<Spring>> {
     let named: Vec<Named> = pieces.iter().map(|p| (p.name(), matches!(p, SpacePiece::Joint(_)))).collect();
     let (springs, counterweights) = (read_springs(root, &named), read_counterweights(root, &named));

@@ -11,7 +11,8 @@ use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiec
 /// Largest number of names in one sentence.
 const MOST_NAMES: usize = 4;
 
-/// Bearings by what they lack, in the order of the chain.
+/// Names of bearings, grouped by what they lack: certain ratings, or a tilting stiffness. Each entry is what is
+/// lacking, with the names of the bearings that lack it, in the order of the chain.
 struct ByLack<L>(Vec<(L, Vec<String>)>);
 
 impl<L: PartialEq> ByLack<L> {
@@ -34,9 +35,9 @@ impl<L: PartialEq> ByLack<L> {
     }
 }
 
-/// What a reader of a front should know of its output bearings, in sentences: which count as rigid for want of a stiffness, which
-/// lack ratings, which belong to drives that are given without the names of both parts, and which of a given drive carry too
-/// much.
+/// Remarks on the output bearings of the designs of a front, in sentences. They name the bearings that count as rigid
+/// because no stiffness is known, the bearings that lack ratings, the bearings of drives that are given without the
+/// names of gear and motor, and the bearings of given drives that are overloaded.
 pub(crate) fn bearing_remarks(space: &DesignSpace, catalogs: &Catalogs, front: &FrontTable) -> Vec<String> {
     let joints = || {
         space.pieces.iter().filter_map(|piece| match piece {
@@ -112,7 +113,7 @@ fn unchecked<'s>(
     unchecked
 }
 
-/// The bearings that count as rigid, because nobody knows how they tilt.
+/// The bearings that count as rigid, because their tilting stiffness is not known.
 fn rigid<'s>(
     joints: impl Iterator<Item = &'s SpaceJoint>,
     catalogs: &Catalogs,

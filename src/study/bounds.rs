@@ -12,7 +12,7 @@ use crate::space::problem::ArmProblem;
 /// is computed only from those options that a design as good as the pick may have.
 const MOST_TABULATED: usize = 10_000;
 
-/// From which options the bounds are computed.
+/// The options from which the bounds are computed.
 pub(super) enum MassBounds<'a> {
     /// The bounds are computed from all options of the space, which are tabulated once.
     Tabulated(&'a ArmProblem<'a>, Relaxation<'a>),

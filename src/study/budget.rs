@@ -1,12 +1,12 @@
-//! The stiffness budget of a front's picks: what one more kilogram at each joint and link buys in deflection and
-//! frequency, and how far a pick is from the lightest arm that could be as good.
+//! The stiffness budget of a front's picks: by how much one more kilogram at each joint and link changes deflection and
+//! lowest mode, and how far a pick is from the lightest arm that could be as good.
 //!
-//! For each piece there are two answers. Both are computed by the full model with all other parts unchanged. *In
+//! For each piece there are two such changes. Both are computed by the full model with all other parts unchanged. *In
 //! place*: mass and stiffness of the piece grow in proportion (a thicker wall, or a gear scaled up together with its
 //! output bearing); the derivative is a central difference over 0.1 % of the piece's mass. *Next part*: among the
-//! heavier catalog parts that fit there and improve anything, the part with the best change of deflection per
-//! kilogram. This is a difference between two parts that one can buy. Drives further inboard are not sized again. The
-//! output bearing of a joint has a row of its own, with its part of the deflection.
+//! heavier catalog parts that fit in the place of the piece and improve deflection or lowest mode, the part with the
+//! best change of deflection per kilogram. This is a difference between two parts that one can buy. Drives further
+//! inboard are not sized again. The output bearing of a joint has a row of its own, with its part of the deflection.
 
 use super::alternatives::alternatives;
 use super::bounds::MassBounds;
@@ -32,7 +32,8 @@ use crate::space::problem::ArmProblem;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-/// Relative change of mass and stiffness for the derivative *in place*, to either side.
+/// Fraction by which mass and stiffness of a piece are raised and lowered to find the effect of one more kilogram *in
+/// place*.
 const STEP: f64 = 1e-3;
 /// Largest mass that a *next part* may add, as a fraction of the arm's mass.
 const MOST_OF_ARM: f64 = 0.25;
@@ -120,9 +121,11 @@ fn budget(
     Some(rows.concat())
 }
 
-/// The heavier part that helps and has the best change of deflection per kilogram; among equals the first.
+/// The part among `others` (heavier parts) with the best change of deflection per kilogram that improves the arm; of
+/// equal parts the first.
 ///
-/// Deflections say which it is. The modes of the others are not asked for: they take most of the time of the full model.
+/// The parts are sorted by their change of deflection. Modes, which take most of the time of the full model, are
+/// computed for one part after another until a part improves the arm.
 fn next_part<'o>(
     arm: &Arm,
     piece: usize,
@@ -150,7 +153,7 @@ fn next_part<'o>(
     })
 }
 
-/// Change from one design to another per kilogram.
+/// Change of deflection and lowest mode from the objectives `from` to `to`, per kilogram of additional mass.
 fn gain(from: &Objectives, to: &Objectives) -> Gain {
     let kg = to.mass_kg - from.mass_kg;
     Gain {

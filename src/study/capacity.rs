@@ -45,7 +45,7 @@ pub struct AtPose {
 pub struct Capacity {
     /// The largest payload that passes in all sizing poses together.
     pub limit: Limit,
-    /// Name of the sizing pose with the smallest payload.
+    /// Name of the sizing pose whose largest payload is the smallest of all.
     pub pose: String,
     /// The largest payload in each sizing pose, sorted by reach, shortest first.
     pub table: Vec<AtPose>,

@@ -84,7 +84,7 @@ pub fn check_front(
     deadline: Option<Instant>,
 ) -> FrontCheck {
     let until = (stop, deadline);
-    // without a state there is none that cannot be read
+    // the only error is a state of another search, and no state is given here
     resume_check(study, catalogs, claim, until, None).unwrap_or_else(|why| FrontCheck {
         faults: Vec::new(),
         rows: 0,
@@ -92,10 +92,11 @@ pub fn check_front(
     })
 }
 
-/// As [`check_front`], from the state in `resume`; the states of this search for missing designs are kept.
+/// As [`check_front`], but continues the search for missing designs from the state in `resume`, and saves its own
+/// states there.
 ///
 /// # Errors
-/// The state is of another search, in words.
+/// A message if the saved state belongs to another search.
 pub fn resume_check(
     study: &Study,
     catalogs: &Catalogs,
@@ -148,7 +149,8 @@ pub fn resume_check(
     Ok(FrontCheck { faults, rows: table.rows.len(), completeness })
 }
 
-/// A row of a front, with its parts in the verifier's terms.
+/// The design that a row of a front states, with its parts as the verifier names them: by their places in catalogs and
+/// lists.
 struct Row<'f> {
     design: &'f super::outcome::Judged,
     picks: Vec<Pick>,
@@ -227,8 +229,8 @@ fn look_for_missing(
     Ok(Look { designs, completeness, lacks_ties })
 }
 
-/// Evaluates the designs with these numbers, which count in the whole study, by the verifier's own model. Designs that
-/// do not meet their limits by this model are left out.
+/// Evaluates the designs with these numbers by the verifier's own model. The numbers are those of the whole study.
+/// Designs that do not meet their limits by this model are left out.
 fn judged(study: &Study, judge: &Judge, catalogs: &Catalogs, numbers: &[u128]) -> Vec<Judged> {
     let Some(space) = study.space.excerpt(catalogs, numbers) else { return Vec::new() };
     let problem = ArmProblem::new(&space, catalogs);
@@ -356,8 +358,8 @@ fn missing(
     names.into_iter().map(sentence).collect()
 }
 
-/// Appends the first few of the faults `found` to `faults`, and then the number of the others. `what` names them in the
-/// plural.
+/// Appends the first few of the faults `found` to `faults`, and then the number of the others. `what` are words for
+/// these faults, in the plural.
 fn list(faults: &mut Vec<String>, found: Vec<String>, what: &str) {
     let more = found.len().saturating_sub(LISTED);
     faults.extend(found.into_iter().take(LISTED));

@@ -116,8 +116,8 @@ fn nearest_to_median(problem: &ArmProblem, outboard: &[u32], piece: usize, by_ma
     order.into_iter().map(|rank| by_mass[rank]).find(holds).unwrap_or(by_mass[median])
 }
 
-/// The reason why the options `chosen` give no design. `slot` is the place of the joint or link at which
-/// [`ArmProblem::walk`], which builds the arm from the tip inward, ended.
+/// The reason why the options `chosen` give no design. [`ArmProblem::walk`] builds the arm from the tip inward; `slot`
+/// is the place of the joint or link at which it ended.
 pub(crate) fn why_not_held(problem: &ArmProblem, chosen: &[u32], slot: usize) -> Refusal {
     let mut last = Partial::default();
     let _ = problem.walk(chosen, |_, partial| last = partial.clone());

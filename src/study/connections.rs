@@ -10,8 +10,8 @@ use crate::report::number::significant;
 use crate::space::design_space::{DesignSpace, DriveChoice, SpacePiece};
 
 /// Adds the compliance of connections, as the fraction `share` of the catalog compliance, to a given gear and to the
-/// bearing. Stiffnesses that the study states in numbers are taken to include it. A gear that the search chooses gets
-/// it later, when it is known.
+/// bearing. Stiffnesses that the study states in numbers are taken to include this compliance. If the search chooses
+/// the gear, the compliance is added later, when the gear is known.
 pub(super) fn with_connections(
     share: f64,
     object: &Object,

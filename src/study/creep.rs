@@ -5,8 +5,8 @@ use crate::arm::{Link, LinkBody};
 use crate::catalog::Catalogs;
 use crate::space::design_space::{DesignSpace, SpacePiece};
 
-/// Remarks: one sentence for each material that creeps and that a link has or may have, and one for links with stated
-/// factors.
+/// Remarks: one sentence for each material that creeps and that a link has or may have, and one for links whose
+/// stiffness or mass the study multiplies by a factor.
 pub(super) fn creep_remarks(space: &DesignSpace, catalogs: &Catalogs) -> Vec<String> {
     let mut links_of: Vec<(&str, Vec<&str>)> = Vec::new();
     let mut add = |material, link| match links_of.iter_mut().find(|(known, _)| *known == material) {

@@ -46,8 +46,9 @@ pub fn why_infeasible(
     format!("{head}\n  {}", reasons.join("\n  "))
 }
 
-/// The reasons for a space that the exact search does not cover because of `unknown`: joints without a sufficient
-/// drive. Which limits stand in the way is not searched for.
+/// The reasons why no design is feasible, in words, for a space that the exact search does not cover because of
+/// `unknown`. They are the joints at which no drive meets the demand. The limits that exclude all designs are not
+/// searched for.
 fn obstacles_alone(without_limits: &DesignSpace, catalogs: &Catalogs, unknown: &str) -> Vec<String> {
     let mut reasons = joint_obstacles(without_limits, catalogs);
     reasons.push(format!(
@@ -144,7 +145,7 @@ fn parts_offered(joint: &SpaceJoint, catalogs: &Catalogs) -> Option<[usize; 2]> 
     Some([gears.count(), motors.count()])
 }
 
-/// A rail for whose drive the study leaves no motor, in words.
+/// A message if the study leaves no motor for the drive of the rail `slide`; otherwise `None`.
 fn no_motor_offered(slide: &SpacePrismatic, catalogs: &Catalogs) -> Option<String> {
     let drive = slide.drive.as_ref()?;
     let offered = catalogs.motors.iter().any(|motor| drive.motors.allows_motor(motor));
@@ -152,7 +153,7 @@ fn no_motor_offered(slide: &SpacePrismatic, catalogs: &Catalogs) -> Option<Strin
         .then(|| format!("joint {}: \"drives\" leaves no motor of the catalogs; widen it", slide.joint.name))
 }
 
-/// A joint for whose drive the study leaves no gear or no motor, in words.
+/// A message if the study leaves no gear or no motor for the drive of `joint`; otherwise `None`.
 fn no_drive_offered(joint: &SpaceJoint, catalogs: &Catalogs) -> Option<String> {
     let [gears, motors] = parts_offered(joint, catalogs)?;
     (gears == 0 || motors == 0).then(|| {

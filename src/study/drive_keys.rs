@@ -1,4 +1,4 @@
-//! The keys of `drives`: among which parts drives are sized.
+//! The keys of `drives`, which select the parts from which drives are sized.
 
 use super::motor_kinds::MOTOR_WORDS;
 use crate::arm::keys::GEAR_MASS;

@@ -1,4 +1,5 @@
-//! Shards of an exact search: the fronts that each is about, and how they become those of one machine.
+//! Shards of an exact search: the fronts that each shard searches for, and how the results of all shards are joined
+//! into the result that one machine would give.
 
 use super::definition::Study;
 use super::outcome::{ExactStudy, Extent, Searched, judged_exactly, watched};
@@ -11,20 +12,22 @@ use crate::search::sweep::Shard;
 use crate::space::design_space::DesignSpace;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The fronts that an exact search of a space to a gap looks for: that of all designs, `None`, and where the whole front is
-/// asked for, those of the materials by their index. A study of one material has one front.
+/// The fronts that an exact search of a space with the gap `gap` looks for. `None` stands for the front of all designs.
+/// If the gap is 0 and the space has several materials, the front of each material follows, given by the index of the
+/// material.
 pub fn fronts_of(space: &DesignSpace, gap: f64) -> Vec<Option<usize>> {
     let materials = space.material_names().len();
     let of_materials = if gap == 0.0 && materials > 1 { materials } else { 0 };
     std::iter::once(None).chain((0..of_materials).map(Some)).collect()
 }
 
-/// Searches one shard of a study to a gap: what it found for each of the [`fronts_of`]. `given` is what other searches of the
-/// study found, front by front. The search goes on from the state in `resume`, and its own states are kept. `watch` is as in
-/// [`run_exact`](super::run_exact). A search that was stopped has fewer fronts, and the last one has open boxes.
+/// Searches one shard of a study to a gap. Returns what the search found for each of the [`fronts_of`] the study.
+/// `given` is what other searches of the study found: first index the search, second the front. The search continues
+/// from the state in `resume`, and saves its own states there. `watch` is as in [`run_exact`](super::run_exact). A
+/// search that was stopped returns fewer fronts, and the last of them has open boxes.
 ///
 /// # Errors
-/// The state is of another search, in words.
+/// A message if the saved state belongs to another search.
 pub fn exact_shard(
     (study, catalogs): (&Study, &Catalogs),
     (shard, gap): (Shard, f64),
@@ -45,11 +48,11 @@ pub fn exact_shard(
     Ok(watched(|finished| watch(&|| search.known(), finished), work))
 }
 
-/// Joins what shards found for each of the [`fronts_of`] a study, and finds the designs near the front, if the extent asks for
-/// them.
+/// Joins what the shards found for each of the [`fronts_of`] a study, and finds the designs near the front if `extent`
+/// asks for them. `shards` has what was found: first index the shard, second the front.
 ///
 /// # Errors
-/// The shards do not hold every design once, in words.
+/// A message if some design is in no shard, or in more than one.
 pub fn joined_exactly(
     study: &Study,
     catalogs: &Catalogs,

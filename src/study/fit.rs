@@ -77,7 +77,8 @@ pub(super) fn fit_remarks(space: &DesignSpace, catalogs: &Catalogs) -> Vec<Strin
     sentences.into_iter().flatten().collect()
 }
 
-/// The joints whose gears are component sets, of which no size is known.
+/// A sentence that names the joints whose gears are component sets, because the catalogs have no sizes of these; `None`
+/// if there are none.
 fn component_sets(asking: &[&SpaceJoint]) -> Option<String> {
     let is_set = |joint: &&&SpaceJoint| match &joint.drive {
         DriveChoice::FirstFit(filter) | DriveChoice::AllFits(filter) => {

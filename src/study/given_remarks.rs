@@ -1,22 +1,23 @@
-//! Given drives that are too weak for designs of a front, so that it can be said beside the front.
+//! Remarks on given drives that are too weak for some designs of a front. They are printed with the front.
 
 use crate::catalog::Catalogs;
 use crate::sizing::check::{Check, CheckState};
 use crate::sizing::sheet::{JointSizingRow, with_part};
 use crate::space::problem::ArmProblem;
 
-/// A given drive and what it fails over a front.
+/// A given drive, with the checks that it fails in designs of a front.
 struct Overloaded {
     joint: String,
     drive: String,
-    /// Designs in which it fails something.
+    /// Number of designs in which the drive fails a check.
     designs: usize,
-    /// Of each check that fails the worst one, in the order of the checks.
+    /// For each kind of check that the drive fails, the check with the smallest margin over the designs.
     worst: Vec<Check>,
 }
 
 impl Overloaded {
-    /// Takes the joint of one design. Its output bearing has a sentence of its own.
+    /// Adds the checks that the drive fails in one design, whose sizing of the joint is `row`. Checks of the output
+    /// bearing are left out, because other remarks name overloaded bearings.
     fn take(&mut self, row: &JointSizingRow) {
         let fails = row.checks.iter().filter(|c| c.state == CheckState::Fails && !c.kind.is_bearing());
         let fails: Vec<&Check> = fails.collect();

@@ -20,7 +20,8 @@ const MOST_SECTIONS: u32 = 64;
 
 /// Messages for every joint at which no drive meets the demand, from the tip inward. Each joint is examined with the
 /// lightest links. Then links are given other sections one at a time, to find those with which the demand on the joint
-/// is least. When the joints inboard of it are examined, a joint without a drive is taken as rigid and without mass.
+/// is least. A joint without a drive is then taken as rigid and without mass, while the joints inboard of it are
+/// examined.
 pub(super) fn joint_obstacles(space: &DesignSpace, catalogs: &Catalogs) -> Vec<String> {
     let mut space = few_sections(space);
     let mut found = Vec::new();
@@ -137,7 +138,8 @@ pub(crate) fn first_fit_at(problem: &ArmProblem, outboard: &[u32], piece: usize)
 /// Starting from `sections`, one link at a time is given each of its sections.
 ///
 /// # Errors
-/// If there are no such sections: the demand for which the nearest drive has the largest margin.
+/// If there are no such sections: of all demands on this joint that were tried, the one that a drive comes nearest to
+/// meeting.
 fn easier_sections(
     problem: &ArmProblem,
     sections: &[u32],
@@ -207,7 +209,8 @@ fn no_legal_drive(table: &DriveTable, demand: &JointDemand) -> String {
     }
 }
 
-/// The shortfall of the nearest drive in words, followed by the ratings that other parts lack.
+/// In words, what the drive that comes nearest to meeting the demand lacks, followed by the ratings that other parts
+/// lack.
 fn in_words(table: &DriveTable, shortfall: &Shortfall) -> String {
     format!("{shortfall}{}", missing_words(table))
 }

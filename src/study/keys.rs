@@ -356,7 +356,7 @@ pub(super) static STATED_PHASE: Shape = Shape::new(
     &[],
 );
 
-/// What is asked of the sizes of parts.
+/// The keys of `fit`: limits on the sizes of the parts of a joint.
 pub(super) static FIT: Shape = Shape::new(
     "fit",
     "Whether the parts of a joint go where they must; null asks nothing.",

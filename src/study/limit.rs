@@ -51,8 +51,8 @@ impl Quantity {
         }
     }
 
-    /// The value of this quantity for a complete design: `arm` is the arm as the search adds it up, `objectives` are
-    /// its objectives. `None` if a strength or a cost is unknown.
+    /// The value of this quantity for a complete design: `arm` is the arm as the search builds it, `objectives` are its
+    /// objectives. `None` if a strength or a cost is unknown.
     pub(super) fn of(self, problem: &ArmProblem, arm: &Partial, objectives: &Objectives) -> Option<f64> {
         match self {
             Self::Deflection => Some(objectives.tip_deflection_m),

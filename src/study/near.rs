@@ -59,8 +59,8 @@ pub fn near_front(
 }
 
 impl NearFront {
-    /// Evaluates the near designs `found` by a search with the full model, and makes the table. Designs that are not
-    /// near by the full model are left out.
+    /// Evaluates the near designs with the full model, and makes the table. `found` is the result of the search for
+    /// them. Designs that are not near by the full model are left out.
     pub fn of(
         problem: &ArmProblem,
         catalogs: &Catalogs,
@@ -145,8 +145,8 @@ fn table(
 }
 
 /// The number of the design of the front that is nearest to `design`, and the fractions by which `design` is worse in
-/// deflection, mass and lowest mode. Nearest is the one with the smallest largest fraction; among equals, the one with
-/// the smallest differences.
+/// deflection, mass and lowest mode. The nearest design is the one for which the largest of the three fractions is
+/// smallest. Of equally near designs it is the one with the smallest differences.
 fn nearest(front: &Front, design: &Objectives) -> (u128, [f64; 3]) {
     let shortfall = |worse: &[f64; 3]| worse.iter().fold(0.0f64, |most, part| most.max(*part));
     let apart = |worse: &[f64; 3]| worse.iter().fold(0.0f64, |most, part| most.max(part.abs()));
@@ -196,7 +196,7 @@ impl NearFront {
         out
     }
 
-    /// Number of groups of near designs with equal objectives. Groups of a single design do not count.
+    /// Number of sets of near designs with equal objectives. Sets of a single design do not count.
     fn tied_groups(&self) -> usize {
         let Some(column) = self.table.column("tie_group") else { return 0 };
         let groups: Vec<&str> = self.table.rows.iter().map(|r| r[column].as_str()).collect();

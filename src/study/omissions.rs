@@ -68,7 +68,8 @@ fn has_sized_rail(space: &DesignSpace) -> bool {
     space.pieces.iter().any(|piece| matches!(piece, SpacePiece::Prismatic(rail) if rail.drive.is_some()))
 }
 
-/// How much a built arm differs by all that is left out: the row "together" of docs/left-out.md.
+/// By how much a built arm may differ from the computed one because of all that is left out: the row "together" of
+/// docs/left-out.md.
 const SIZE_OF_WHAT_IS_LEFT_OUT: &str = "How much this may be: on the knees of two named studies it adds 77 to 79 % to the \
     deflection and 40 to 47 % to the mass, and takes 18 to 22 % from the lowest mode (docs/left-out.md).";
 

@@ -58,9 +58,9 @@ pub struct OfMaterial {
     pub ties_listed: bool,
 }
 
-/// Runs an exhaustive search: evaluates every design of the study. `watch` runs on another thread to show progress.
-/// Its arguments are the number of designs, a function that returns how many are done, and a flag; it must return
-/// when the flag is set.
+/// Runs an exhaustive search: evaluates every design of the study. `watch` runs on another thread to show progress. Its
+/// arguments are the number of designs, a function that returns how many of them were visited, and a flag. `watch` must
+/// return when the flag is set.
 pub fn run_study(
     study: &Study,
     catalogs: &Catalogs,
@@ -176,7 +176,8 @@ pub struct Extent {
     /// The gap at which the search may end: for every design of the study, some listed design is worse by at most
     /// this fraction in each objective. 0 asks for the whole front.
     pub gap: f64,
-    /// Extent of the near designs that are asked for; `None` if none are.
+    /// How near the near designs may be that are asked for, and how many of them are listed; `None` if none are asked
+    /// for.
     pub near: Option<Slack>,
 }
 
@@ -188,8 +189,9 @@ pub(super) struct Searched {
 }
 
 impl Searched {
-    /// Takes the front of all designs, then, if that one is whole, finds those of the materials and the designs near the
-    /// front.
+    /// Starts from the result `whole` of the search for the front of all designs. If this front is whole, the fronts of
+    /// the materials and the designs near the front are searched too. `of_material` searches the front of the material
+    /// with a given index.
     pub(super) fn new(
         search: &Exact,
         space: &DesignSpace,
@@ -222,8 +224,8 @@ impl Searched {
         fronts.flat_map(|of| of.front.iter().map(|c| c.number)).chain(near).collect()
     }
 
-    /// Evaluates the designs that were found with the full model: all those of the fronts, and at most `most` near
-    /// designs. `problem` is an excerpt of the space, so the numbers of the designs are converted to it.
+    /// Evaluates, with the full model, the designs that the searches found: all those of the fronts, and at most `most`
+    /// near designs. `problem` is an excerpt of the space, so the numbers of the designs are converted to it.
     fn judged(&self, problem: &ArmProblem, most: Option<usize>) -> (StudyOutcome, Option<NearDesigns>) {
         let here = |candidate: &Candidate| {
             let options = problem.options_of_whole(candidate.number)?;
@@ -278,9 +280,9 @@ fn status(found: &ExactOutcome) -> Status {
     }
 }
 
-/// Runs an exact search: finds the fronts of a space without evaluating every design, and the near designs if they
-/// are asked for. It ends as `extent` says, or when `stop` is set. `watch` runs on another thread to show progress;
-/// it gets a function that returns what is known so far and a flag, and must return when the flag is set.
+/// Runs an exact search: finds the fronts of a space without evaluating every design, and the near designs if they are
+/// asked for. It ends as `extent` says, or when `stop` is set. `watch` runs on another thread to show progress; its
+/// arguments are a function that returns what is known so far, and a flag. `watch` must return when the flag is set.
 pub fn run_exact(
     study: &Study,
     catalogs: &Catalogs,
@@ -322,7 +324,7 @@ fn searched_by(
     judged_exactly(&searched, study, catalogs, near)
 }
 
-/// Judges what was found by the full model, in an excerpt of the study's space.
+/// Evaluates, with the full model and in an excerpt of the study's space, all designs that the searches found.
 pub(super) fn judged_exactly(
     searched: &Searched,
     study: &Study,

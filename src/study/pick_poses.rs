@@ -25,7 +25,8 @@ const WORSE: f64 = 0.02;
 const LEFT_OUT: &str = "Not modelled in these poses: an arm that passes through itself, its base or the floor. Drives and stresses are \
                         checked in the sizing poses only. The poses were found by a search; worse ones are not excluded.";
 
-/// A pick, its reach, and the poses in which its deflection and its lowest mode are worst.
+/// A pick, the reach of its arm ([`Arm::reach_m`](crate::arm::Arm::reach_m)), and the poses in which its deflection and
+/// its lowest mode are worst.
 #[derive(Debug, Clone, PartialEq)]
 struct PickPoses {
     pick: Pick,
@@ -104,8 +105,8 @@ impl PickPoses {
         [(Objective::Deflection, 1e3, &self.worst.deflection), (Objective::Mode, 1.0, &self.worst.mode)]
     }
 
-    /// The worst poses, of the two for deflection and for mode, in which the objective is worse than in the judged
-    /// cases by more than [`WORSE`].
+    /// Those of the two worst poses (for deflection and for lowest mode) in which the objective is worse than in the
+    /// judged cases by more than [`WORSE`].
     fn worse(&self) -> impl Iterator<Item = (Objective, f64, &WorstPose)> {
         self.both().into_iter().filter(|(_, _, pose)| pose.worse() > WORSE)
     }

@@ -120,8 +120,8 @@ impl PoseRanges {
     }
 
     /// These ranges, searched only over the joints that influence `values`: numbers of the arm at a pose, such as the
-    /// score. A joint is left out if turning it changes no number, as a vertical first joint under weight alone. It
-    /// then stays as near to zero as its range allows.
+    /// score. A joint is left out if turning it changes no number, such as a vertical first joint under weight alone.
+    /// It then stays as near to zero as its range allows.
     pub(super) fn that_matter<const N: usize>(mut self, values: impl Fn(&[f64]) -> [f64; N]) -> Self {
         const TURNED_DEG: [f64; 2] = [31.7, 123.4];
         let differs =
@@ -169,8 +169,8 @@ impl PoseRanges {
         out
     }
 
-    /// The best pose that compass searches find which start from the best of the poses `from`; `None` if `from` is
-    /// empty. First coarse steps are used; the best results are then continued with fine steps.
+    /// The best pose that compass searches find. They start from the best of the poses `from`, with coarse steps. The
+    /// best results are then continued with fine steps. `None` if `from` is empty.
     pub(super) fn climb(&self, from: &[Scored], score: impl Fn(&[f64]) -> f64 + Sync) -> Option<Scored> {
         let mut climbed: Vec<Scored> = self
             .starts(from)

@@ -1,15 +1,15 @@
-//! The keys of prismatic joints of a study, and of the screws and racks among which their drive is sized.
+//! The keys of prismatic joints of a study, and of the screws and racks from which their drives are sized.
 
 use super::drive_keys::{BRAKE, DRIVES};
 use crate::arm::keys::POSITIVE_OR_NULL;
 use crate::arm::prismatic_keys;
 use crate::input::key::{Key, Kind, Rule, Shape, optional, required};
 
-/// A ball screw.
+/// The keys of a ball screw, as an object of a study file.
 pub(super) static SCREW: Shape =
     Shape::new("screw", "A ball screw with its nut, its shaft of steel.", &SCREW_KEYS, &[]);
 
-/// A rack.
+/// The keys of a rack, as an object of a study file.
 pub(super) static RACK: Shape =
     Shape::new("rack", "A rack with its pinion and the gear at it.", &RACK_KEYS, &[]);
 
@@ -18,7 +18,7 @@ const SCREW_OBJECT: Kind = Kind::Object(&SCREW);
 const RACKS: Kind = Kind::NonEmpty(&RACK_OBJECT);
 const RACK_OBJECT: Kind = Kind::Object(&RACK);
 
-/// A prismatic joint of a study.
+/// The keys of a prismatic joint of a study.
 pub(super) static PRISMATIC: Shape = Shape::new(
     "prismatic joint",
     "A joint that slides everything after it along its axis; its drive is given in numbers or sized.",
@@ -153,5 +153,5 @@ const RANGE_MM: Key = optional(
     "Smallest and largest travel of the joint.",
 );
 
-/// Keys of parts of the catalogs, which a prismatic joint has none of.
+/// Keys that name catalog parts of a drive. A prismatic joint must not have them.
 pub(super) const OF_CATALOG_DRIVE: [&str; 2] = ["gear", "motor"];

@@ -1,4 +1,4 @@
-//! Rails of a study whose drive is sized: which screws, racks and motors they may have.
+//! Reads the rails (prismatic joints) of a study whose drive is sized: the screws, racks and motors to choose from.
 
 use super::drives::{Drives, read_drives};
 use super::rail_keys::{RACK, SCREW};
@@ -12,7 +12,7 @@ use crate::space::prismatic::RailDrive;
 /// Keys of a prismatic joint that need a drive which is sized.
 const OF_SIZED: [&str; 5] = ["drives", "screws", "racks", "max_speed_m_s", "brake"];
 
-/// Reads how the drive of a prismatic joint is sized; `None` within if the study gives it.
+/// Reads how the drive of a prismatic joint is sized. The inner `None` means that the study gives the drive.
 pub(super) fn read_rail_drive(
     object: &Object,
     usual: &Drives,

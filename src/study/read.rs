@@ -131,7 +131,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks })
 }
 
-/// Reads the name of a study. It has a letter or a digit, because the folder of results is named after it.
+/// Reads the name of a study. It must have a letter or a digit, because the folder of results is named after it.
 fn read_study_name(node: &Node) -> Option<String> {
     match node.string()? {
         name if name.chars().any(|c| c.is_ascii_alphanumeric()) => Some(name.to_string()),
@@ -140,7 +140,7 @@ fn read_study_name(node: &Node) -> Option<String> {
     }
 }
 
-/// Remarks for the reader of the result that follow from the whole design space.
+/// Remarks that follow from the whole design space, for the reader of the result.
 fn remarks_on(space: &DesignSpace, harness_kg_per_m: f64, catalogs: &Catalogs) -> Vec<String> {
     let mut out = Vec::new();
     out.extend(connections_remark(space));
@@ -302,7 +302,8 @@ fn unique_names(node: &Node, pieces: &[SpacePiece]) -> Option<()> {
     }
 }
 
-/// Reads a joint that turns, and its transmission; `None` in place of the transmission if the joint has no key of one.
+/// Reads a joint that turns, and its transmission; `None` in the place of the transmission if no key of the joint
+/// describes one.
 fn read_space_joint(node: &Node, open: &Open) -> Option<(SpaceJoint, Option<Transmission>)> {
     let object = node.shaped(&JOINT)?;
     let name = read_name(&object);
@@ -353,8 +354,8 @@ fn read_space_joint(node: &Node, open: &Open) -> Option<(SpaceJoint, Option<Tran
     Some((joint, transmission))
 }
 
-/// Reports the keys of a joint with a motor where a joint has none, and the keys of a driven joint where a linkage
-/// turns the joint.
+/// Reports keys that do not suit the joint: keys that need a motor if the joint has none, and keys of a driven joint if
+/// a linkage turns the joint.
 fn refuse_keys_of_other_joints(object: &Object) {
     if !object.has("drive") && !object.has("motor") {
         stray(
@@ -402,7 +403,7 @@ fn read_drive(object: &Object, open: &Open) -> Option<DriveChoice> {
     read_drive_choice(&drive, &own?)
 }
 
-/// Reads a prismatic joint, whose guide and masses a study gives, and its drive too unless it is sized.
+/// Reads a prismatic joint. The study gives its guide and masses, and also its drive unless the drive is sized.
 fn read_space_prismatic(node: &Node, open: &Open) -> Option<SpacePrismatic> {
     if let Some(key) = OF_CATALOG_DRIVE.iter().find(|key| node.value().get(*key).is_some()) {
         return node.fault_below(

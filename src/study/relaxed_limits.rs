@@ -17,7 +17,7 @@ use crate::space::problem::ArmProblem;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-/// Relative difference between the two ends of the interval at which the bisection of a limit ends.
+/// The bisection of a limit ends when the two ends of its interval differ by no more than this fraction.
 const CLOSE: f64 = 2e-6;
 /// Lower end of the bisection if the stated limit is zero, as a fraction of the value that a design reaches. Bisection
 /// takes geometric means, so it must not start at zero.
@@ -45,7 +45,7 @@ enum Answer<T> {
 pub(super) struct Limited<'a> {
     pub space: &'a DesignSpace,
     pub catalogs: &'a Catalogs,
-    /// The joints of the space, which no limit changes.
+    /// The joints of the space with the tables of their drives, which no limit changes.
     pub joints: TabulatedJoints<'a>,
     pub stop: &'a AtomicBool,
     pub deadline: Instant,

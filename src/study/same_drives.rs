@@ -1,5 +1,5 @@
-//! Finds picks that are on a front only because of their weight: first fit gave them larger drives for it. For each
-//! such pick, there is a lighter arm with the same drives.
+//! Finds picks that are on a front only because of their weight: first fit gave them larger drives because of this
+//! weight. For each such pick, there is a lighter arm with the same drives.
 
 use super::table::link_words;
 use crate::pareto::objectives::Objectives;

@@ -273,7 +273,7 @@ fn sold_in(family: &str, material: &Material) -> bool {
 const STAINLESS: &str = "stainless";
 
 /// A remark if `link` may be of stainless steel and of catalog profiles, but none of the profiles is sold in stainless
-/// steel. Profiles of structural steel are not sold in it.
+/// steel.
 fn stainless_without_profiles(materials: &[&Material], sections: &Sections, link: &str) -> Option<String> {
     let families: HashSet<&str> =
         sections.sections.iter().filter_map(|(_, profile)| Some(profile.as_ref()?.family.as_str())).collect();

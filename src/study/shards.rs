@@ -1,7 +1,8 @@
-//! Shards of a search: the files of what each found, and how those of an exhaustive search become one front.
+//! Shards of a search: the files with what each shard found, and how the results of an exhaustive search are joined
+//! into one front.
 //!
-//! A shard keeps the candidates in its range of design numbers. When shards are joined, a candidate that one of
-//! another shard clearly dominates is dropped, and the full model evaluates the rest. This is the same as after a
+//! A shard keeps the candidates in its range of design numbers. When shards are joined, a candidate is dropped if a
+//! candidate of another shard clearly dominates it, and the full model evaluates the rest. This is the same as after a
 //! search on one machine, so the files of the front are equal byte by byte.
 
 use crate::exact::outcome::FoundInShard;
@@ -10,8 +11,9 @@ use crate::search::sweep::{Candidate, Status, SweepOutcome, clear_dominated};
 use std::fmt::Write;
 use std::ops::Range;
 
-/// The candidates of a sweep as CSV. The columns are `all` or the index of a material, the number of the design, and
-/// its objectives by the fast model in m, kg and Hz. Numbers have the shortest form that reads back to the same bits.
+/// The candidates of a sweep as CSV. The columns are the front (`all`, or the index of a material), the number of the
+/// design, and its objectives by the fast model in m, kg and Hz. Numbers have the shortest form that reads back to the
+/// same bits.
 pub fn candidates_csv(swept: &SweepOutcome) -> String {
     let mut out = String::from(HEADER);
     let groups = swept.groups.iter().enumerate().map(|(k, group)| (k.to_string(), group));
@@ -50,12 +52,13 @@ pub fn read_candidates(text: &str, materials: usize) -> Result<(Vec<Candidate>, 
     Ok((front, groups))
 }
 
-/// The place of a front among those of a search, from its name: `all`, or the number of a material.
+/// Index of the front with this name in a list that has the front of all designs first: 0 for `all`, and `k + 1` for
+/// the index `k` of a material.
 fn front_at(name: &str) -> Option<usize> {
     if name == ALL { Some(0) } else { name.parse::<usize>().ok()?.checked_add(1) }
 }
 
-/// Reads number and objectives.
+/// Reads a candidate from the cells of its number and objectives.
 fn candidate(cells: &[&str]) -> Option<Candidate> {
     let [number, tip, mass, mode] = cells[..] else { return None };
     let value = |cell: &str| cell.parse::<f64>().ok();
@@ -64,11 +67,11 @@ fn candidate(cells: &[&str]) -> Option<Candidate> {
     Some(Candidate { number: number.parse().ok()?, objectives })
 }
 
-/// Name of the front of all designs; that of a material is its number.
+/// Name of the front of all designs. The name of a material's front is the index of the material.
 const ALL: &str = "all";
 
-/// What a shard of an exact search found, front by front, as CSV: as in [`candidates_csv`], and whether it is decided that a
-/// design holds.
+/// What a shard of an exact search found, front by front, as CSV. The columns are those of [`candidates_csv`] and the
+/// column `decided`, which is `no` if rounding leaves open whether some part of the design passes its checks.
 pub fn found_csv(fronts: &[FoundInShard]) -> String {
     let mut out = String::from(FOUND_HEADER);
     for (at, found) in fronts.iter().enumerate() {
@@ -86,7 +89,8 @@ pub fn found_csv(fronts: &[FoundInShard]) -> String {
 
 const FOUND_HEADER: &str = "front,decided,number,tip_deflection_m,mass_kg,lowest_mode_hz\n";
 
-/// Reads [`found_csv`] of so many fronts. Only the designs are filled in.
+/// Reads the text of [`found_csv`] for this number of fronts. Only the designs are filled in; all other fields of the
+/// results keep their defaults.
 ///
 /// # Errors
 /// The number of the first line that is no candidate.
@@ -110,7 +114,7 @@ pub fn read_found(text: &str, fronts: usize) -> Result<Vec<FoundInShard>, usize>
     Ok(out)
 }
 
-/// What one shard found.
+/// What one shard of an exhaustive search found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Swept {
     /// Number of designs that no drive, link or limit excludes, so that their objectives were computed.

@@ -101,7 +101,7 @@ fn row(
         out.push(joint.bearing_margin.map_or(String::new(), number));
         out.push(joint.motor_rms_margin.map_or(String::new(), number));
         out.push(number(joint.input_speed_rpm));
-        // only a wave generator passes with two waves in each turn
+        // only strain-wave gears have a critical speed, because a wave generator excites the arm twice in each turn
         let waves = catalogs.gears.iter().any(|g| g.id == joint.gear && g.kind == GearKind::StrainWave);
         out.push(if waves { number(critical_rpm(o.lowest_mode_hz)) } else { String::new() });
     }
@@ -172,7 +172,8 @@ pub(crate) fn sizing_rows(
     Ok(rows)
 }
 
-/// Mass of a bearing that is a part of its own \[kg\].
+/// Mass of the output bearing of the joint `piece` \[kg\] if the study states the bearing as a separate part; otherwise
+/// 0.
 fn bearing_kg(problem: &ArmProblem, piece: usize) -> f64 {
     match &problem.space().pieces[piece] {
         SpacePiece::Joint(joint) => joint.bearing.stated().map_or(0.0, |bearing| bearing.mass_kg),

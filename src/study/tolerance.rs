@@ -7,12 +7,16 @@
 //! seed and the name of the row. Its factors therefore do not depend on other parts on the front, on the number of
 //! samples or on threads.
 //!
-//! | scatter | of | default | source |
-//! |---|---|---|---|
-//! | `gear_stiffness` | K1, K2 and K3 of a gear, together | 20 % | an assumption: the vendor calls them "average values" and states no scatter (Harmonic Drive SE, engineering data 1018856, 08/2018, p. 70) |
-//! | `bearing_stiffness` | the tilting stiffness of an output bearing | 20 % | an assumption: as for the gear; the vendor calls it an average value too |
-//! | `modulus` | E and G of a material, together | 3 % | an assumption, for metals; a laminate's is larger |
-//! | `mass` | a gear's and a motor's mass, each | 2 % | an assumption |
+//! | scatter | of | default |
+//! |---|---|---|
+//! | `gear_stiffness` | K1, K2 and K3 of a gear, together | 20 % |
+//! | `bearing_stiffness` | the tilting stiffness of an output bearing | 20 % |
+//! | `modulus` | E and G of a material, together | 3 % |
+//! | `mass` | a gear's and a motor's mass, each | 2 % |
+//!
+//! The defaults are assumptions. The vendor calls the stiffnesses of gears and bearings "average values" and states no
+//! scatter (Harmonic Drive SE, engineering data 1018856, 08/2018, p. 70). The default for the modulus is for metals.
+//! The modulus of a laminate scatters more.
 
 use super::outcome::Front;
 use crate::catalog::Catalogs;
@@ -238,8 +242,8 @@ pub fn scatter_front(
     Some(tally.told(designs, &nominal, sampling))
 }
 
-/// The space of the problem, marked as if it were a whole space and not an excerpt, so that designs have their numbers
-/// within it.
+/// The space of the problem, marked as if it were a whole space and not an excerpt. Designs then have the numbers that
+/// they have in this space.
 fn without_excerpt(problem: &ArmProblem) -> DesignSpace {
     let mut space = problem.space().clone();
     for piece in &mut space.pieces {

@@ -10,7 +10,7 @@ use crate::sizing::select::DriveFilter;
 use crate::space::design_space::{DriveChoice, MotorPlace, SpaceJoint, SpacePiece};
 use crate::space::effects::along;
 
-/// Puts the motors of a study where they sit, and tells every joint with which others it turns.
+/// Puts the motors of a study where they sit, and stores in every joint the other joints with which it turns.
 pub(super) fn place_transmissions(
     pieces: &mut [SpacePiece],
     mut driven: Vec<Driven>,
@@ -37,8 +37,9 @@ pub(super) fn place_transmissions(
     sound
 }
 
-/// Gives a transmission before a gear that is sized the ratio of that gear, if the joint turns with others by it. It must then
-/// be one ratio for all gears.
+/// Sets the gear ratio of a transmission between a motor and a gear that is sized. If the joint turns with other joints
+/// because of the transmission, all gears that may be chosen must have the same ratio. Otherwise a fault is reported,
+/// as it is for actuators, which have their motors inside.
 fn behind_one_ratio(
     node: Node,
     transmission: &mut Transmission,
@@ -74,7 +75,8 @@ fn behind_one_ratio(
     Some(())
 }
 
-/// Notes where the motor of a drive that is sized stands: its mass is known with the design.
+/// Stores in the joint number `number` where its motor stands, if the drive is sized and the motor stands elsewhere.
+/// The mass of the motor is known only when a drive is chosen.
 fn of_sized(driven: &[Driven], number: usize, placed: &Placed, pieces: &mut [SpacePiece]) -> Option<()> {
     let of = driven.iter().find(|of| of.joint == number)?;
     let (piece, on, point_m) = placed.motor;
@@ -103,7 +105,8 @@ fn of_sized(driven: &[Driven], number: usize, placed: &Placed, pieces: &mut [Spa
     Some(())
 }
 
-/// A joint as it is read, and how its motor drives it.
+/// The joint number `number` of the chain in the form in which motors are put in their places: with its transmission
+/// and the joints with which it turns.
 pub(super) fn of_joint<'n>(
     node: &Node<'n>,
     joint: &SpaceJoint,
@@ -113,7 +116,8 @@ pub(super) fn of_joint<'n>(
     Driven { node: node.clone(), joint: number, transmission, turns_with: joint.turns_with.clone() }
 }
 
-/// A drive that is given, with the stages of its transmission in its curve.
+/// The same drive. If it is given, its torsion curve is replaced by that of its gear and the stages of `transmission`
+/// together.
 pub(super) fn with_stages(drive: DriveChoice, transmission: Option<&Transmission>) -> DriveChoice {
     match (drive, transmission) {
         (DriveChoice::Given { curve, mass_kg, gear, motor }, Some(transmission)) => {

@@ -34,7 +34,7 @@ pub struct WorstPoses {
 }
 
 /// Searches for the worst poses of an arm. `ranges` has the range of each driven joint, base to tip \[deg or mm\];
-/// passive joints follow. The arm is tried with the load of each case. `None` if there is no case.
+/// passive joints turn with them. The arm is tried with the load of each case. `None` if there is no case.
 pub fn worst_poses(arm: &Arm, cases: &[LoadCase], ranges: &[[f64; 2]]) -> Option<WorstPoses> {
     let judged = full_objectives(arm, cases);
     let found: Vec<[WorstPose; 2]> =

@@ -1,10 +1,16 @@
 //! Checks of an output bearing by the vendor's selection procedure for crossed-roller bearings.
 //!
-//! | check | demand | limit |
-//! |---|---|---|
-//! | running | largest moment at the centre of the bearing, `M + R F_r` | the permissible moment (limits deflection) |
-//! | static safety | `P₀ = F_r + 2 (M + R F_r) / d_p + 0.44 F_a` | `C₀ / 3` at rest (high precision), `C₀ / 2` in a stop (shocks) |
-//! | life | `10⁶ / (60 n) · (C / (f_w P_c))^(10/3)`, `P_c = X (F_r + 2 (M + R F_r) / d_p) + Y F_a` at rest | the study's hours |
+//! - *running*: the largest moment at the centre of the bearing, `M + R F_r`, is at most the permissible moment, which
+//!   limits the deflection.
+//! - *static safety*: `P₀ = F_r + 2 (M + R F_r) / d_p + 0.44 F_a` is at most `C₀ / 3` at rest (for high precision) and
+//!   at most `C₀ / 2` in a stop (because of shocks).
+//! - *life*: `10⁶ / (60 n) · (C / (f_w P_c))^(10/3)` is at least the hours that the study asks for, with
+//!   `P_c = X (F_r + 2 (M + R F_r) / d_p) + Y F_a`. Its loads are those of the arm at rest: accelerations are not
+//!   counted in the life.
+//!
+//! `M`, `F_r` and `F_a` are the moment, the radial force and the axial force at the face of the flange, `R` is the
+//! distance from there to the centre of the bearing, and `d_p` is its pitch diameter. `C₀` and `C` are the static and
+//! the dynamic load rating, `n` is the mean speed \[rpm\], and `X`, `Y` and `f_w` are factors of the vendor.
 //!
 //! (Harmonic Drive LLC, FHA-C manual, pages 20 to 23; Harmonic Drive AG, engineering data 1021387, pages 23, 43
 //! and 45.)
@@ -18,7 +24,8 @@ use crate::catalog::gear::{Gear, GearMass};
 /// The load on an output bearing; also a lower or an upper bound of the load over several designs.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct BearingLoad {
-    /// Moment across the axis where the link attaches \[N m\].
+    /// Moment about an axis across the joint's axis \[N m\]. It is taken where the link attaches or, after
+    /// [`with_lever`](Self::with_lever), at the face of the joint's flange.
     pub moment_nm: f64,
     /// Force across the axis of the joint (radial) \[N\].
     pub radial_n: f64,
@@ -42,7 +49,7 @@ pub(super) struct BearingDemand {
 pub(super) struct BearingRatings {
     /// Distance R along the axis from the centre of the bearing to the face of its flange \[m\].
     centre_m: f64,
-    /// Radial force at the pitch circle that stands for a moment of 1 N m, `2 / d_p` \[1/m\].
+    /// Radial force that is equivalent to a moment of 1 N m, `2 / d_p` for the pitch diameter `d_p` \[1/m\].
     per_moment_per_m: f64,
     running_nm: f64,
     at_rest_n: f64,
@@ -54,7 +61,7 @@ pub(super) struct BearingRatings {
 const SAFETY_AT_REST: f64 = 3.0;
 /// Static safety `C₀ / P₀` in an emergency stop. The vendor asks for this value under shocks.
 const SAFETY_IN_A_STOP: f64 = 2.0;
-/// Load factor f_w of the life: the value for which the vendor's own tables hold.
+/// Load factor f_w of the life: the value for which the vendor's own tables are valid.
 const LOAD_FACTOR: f64 = 1.3;
 
 /// The output bearing that a joint has with `gear`. `source` tells whether the study states the bearing or it comes

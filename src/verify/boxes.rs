@@ -76,7 +76,7 @@ impl Boxes {
         Some([ideal.mass_kg, ideal.tip_m])
     }
 
-    /// Whether it is proved that no member of a box that meets its checks and limits has a lowest mode above `hz`.
+    /// Whether it is proved for a box that no member both has a lowest mode above `hz` and meets all checks and limits.
     pub fn proves_none_faster(&self, parts: &PartsBox, hz: f64) -> bool {
         self.members(parts).is_none_or(|members| self.skeleton.slowest(&members, hz).is_none())
     }

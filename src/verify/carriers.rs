@@ -3,7 +3,7 @@
 use super::question::{AskedJoint, AskedPiece, Question};
 use crate::arm::LinkBody;
 
-/// The joint inboard of a piece, where the piece is near enough to matter for the parts of that joint.
+/// The joint inboard of a piece, as far as the bearing or the drive of this joint depends on the piece.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Carrier<'q> {
     /// The nearest joint inboard, if nothing lies between it and the piece; else `None`.

@@ -31,8 +31,8 @@ pub(super) struct DriveOption {
     pub drives: Vec<(u32, Ratings)>,
 }
 
-/// How drives of equal mass, torsion curve and bearing stiffness are treated, which no objective tells apart:
-/// `Apart` makes one option of each, `Together` one option of all.
+/// How drives of equal mass, torsion curve and bearing stiffness are treated. No objective tells them apart. `Apart`
+/// makes one option of each drive, `Together` one option of all of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Ties {
     Apart,
@@ -177,8 +177,8 @@ pub(super) fn first_fits<'o, T>(
     options.scan(false, fit).filter(move |(_, option)| option.holds(&least))
 }
 
-/// The coordinates by which the tree groups similar drives, each with a weight. Any grouping gives a valid proof; a
-/// good one makes the bounds tight.
+/// The coordinates by which the tree puts similar drives together, each multiplied by a weight. Any weights give a
+/// valid proof; good ones make the bounds tight.
 fn keys(option: &DriveOption) -> Vec<f64> {
     let (drive, ratings) = (&option.range, option.ratings());
     let stiff = &drive.stiff;

@@ -23,8 +23,8 @@ pub(super) struct Duty {
     pub acceleration_rad_s2: f64,
     /// Required life of the gear \[h\].
     pub life_h: f64,
-    /// Torque of linear acceleration for each kg m² of inertia \[rad/s²\], and for each N m of static torque. One
-    /// of the two is zero: Eq 8 can be read in either way, and the study states which one it takes.
+    /// Torque of linear acceleration for each kg m² of inertia \[rad/s²\], and for each N m of static torque. One of
+    /// the two is zero: Eq 8 (see docs/sizing.md) can be read in either way, and the study states which one it takes.
     linear_per_inertia: f64,
     linear_per_static: f64,
     /// Torque of linear acceleration in an emergency stop, divided by that in a ramp.
@@ -38,7 +38,7 @@ pub(super) struct Duty {
     pub has_brake: bool,
     /// The stage between motor and gear.
     pub stage: AskedStage,
-    /// What is asked of the sizes of the parts.
+    /// Limits on the sizes of gear and motor.
     pub fit: AskedFit,
     /// Whether the motor's heat is checked.
     pub checks_heat: bool,
@@ -144,7 +144,8 @@ impl Duty {
 
 /// Largest speed of a joint \[rad/s\]. It is the maximum that the study states for the joint, or else the speed of the
 /// tip divided by the lever `reach_m`. The lever is taken as at least `min_lever_m`, because a short lever would give a
-/// roll joint an absurd speed. A duty in numbers has its own largest speed.
+/// roll joint an absurd speed. If the study states a duty of the joint in numbers, the speed of the tip is not used,
+/// and the result is at least the largest speed of this duty.
 fn speed_rad_s(motion: &AskedMotion, reach_m: f64, joint: &AskedJoint) -> f64 {
     let fastest_rpm = joint.duty.iter().map(|phase| phase.speed_rpm).fold(0.0, f64::max);
     match (joint.max_speed_rad_s, joint.duty.is_empty()) {
@@ -165,10 +166,10 @@ impl AskedMotion {
         self.tip_speed_m_s / self.ramp_time_s
     }
 
-    /// Whether no torque of a demand and no heat decreases when static torque or inertia grows. Only while the
-    /// joint slows down is the linear torque subtracted from the static torque. If speeding up takes at least as
-    /// long, it outweighs this: the motor has its largest torque of the cycle there, and that torque grows at least
-    /// as fast as any other decreases.
+    /// Whether no torque of a demand and no heat decreases when static torque or inertia grows. Only while the joint
+    /// slows down is the linear torque subtracted from the static torque. If the joint speeds up for at least as long
+    /// as it slows down, speeding up outweighs this: the motor then has its largest torque of the cycle while the joint
+    /// speeds up, and that torque grows at least as fast as any other decreases.
     pub fn grows(&self) -> bool {
         let mean = self.mean_torque();
         mean.of_difference <= mean.of_sum
@@ -178,7 +179,8 @@ impl AskedMotion {
         self.phases.iter().map(AskedPhase::travel_s).sum()
     }
 
-    /// Fractions of the cycle's time that its kinds of phases take.
+    /// Fractions of the cycle's time that its kinds of phases take. A phase with a stated fraction of the static torque
+    /// is weighted with the square of this fraction.
     fn shares(&self, has_brake: bool) -> CycleShares {
         let whole_s: f64 = self.phases.iter().map(|phase| phase.duration_s).sum();
         let mut shares = CycleShares::default();

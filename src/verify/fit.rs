@@ -42,8 +42,9 @@ pub(super) fn room(joint: &AskedJoint, vector_m: &Vector3<f64>, section: &Sectio
     [gear_m, motor_m]
 }
 
-/// Width of a tube in the plane in which a joint turns it \[m\]. If the joint's axis is along the tube (within the
-/// angle at which section frames change), it is the smaller of the two outer sizes.
+/// Width of a tube in the plane in which a joint turns it \[m\]. If the angle between the joint's axis and the tube is
+/// below 8°, it is the smaller of the two outer sizes. The section frame of a tube changes at the same angle to the
+/// vertical.
 fn width_m(axis: &Vector3<f64>, vector_m: &Vector3<f64>, section: &Section) -> f64 {
     let frame = section_frame(vector_m);
     let (width_m, height_m) = section.outer_m();
@@ -56,13 +57,13 @@ fn width_m(axis: &Vector3<f64>, vector_m: &Vector3<f64>, section: &Section) -> f
     ((width_m * on_y).powi(2) + (height_m * on_z).powi(2)).sqrt()
 }
 
-/// How wide the parts of a drive are, where the joint asks; 0 if nobody knows.
+/// Outer diameters of gear and motor \[m\]. Each is 0 if the joint does not limit it or the catalog leaves it blank.
 pub(super) fn widths(fit: &AskedFit, gear: &Envelope, motor: &Envelope) -> Widths {
     let of = |asked: bool, width_m: Option<f64>| if asked { width_m.unwrap_or(0.0) } else { 0.0 };
     [of(fit.gear_to_link_max.is_some(), gear.outer_diameter_m), of(fit.motor_in_link, motor.outer_diameter_m)]
 }
 
-/// Whether a drive has the bores and the length that its joint asks for, whatever the link.
+/// Whether a drive has the bores and the length that its joint asks for. This does not depend on the link.
 pub(super) fn goes_into_joint(fit: &AskedFit, gear: &Envelope, motor: &Envelope) -> bool {
     let mut on_axis = vec![*gear];
     if fit.motor_on_axis {

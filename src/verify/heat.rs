@@ -38,7 +38,7 @@ pub(super) struct HeatDemand {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct CycleShares {
     pub ramp_up: f64,
-    /// Travel at constant speed. A phase with a stated fraction of the static torque counts times the square of
+    /// Travel at constant speed. A phase with a stated fraction of the static torque is weighted with the square of
     /// this fraction.
     pub travel: f64,
     pub ramp_down: f64,
@@ -127,7 +127,7 @@ pub(super) fn efficiency(gear: &Gear) -> Option<f64> {
     gear.efficiency.or((gear.kind == GearKind::Direct).then_some(1.0))
 }
 
-/// Inertia of rotor and stage, and of the gear's input behind the stage, at the motor \[kg m²\].
+/// Inertia of the rotor, the stage and the gear's input, all referred to the motor's shaft \[kg m²\].
 pub(super) fn input_inertia_kgm2(gear: &Gear, motor: &Motor, stage: &AskedStage) -> Option<f64> {
     let none = (gear.kind == GearKind::Direct).then_some(0.0);
     let at_gear_kgm2 = gear.inertia_input_kgm2.or(none)?;
@@ -173,7 +173,7 @@ pub(super) fn continuous_nm(motor: &Motor, speed_rpm: f64) -> Option<f64> {
 /// One phase of a stated duty: torque and acceleration at the joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct StatedPhase {
-    /// Fraction of the duty's time.
+    /// Duration of the phase, as a fraction of the duration of the whole duty.
     share: f64,
     torque_nm: f64,
     acceleration_rad_s2: f64,

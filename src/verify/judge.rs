@@ -22,7 +22,8 @@ use std::sync::Arc;
 /// The part that a design has at one piece of the chain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Pick {
-    /// The part that the question gives, or that its rule determines: the lightest drive that meets the demand.
+    /// The part that the question gives, or the drive that the first-fit rule determines: the lightest one that meets
+    /// the demand.
     Given,
     /// A drive of the catalogs, given by the indices of its gear and motor.
     Drive {
@@ -38,7 +39,8 @@ pub enum Pick {
 /// A design that meets every check and every limit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judged {
-    /// The part at each piece, base to tip. Drives that the first-fit rule determined are named in full.
+    /// The part at each piece, base to tip. A drive that the first-fit rule determined is given by its gear and motor
+    /// too.
     pub picks: Vec<Pick>,
     /// The objectives of the design by the full model.
     pub objectives: Objectives,
@@ -130,7 +132,8 @@ impl<'q> Judge<'q> {
     }
 
     /// Checks from the tip inward whether every drive meets the demand of everything outboard of it. Returns the parts
-    /// `picks` with the drives of the joints that take the lightest one filled in. `None` if a drive or a tube fails.
+    /// of the design: those in `picks`, and for each joint with the first-fit rule the lightest drive that passes.
+    /// `None` if a drive or a tube fails.
     fn with_drives(&self, picks: &[Pick], tubes: &[TubeRange]) -> Option<Vec<Pick>> {
         let pieces = self.question.pieces.iter().enumerate();
         let places: Vec<usize> = pieces

@@ -48,7 +48,7 @@ pub(super) struct PlacedTube {
 pub(super) struct PlacedMass {
     /// The point of the arm with which the mass moves.
     pub carrier: Point,
-    /// Vector from that point to the centre of mass \[m\].
+    /// Vector from the point `carrier` to the centre of mass \[m\].
     pub arm_m: Vector3<f64>,
     pub mass_kg: f64,
     /// Inertia about the centre of mass, in axes of the world \[kg m²\].
@@ -188,9 +188,9 @@ impl Layout {
         self.add_bodies(piece_rank(place), &joint.bodies.rotating, rotation);
     }
 
-    /// Adds rotational springs at the present end of the chain. `springs` holds the axis of each in the world and its
-    /// compliance \[rad/(N m)\]. Springs without compliance are left out. `place` is the number of the piece to which
-    /// they belong.
+    /// Adds rotational springs at the present end of the chain. `springs` has the axis of each spring in the world and
+    /// its compliance \[rad/(N m)\]. Springs without compliance are left out. `place` is the number of the piece to
+    /// which they belong.
     fn add_springs(&mut self, place: usize, springs: &[(Vector3<f64>, f64)]) {
         for &(axis, rad_per_nm) in springs.iter().filter(|(_, rad_per_nm)| *rad_per_nm > 0.0) {
             let (rank, at_m, compliance) = (spring_rank(place), self.tip_m, rad_per_nm);
@@ -338,8 +338,9 @@ pub(super) enum Coordinate {
     Joint(usize),
     /// Tilt of a joint's bearing about one of the two axes across the joint's axis.
     Tilt(usize, usize),
-    /// Displacement of everything outboard of a joint along one of the two axes across, or along the joint's axis
-    /// (index 2). The arm does not deform in this way: the motion is a virtual one, from which forces follow.
+    /// Displacement of everything outboard of a joint along one of the two axes across the joint's axis, or along the
+    /// joint's axis (index 2). The arm does not deform in this way: the motion is a virtual one, from which forces
+    /// follow.
     Shift(usize, usize),
     /// Deformation of a tube in one shape.
     Tube(usize, Shape),

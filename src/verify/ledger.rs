@@ -1,7 +1,8 @@
-//! The branches of a search that are done, so that another process need not go through them again.
+//! The finished branches of a search, so that a later process need not search them again.
 //!
-//! The search halves what it has; a branch near the root is named by the halves that lead to it. What a branch came to does
-//! not depend on the others, so a search that goes on has the result of one that was never stopped.
+//! The search divides its boxes and regions into halves. A branch is what lies below one such half, and is named by the
+//! halves that lead to it. The result of a branch does not depend on the other branches. So a search that is continued
+//! has the same result as one that was never stopped.
 
 use super::halt::{Found, Halt};
 use super::parts_box::Design;
@@ -9,30 +10,33 @@ use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Branches from so many halvings on are not written down by themselves.
+/// Greatest number of halvings after which a branch is still recorded by itself. Deeper branches are recorded only as
+/// parts of these.
 const DEEPEST: u32 = 16;
 
-/// Keeps a state, if it is time to do so. The state is made only then.
+/// A function that saves the state of a search, if a save is due. It gets a function that makes the state, and calls it
+/// only in this case.
 pub type Keep<'s> = dyn Fn(&dyn Fn() -> Vec<u8>) + Sync + 's;
 
-/// The branches that are done. By default none is, and nothing is kept.
+/// The finished branches of a search. By default there are none, and no state is saved.
 #[derive(Default)]
 pub struct Ledger<'s> {
     keep: Option<&'s Keep<'s>>,
     done: Mutex<Done>,
-    /// Held by the thread that keeps a state.
+    /// Locked by the thread that saves a state, so that two threads do not save at the same time.
     keeping: Mutex<()>,
 }
 
-/// What is written down: the boxes that each finished branch bounded, and the single designs found so far.
+/// The state that is saved: the number of boxes that were bounded in each finished branch, and the single designs found
+/// so far.
 #[derive(Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Done {
     boxes: BTreeMap<u32, u64>,
     designs: BTreeSet<Design>,
 }
 
-/// A branch: the digits of this number in base 2, after the leading one, are the halves that lead to it. Zero stands for
-/// a branch that is not written down.
+/// A branch: the digits of this number in base 2, after the leading one, are the halves that lead to it. Zero stands
+/// for a branch that is not recorded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Branch(u32);
 
@@ -40,7 +44,7 @@ impl Branch {
     pub(super) const ROOT: Self = Self(1);
     pub(super) const DEEP: Self = Self(0);
 
-    /// Its two halves.
+    /// The two halves of this branch.
     pub(super) fn halves(self) -> [Self; 2] {
         match self.0 {
             0 => [Self::DEEP; 2],
@@ -51,10 +55,10 @@ impl Branch {
 }
 
 impl<'s> Ledger<'s> {
-    /// Goes on from the state that an earlier process kept, if there is one.
+    /// Goes on from the state that an earlier process saved, if there is one.
     ///
     /// # Errors
-    /// The bytes are no state, in words.
+    /// A message if the bytes are not a saved state.
     pub fn resumed(from: Option<&[u8]>, keep: &'s Keep<'s>) -> Result<Self, String> {
         let done = from.map(postcard::from_bytes).transpose().map_err(|e| e.to_string())?;
         let done = Mutex::new(done.unwrap_or_default());
@@ -70,14 +74,15 @@ impl<'s> Ledger<'s> {
         self.done().designs.clone()
     }
 
-    /// What a branch comes to: explored now, or by an earlier process.
+    /// The numbers of boxes that were bounded and left open in a branch. If the branch is not finished already,
+    /// `explore` searches it now.
     pub(super) fn of(&self, branch: Branch, halt: &Halt, explore: impl FnOnce() -> Found) -> Found {
         let Some(keep) = self.keep.filter(|_| branch != Branch::DEEP) else { return explore() };
         if let Some(&boxes) = self.done().boxes.get(&branch.0) {
             return Found { boxes, open: 0 };
         }
         let found = explore();
-        // what was found in a search that ends early may be less than all
+        // a search that ends early may not have searched the whole branch
         if found.open == 0 && !halt.stopped() {
             let mut done = self.done();
             for half in branch.halves() {
@@ -92,7 +97,8 @@ impl<'s> Ledger<'s> {
         found
     }
 
-    /// The state. Designs are taken down last: those of every branch that is done are among them.
+    /// The bytes of the state. The designs are read after the branches, so that those of every finished branch are
+    /// among them.
     fn bytes(&self, halt: &Halt) -> Vec<u8> {
         let boxes = self.done().boxes.clone();
         let designs = halt.designs.lock().unwrap_or_else(PoisonError::into_inner).clone();

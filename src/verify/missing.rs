@@ -20,7 +20,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 
-/// Number of single designs that are judged together. After each batch, the search looks whether it must stop.
+/// Number of single designs that are judged together. After each batch, the search checks whether it must stop.
 const BATCH: usize = 4096;
 /// Largest number of designs up to which all ties are listed. If there are more, one design of each set of ties is
 /// listed.
@@ -68,8 +68,8 @@ impl Judge<'_> {
         self.missing_since(&Ledger::default(), front, settings, (stop, deadline))
     }
 
-    /// As [`missing`](Self::missing), except for the branches that the ledger says are done. It must be of the same question
-    /// and front.
+    /// As [`missing`](Self::missing), without the branches that are finished in `ledger`. The ledger must be of the
+    /// same question and the same front.
     pub fn missing_since(
         &self,
         ledger: &Ledger,

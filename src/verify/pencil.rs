@@ -77,8 +77,8 @@ impl Pencil {
         Ok(Factor { size, lower })
     }
 
-    /// Approximation of the lowest mode by a few steps of inverse iteration with `factor`, the Cholesky factor of `K -
-    /// λ M`. The mode is scaled to `xᵀ M x = 1`.
+    /// Approximation of the lowest mode by a few steps of inverse iteration with `factor`, the Cholesky factor of
+    /// `K - λ M`. The mode is scaled to `xᵀ M x = 1`.
     pub(super) fn lowest_mode(&self, factor: &Factor) -> Vec<f64> {
         let mut x = vec![1.0; self.stiffness.len()];
         for _ in 0..3 {
@@ -142,8 +142,7 @@ impl Factor {
         x
     }
 
-    /// Solves `Lᵀ x = b` for `x`, where `L` is this Cholesky factor. `x` holds `b` at first and the solution at the
-    /// end.
+    /// Solves `Lᵀ x = b` for `x`, where `L` is this Cholesky factor. `x` is `b` at first and the solution at the end.
     fn solve_upper(&self, x: &mut [f64]) {
         let lower = |i: usize, j: usize| self.lower[row(i) + j];
         for i in (0..self.size).rev() {

@@ -1,11 +1,12 @@
 //! One case of a study as sums over parts: torques, deflection, stress and inertia.
 //!
-//! *Loads* are the masses of drives \[kg\] and the weights of tubes per length \[N/m\]. Each load adds in
-//! proportion to the torque on a joint (by its lever arm) and to the force and moment in a tube's section.
+//! *Loads* are the masses of drives \[kg\] and the weights of tubes per length \[N/m\]. The torque on a joint, and the
+//! force and the moment in a tube's section, are sums of contributions that are proportional to the loads. The factor
+//! of a torque is a lever arm.
 //!
-//! *Deflection* follows from the method of the unit load. The displacement of the tip along `e` is the work of the
-//! real internal loads, divided by the stiffness, on the internal loads of a unit force `e` at the tip: `Σ θ_j (a_j
-//! · (r_j x e)) + Σ ∫ (N n/EA + V·v/κGA + T t/GJ + M_y m_y/EI_y + M_z m_z/EI_z) dx`. Real loads are at most
+//! *Deflection* follows from the method of the unit load. The displacement of the tip along `e` is the work of the real
+//! internal loads, divided by the stiffness, on the internal loads of a unit force `e` at the tip:
+//! `Σ θ_j (a_j · (r_j x e)) + Σ ∫ (N n/EA + V·v/κGA + T t/GJ + M_y m_y/EI_y + M_z m_z/EI_z) dx`. Real loads are at most
 //! quadratic in `x` and virtual ones linear, so the quadrature is exact.
 //!
 //! *Inertia* is the kinetic energy of the coordinates of [`super::layout`], a sum over the masses of drives

@@ -29,7 +29,7 @@ pub struct Question {
     pub pieces: Vec<AskedPiece>,
     /// All poses and loads, each with the models of links and joints.
     pub cases: Vec<LoadCase>,
-    /// Indices of the cases over which tip deflection and lowest mode are taken.
+    /// Indices of the judged cases, over which tip deflection and lowest mode are taken.
     pub judged_cases: Vec<usize>,
     /// Indices of the sizing cases, in which drives are checked and stresses include acceleration.
     pub sizing_cases: Vec<usize>,
@@ -69,7 +69,7 @@ pub struct AskedJoint {
     pub bearing: BearingSource,
     /// Where the masses in addition to gear, motor and bearing come from.
     pub extras: ExtrasSource,
-    /// Rigid bodies at the joint in addition to all these.
+    /// Rigid bodies at the joint, in addition to drive, bearing and extra parts.
     pub bodies: JointBodies,
     /// How the drive of the joint is found.
     pub drive: AskedDrive,
@@ -78,14 +78,14 @@ pub struct AskedJoint {
     pub max_speed_rad_s: Option<f64>,
     /// Whether a brake holds the joint at rest.
     pub has_brake: bool,
-    /// The duty that the study states for this joint in place of its cycle; empty if none.
+    /// The duty that the study states for this joint in place of the duty cycle of all joints; empty if none.
     pub duty: Vec<AskedDutyPhase>,
     /// Limits on the sizes of gear and motor.
     pub fit: AskedFit,
     /// Compliance of the joint's connections, as a fraction of the compliance of a catalog gear and of that gear's
     /// bearing.
     pub connection_share: f64,
-    /// The stage between motor and gear, of a drive that is sized.
+    /// The stage between motor and gear. It is used only if the drive comes from the catalogs.
     pub stage: AskedStage,
 }
 
@@ -94,16 +94,16 @@ pub struct AskedJoint {
 pub struct AskedStage {
     /// Turns of the motor per turn of the gear's input.
     pub ratio: f64,
-    /// Part of the power that arrives.
+    /// Fraction of the motor's power that reaches the gear's input.
     pub efficiency: f64,
-    /// Moment of inertia at the motor \[kg m²\].
+    /// Moment of inertia of the stage, referred to the motor's shaft \[kg m²\].
     pub inertia_kgm2: f64,
-    /// Twist of the gear's input per torque there \[rad/(N m)\].
+    /// Twist of the stage at the gear's input per torque on this input \[rad/(N m)\].
     pub rad_per_nm: f64,
 }
 
 impl AskedStage {
-    /// The motor turns the gear itself.
+    /// No stage: the motor turns the gear's input directly.
     pub const NONE: Self = Self { ratio: 1.0, efficiency: 1.0, inertia_kgm2: 0.0, rad_per_nm: 0.0 };
 }
 
@@ -112,13 +112,13 @@ impl AskedStage {
 pub struct AskedFit {
     /// Largest allowed ratio of the gear's outer diameter to the width of the link that follows the joint.
     pub gear_to_link_max: Option<f64>,
-    /// Whether the motor must go into the hollow of that link.
+    /// Whether the motor must go into the hollow of the link that follows the joint.
     pub motor_in_link: bool,
-    /// Whether the motor is behind the gear on the joint's axis.
+    /// Whether the motor is on the joint's axis, in line with the gear.
     pub motor_on_axis: bool,
-    /// Smallest bore that each part on the axis must have \[m\].
+    /// Smallest bore that the gear must have \[m\], and the motor too if it is on the joint's axis.
     pub cable_bore_min_m: Option<f64>,
-    /// Largest length of the parts on the axis together \[m\].
+    /// Largest length of the gear \[m\], together with the motor if that is on the joint's axis too.
     pub drive_length_max_m: Option<f64>,
 }
 
@@ -153,19 +153,19 @@ pub enum AskedDrive {
 /// The parts of the catalogs that a joint may use. `None` in a field allows all.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AllowedParts {
-    /// Which of the two catalog masses of a gear counts: that of its housed unit or that of its component set.
+    /// Which of the two catalog masses of a gear is used: that of its housed unit or that of its component set.
     pub gear_mass: GearMass,
     /// Allowed series of gears.
     pub gear_series: Option<Vec<String>>,
     /// Allowed reduction ratios.
     pub ratios: Option<Vec<f64>>,
-    /// Allowed kinds of gears; actuators are not affected.
+    /// Allowed kinds of gears. For actuators, `actuators` alone decides.
     pub gear_kinds: Option<Vec<GearKind>>,
     /// Allowed gears by name.
     pub gears: Option<Vec<String>>,
     /// Allowed actuators by model.
     pub actuators: Option<Vec<String>>,
-    /// Allowed kinds of motors; those of actuators are not affected.
+    /// Allowed kinds of motors. For the motors of actuators, `actuators` alone decides.
     pub motor_kinds: Option<Vec<MotorKind>>,
     /// Allowed motors by name.
     pub motors: Option<Vec<String>>,
@@ -224,12 +224,13 @@ pub struct AskedMotion {
     pub emergency_stops: Option<f64>,
 }
 
-/// The two ways in which Eq 8, the torque of linear acceleration, can be read.
+/// The two ways in which Eq 8, the torque of linear acceleration (see docs/sizing.md), can be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LinearTorque {
     /// Inertia of everything outboard about the joint's axis, times the joint's acceleration.
     OfInertia,
-    /// Acceleration of the tip divided by gravity, times the static torque. The paper reads Eq 8 in this way.
+    /// Acceleration of the tip divided by gravity, times the static torque. The paper that `src/paper` reproduces reads
+    /// Eq 8 in this way.
     OfStaticTorque,
 }
 
@@ -257,7 +258,7 @@ pub enum AskedPhaseKind {
     Fraction {
         /// Fraction of the static torque.
         of_static_torque: f64,
-        /// Fraction of the joint's speed.
+        /// Fraction of the joint's full speed.
         of_speed: f64,
     },
 }
@@ -269,7 +270,7 @@ pub struct Limits {
     pub tip_deflection_max_m: Option<f64>,
     /// Largest allowed mass of the arm \[kg\].
     pub mass_max_kg: Option<f64>,
-    /// Lowest mode that is required at least \[Hz\].
+    /// Smallest allowed frequency of the lowest mode \[Hz\].
     pub lowest_mode_min_hz: Option<f64>,
     /// Bandwidth of the servo \[Hz\], and the smallest allowed ratio of the lowest mode to this bandwidth.
     pub servo_hz_and_ratio: Option<[f64; 2]>,

@@ -58,9 +58,10 @@ impl Ratings {
         widths: [0.0; 2],
     };
 
-    /// The ratings of a drive under a joint's motion; `None` if the motion is too fast for the drive, if the drive does not
-    /// go into the joint, or if the catalog lacks a number. A blank number of the bearing or of a size excludes nothing; `size`
-    /// is that of the gear in the build that is asked for.
+    /// The ratings of a drive under a joint's motion; `None` if the motion is too fast for the drive, if the drive does
+    /// not go into the joint, or if the catalog lacks a number. A blank number of the bearing or of a size excludes
+    /// nothing. `size` are the dimensions of the gear in the form that the study asks for: housed unit or component
+    /// set.
     pub(super) fn of(
         gear: &Gear,
         size: &Envelope,
@@ -89,7 +90,7 @@ impl Ratings {
 
     /// Whether a drive with these ratings passes every check under `demand`: torques, bearing, motor heat and widths.
     pub(super) fn hold(&self, demand: &Demand) -> bool {
-        // the torques are compared without a branch, because nearly every box calls this for many drives
+        // the torques are compared without a conditional jump, because nearly every box calls this for many drives
         let torques = self.most.iter().zip(&demand.torques);
         torques.fold(true, |held, (most, asked)| held & (asked <= most))
             && self.bearing.hold(&demand.bearing)
@@ -154,8 +155,9 @@ fn breaks_nm(gear: &Gear) -> f64 {
     [gear.buckling_torque_nm, gear.ratcheting_torque_nm].into_iter().flatten().fold(f64::INFINITY, f64::min)
 }
 
-/// Whether the gear survives the number of emergency stops that the study asks for. In stops it survives 1e4 waves of
-/// the wave generator. One turn of the wave generator counts as two waves, and a stop as at least one.
+/// Whether the gear survives the number of emergency stops that the study asks for. In all stops together, a
+/// strain-wave gear survives 1e4 waves of its wave generator. One turn of the wave generator makes two waves, and a
+/// stop is taken as at least one wave.
 fn bears_the_stops(gear: &Gear, duty: &Duty) -> bool {
     let waves = 2.0 * input_rpm(gear, duty.speed_rad_s) / 60.0 * duty.stop_s;
     let has_waves = gear.kind == GearKind::StrainWave;
@@ -191,9 +193,9 @@ fn motor_peak_nm(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<f64> {
     Some((peak_nm - own_nm) * gain(gear, stage)?)
 }
 
-/// Cube of the mean torque under which the gear reaches the required life \[(N m)³\], from `L10 = L_rated (T_rated
-/// / T_mean)^p (n_rated / n_mean)`. The life of a belt, a direct drive or an actuator is checked only if its row
-/// states one.
+/// Cube of the mean torque under which the gear reaches the required life \[(N m)³\], from
+/// `L10 = L_rated (T_rated / T_mean)^p (n_rated / n_mean)`. The life of a belt, a direct drive or an actuator is
+/// checked only if its row states one.
 fn life_nm3(gear: &Gear, _: &Motor, duty: &Duty) -> Option<f64> {
     let LifeLaw { rated_h, rated_speed_rpm, exponent } = gear.life;
     if rated_h.is_none() && matches!(gear.kind, GearKind::Belt | GearKind::Direct | GearKind::Actuator) {

@@ -19,7 +19,8 @@ pub(super) struct Search<'s> {
 }
 
 impl Search<'_> {
-    /// Bounds a box and, unless it is discarded, explores its halves; unless that was done before.
+    /// Bounds a box, and explores its halves unless the box is discarded. Nothing is done if the ledger has the result
+    /// of this branch already.
     pub(super) fn explore(&self, parts: &PartsBox, branch: Branch) -> Found {
         self.ledger.of(branch, self.halt, || self.explore_now(parts, branch))
     }

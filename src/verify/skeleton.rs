@@ -26,7 +26,7 @@ pub(super) struct Skeleton {
     /// Loads on the bearing of every joint; first index the case, second the joint. The list of a case that is not a
     /// sizing case is empty, and a bearing that is not checked is `None`.
     pub bearings: Vec<Vec<Option<PosedBearing>>>,
-    /// For each joint, the lever: the distance along the axis from its bearing to where the link attaches.
+    /// For each joint, the lever of the loads on its bearing.
     pub levers: Vec<Lever>,
     /// Index of the first tube between each joint and the next; `None` if there is none.
     pub first_tubes: Vec<Option<usize>>,
@@ -46,10 +46,12 @@ pub(super) struct Parts {
     pub tubes: Vec<TubeOptions>,
 }
 
-/// Distance along the axis from the face of a joint's flange to the point where the link attaches.
+/// Lever of the loads on a joint's bearing: the distance along the axis from the face of the joint's flange to the
+/// point where the link attaches.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Lever {
-    /// The distance that the study states \[m\].
+    /// The distance that the study states \[m\]. It is measured from the centre of the bearing. Zero if the study
+    /// states none and no tube follows the joint directly.
     Stated(f64),
     /// Half the width of the tube with this index (in the list of links with weight along their length).
     HalfOf(usize),
@@ -151,7 +153,7 @@ fn first_tubes(question: &Question) -> Vec<Option<usize>> {
     first
 }
 
-/// The lever of every joint, base to tip: the distance along its axis from the bearing to where the link attaches.
+/// The lever of the loads on the bearing of every joint, base to tip.
 fn levers(question: &Question) -> Vec<Lever> {
     let mut levers = Vec::new();
     let mut tubes = 0;

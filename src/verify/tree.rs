@@ -18,7 +18,7 @@ struct Node {
 }
 
 impl Tree {
-    /// Builds the tree over `options`. `keys` holds the coordinates of each option. A set of options is halved at the
+    /// Builds the tree over `options`. `keys` has the coordinates of each option. A set of options is halved at the
     /// median of the coordinate in which the set has the widest spread.
     pub(super) fn new(options: Vec<u32>, keys: &[Vec<f64>]) -> Self {
         let mut tree = Self { nodes: Vec::new(), order: options };

@@ -29,7 +29,8 @@ pub(super) struct TubeNumbers {
     pub mass_kg: f64,
     /// Stiffnesses (see [`STIFFNESSES`]); infinite where the link model has no such strain.
     pub stiffnesses: [f64; STIFFNESSES],
-    /// Stress coefficients (see [`STRESSES`]); zero if the strength is unknown.
+    /// Stress divided by the strength, per unit of each internal load, in the order of [`STRESSES`] \[1/N, 1/(N m)\];
+    /// zero if the strength is unknown.
     pub stresses: [f64; STRESSES],
     /// 1 for a round tube, 0 for a rectangular one.
     pub round: f64,

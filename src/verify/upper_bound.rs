@@ -47,7 +47,7 @@ impl UpperBound {
     }
 
     /// Three bounds that together cover what a design of the front leaves undominated below this bound. `row` are the
-    /// objectives of this design. Each of the three limits one objective to its value.
+    /// objectives of this design. Each of the three limits one objective to the value that this design has.
     pub(super) fn left_by(&self, row: &UpperBound) -> [Self; 3] {
         [
             Self { mass_kg: row.mass_kg, ..*self },

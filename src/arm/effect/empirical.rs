@@ -1,6 +1,7 @@
-//! `empirical`: a law without a name, as it was found in readings. At a joint it is a further twist, a polynomial of the
-//! torque, or a compliance that changes in the course of the tests; at the base a tilt that differs about x and y; at a channel it is a reading that bends, that has a gain
-//! of its own in each direction, or that shows how the base turned once.
+//! `empirical`: a law without a name, as it was found in readings. At a joint it is a further twist, which is a
+//! polynomial of the torque, or a compliance that changes in the course of the tests. At the base it is a tilt that
+//! differs about x and y. At a channel it is a nonlinearity, a gain for each direction, or a rotation of the base
+//! between two rows.
 
 use super::channel::Channel;
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
@@ -10,31 +11,34 @@ use super::warming::Softening;
 use crate::arm::joint_law::FurtherTwist;
 use nalgebra::{Matrix3, Vector3};
 
-/// Parameter: coefficients of a joint's further angle of torsion that change sign with the torque.
+/// Name of the parameter with the coefficients of a joint's further angle of torsion, for the terms that change sign
+/// with the torque.
 pub(crate) const ODD_TWIST: &str = "odd_twist_rad";
-/// Parameter: coefficients of a joint's further angle of torsion that do not change sign with the torque.
+/// Name of the parameter with the coefficients of a joint's further angle of torsion, for the terms that do not change
+/// sign with the torque.
 pub(crate) const EVEN_TWIST: &str = "even_twist_rad";
-/// Parameter: reference torque of the coefficients of the further angle. At this torque the angle is the sum of all
-/// coefficients.
+/// Name of the parameter with the reference torque of these coefficients. At this torque the further angle is the sum
+/// of all coefficients.
 pub(crate) const TORQUE: &str = "torque_nm";
-/// Changes of a joint's compliance in the course of the static and of the modal tests.
+/// Names of the parameters with the change of a joint's compliance: in the course of the static tests, and in the
+/// course of the modal tests.
 pub(crate) const SOFTENING: [&str; 2] = ["static_softening", "modal_softening"];
-/// The numbers of rows in which most of these changes come.
+/// Names of the parameters with the number of rows after which 63 % of each of these changes is reached.
 pub(crate) const SOFTENING_ROWS: [&str; 2] = ["static_softening_rows", "modal_softening_rows"];
-/// Part of the change in the static tests that the reference of a displacement has.
+/// Name of the parameter with the part of the change in the static tests that is already present when the reference of
+/// a displacement is read.
 pub(crate) const SOFTENING_REFERENCE: &str = "static_softening_reference";
-/// How far readings bend.
+/// Name of the parameter with the two coefficients of the nonlinearity of readings.
 pub(crate) const BEND: &str = "bend";
-/// Parameter: the reading at which the coefficients of the nonlinearity are the relative deviation from a straight
-/// line.
+/// Name of the parameter with the reading at which these coefficients are the relative deviation from a straight line.
 pub(crate) const BEND_SCALE: &str = "bend_scale";
-/// Parameter: a factor on the reading for each direction.
+/// Name of the parameter with a factor on the reading for each direction.
 pub(crate) const GAIN: &str = "gain";
-/// Further tilt of the base per moment about world x and about y.
+/// Name of the parameter with the further tilt of the base per moment, about world x and about world y.
 pub(crate) const LEAN: &str = "tilt_rad_per_nm";
-/// Rotation by which the base turned once.
+/// Name of the parameter with the rotation by which the base turned once between two rows.
 pub(crate) const BASE_TURN: &str = "base_turn_rad";
-/// The first row after that, counted from 1.
+/// Name of the parameter with the first row after the base turned, counted from 1.
 pub(crate) const BASE_TURN_ROW: &str = "base_turn_from_row";
 
 const OF_JOINT: &[Parameter] = &[
@@ -92,7 +96,8 @@ pub(crate) const KIND: Kind = Kind {
     traits: Traits { is_sought: false, in_bounds: false, ..Traits::USUAL },
 };
 
-/// Whether a law of a joint with these parameters describes the tests alone: it has no further twist.
+/// Whether a law of a joint with these parameters describes the tests and not the product. It does if it has no further
+/// twist.
 pub(crate) fn is_of_tests_alone(parameters: &[(String, Vec<f64>)]) -> bool {
     let is_twist = |(name, numbers): &(String, Vec<f64>)| {
         [ODD_TWIST, EVEN_TWIST].contains(&name.as_str()) && numbers.iter().any(|x| *x != 0.0)
@@ -112,7 +117,7 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
         soften(softening, at, subject);
     } else if let Some(reading) = subject.channel_mut(at) {
         let [a, b, bend_scale, x, y, z, ref turn @ ..] = numbers[..] else { return };
-        // one law bends, another has gains: where both stand, both act
+        // one law has a nonlinearity, another has gains: if a channel has both laws, both act
         if [a, b] != [0.0; 2] {
             (reading.bend, reading.bend_scale) = ([a, b], bend_scale);
         }
@@ -126,8 +131,9 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
     }
 }
 
-/// Lets a joint soften in the course of the static and of the modal tests: a change, and the rows in which it comes, of each,
-/// and the part of the first that references have.
+/// Makes the compliance of the joint `at` change in the course of the static and of the modal tests. The `numbers` are
+/// change and number of rows for the static tests, the same two for the modal tests, and the part of the static change
+/// that is present when references are read.
 fn soften(numbers: &[f64], at: &str, subject: &mut Subject) {
     let [static_change, static_rows, modal_change, modal_rows, reference] = *numbers else { return };
     for (channel, change, rows) in
@@ -135,7 +141,7 @@ fn soften(numbers: &[f64], at: &str, subject: &mut Subject) {
     {
         if change != 0.0 {
             let own = &mut subject.setups[channel as usize].softening;
-            // one law of the order of the tests is enough
+            // one law with the order of the tests is enough for a joint, so the last one replaces those before it
             own.retain(|(joint, _)| joint != at);
             own.push((at.into(), Softening { change, rows, reference }));
         }

@@ -58,8 +58,8 @@ impl Effect {
         self.kind().is_some_and(|k| k.traits.changes_bending)
     }
 
-    /// Whether the effect describes the test and not the product. Whatever sits at a channel does, and a law of a joint that
-    /// only says how the joint changed in the course of the tests.
+    /// Whether the effect describes the test and not the product. Every effect at a channel describes the test. So does
+    /// a law of a joint that only says how the joint changed in the course of the tests.
     pub fn is_of_test(&self) -> bool {
         self.kind().is_some_and(|k| k.scope == Scope::Test)
             || Channel::from_word(&self.at).is_some()

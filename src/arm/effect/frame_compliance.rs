@@ -1,5 +1,6 @@
 //! `frame_compliance`: a structure rotates elastically about three axes, with a different compliance about each and
-//! with coupling between them. It is the ground under the arm, or the casting behind a joint.
+//! with coupling between them. It is the ground under the arm, or the structure between a joint and the link outboard
+//! of it.
 
 use super::kind::{ElasticRotation, Kind, Parameter, Place, Scope, Traits};
 use super::subject::Subject;

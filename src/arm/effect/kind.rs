@@ -85,17 +85,18 @@ pub enum Measure {
 pub struct Parameter {
     /// Name with unit, as files write it.
     pub name: &'static str,
-    /// Number of values: 1, or 3 for a vector.
+    /// Number of values: 1, more for a vector, or 0 for a list of any length.
     pub count: usize,
     /// Smallest value that a file may give.
     pub low: f64,
     /// Largest value that a file may give.
     pub high: f64,
-    /// A typical value. A fit starts there.
+    /// A typical value. With the scale [`Scale::Linear`] it is the value at `u = 1`.
     pub typical: f64,
-    /// Range in which a fit expects the parameter, with equal probability everywhere in it. A stiffness is given as
-    /// its compliance divided by that of its joint, a reciprocal as `1/factor`, a torque as a fraction of the largest
-    /// torque on its joint.
+    /// Range in which a fit expects the parameter, with equal probability everywhere in it. The ends of the range are
+    /// values of the parameter, except for three scales ([`Scale`]): a stiffness is given as its compliance divided by
+    /// that of the joint, a factor on a stiffness as its reciprocal, and a torque as a fraction of the largest torque
+    /// on the joint.
     pub prior: (f64, f64),
     /// How a fit varies the parameter.
     pub scale: Scale,
@@ -108,14 +109,14 @@ pub struct Parameter {
     pub is_channel: bool,
     /// Name of another parameter that is a lower limit of this one; `None` if there is none.
     pub not_below: Option<&'static str>,
-    /// A property of the arm or its readings to which the expected size is proportional, and the factor of
-    /// proportionality.
+    /// A property of the arm or its readings to which the expected size of this parameter is proportional, and the
+    /// factor of proportionality.
     pub grows_with: Option<(Measure, f64)>,
     /// The largest value for which a search looks in an arm and a campaign of usual size. `None`: the largest value
     /// that a file may give.
     pub sought_up_to: Option<f64>,
-    /// For a torque: the limits of a search, as fractions of the largest torque on the joint in the campaign. A
-    /// change of the law beyond the torques that occur could not be recognized.
+    /// For a torque: the limits between which a search looks for it, as fractions of the largest torque on the joint in
+    /// the campaign. A change of the joint law beyond the torques that occur could not be recognized.
     pub torque_parts: Option<(f64, f64)>,
 }
 
@@ -185,7 +186,7 @@ impl Parameter {
     }
 }
 
-/// What the nominal model must be like at a place so that an effect can be there.
+/// What the nominal model must be like at a place so that an effect is possible at this place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Needs {
     /// Nothing: the effect is possible at every place of its kind.
@@ -213,8 +214,9 @@ pub enum Removes {
     PayloadMass,
 }
 
-/// Which elastic rotation an effect adds under gravity, as readings of absolute positions show it. Positions are
-/// searched in this order: an effect of a later class can imitate those of the classes before it.
+/// Class of the elastic rotation that an effect adds under gravity, as readings of absolute positions show it. A search
+/// of positions tries the classes in this order, because an effect of a later class can imitate those of the classes
+/// before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ElasticRotation {
     /// Rotation of a joint about its axis.
@@ -222,7 +224,8 @@ pub enum ElasticRotation {
     /// Tilt of a joint about the two axes perpendicular to its axis, or of the base about both horizontal axes, with
     /// equal compliance.
     Tilt,
-    /// Rotation of the base or of the structure behind a joint about three axes, with coupling.
+    /// Rotation of the base, or of the structure between a joint and the link outboard of it, about three axes, with
+    /// coupling.
     Frame,
 }
 
@@ -257,14 +260,14 @@ pub struct Setting<'a> {
 pub struct Traits {
     /// Whether a search for effects tries this effect at every place.
     pub is_sought: bool,
-    /// The channels for which the search tries an effect of a channel; empty means all.
+    /// For an effect that belongs to one channel: the channels in which the search tries it. Empty means all.
     pub sought_in: &'static [Channel],
     /// The sets of parameters that the search fits. Each set is a candidate of its own. Empty means a single set: every
     /// parameter without a default.
     pub variants: &'static [&'static [Freed]],
     /// Prior probability of the effect, relative to a usual effect at one place, before any reading is considered.
     pub odds: f64,
-    /// What the nominal model must be like at a place so that the search tries the effect there.
+    /// What the nominal model must be like at a place so that the search tries the effect at this place.
     pub needs: Needs,
     /// Starting points of fits. Each is a list of values of the fit's variable `u` ([`Scale`]), one for each fitted
     /// number.
@@ -272,8 +275,8 @@ pub struct Traits {
     /// Whether the readings depend on the parameters so nonlinearly that a confidence interval must be computed from
     /// the profile of the objective.
     pub is_nonlinear: bool,
-    /// Whether screening, which is a linear fit, holds those parameters at their starting points that say how the
-    /// effect acts (not how large it is). Far from the starting points the linear model is wrong.
+    /// Whether screening, which is a linear fit, leaves some parameters at their starting points: those that say how
+    /// the effect acts, not how large it is. Far from the starting points the linear model is wrong.
     pub screens_at_starts: bool,
     /// Whether the effect replaces the torsion curve of a gear. Natural frequencies jump at its break points.
     pub is_gear_curve: bool,
@@ -336,7 +339,7 @@ pub struct Kind {
     pub scope: Scope,
     /// The kinds of places at which the effect can be.
     pub places: &'static [Place],
-    /// The parameters of the effect at a place of this kind.
+    /// The parameters of the effect at a place of the given kind.
     pub parameters: fn(Place) -> &'static [Parameter],
     /// Applies the effect to a subject. The arguments are the values of all parameters in order, and the name of the
     /// place.

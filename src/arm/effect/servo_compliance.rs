@@ -1,4 +1,5 @@
-//! `servo_compliance`: a joint is softer in one kind of test, because a servo holds it there instead of a brake.
+//! `servo_compliance`: a joint is softer in one kind of test, because a servo instead of a brake holds the joint in
+//! this test.
 
 use super::channel::Channel;
 use super::kind::{Kind, Needs, Parameter, Place, Scale, Scope, Traits};

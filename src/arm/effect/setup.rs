@@ -11,12 +11,13 @@ use nalgebra::Vector3;
 pub struct Turned {
     /// Rotation vector about the origin of the chain \[rad\].
     pub turn_rad: Vector3<f64>,
-    /// The first row after it, from 0.
+    /// The first row of the file after the base turned, counted from 0.
     pub from_row: usize,
 }
 
 impl Turned {
-    /// How far this has moved a point in a row of the file \[m\].
+    /// Displacement of the point `at_m` by this rotation \[m\], in a row of the file that is counted from 0. It is zero
+    /// in the rows before the rotation.
     pub fn moved_m(&self, at_m: &Vector3<f64>, row: usize) -> Vector3<f64> {
         if row < self.from_row { Vector3::zeros() } else { self.turn_rad.cross(at_m) }
     }
@@ -34,12 +35,13 @@ pub struct Setup {
     pub servo_rad_per_nm: Vec<(String, f64)>,
     /// Joints that soften in the course of the tests, by name.
     pub softening: Vec<(String, Softening)>,
-    /// The base turned in the course of the tests.
+    /// Rotation of the base between two rows of the tests; `None` if the base did not turn.
     pub turned: Option<Turned>,
 }
 
 impl Setup {
-    /// Whether the structure in the tests of the channel is that of the arm as it is.
+    /// Whether the arm has neither additional mass nor additional compliance in the tests of this channel, and no joint
+    /// softens.
     pub fn is_plain(&self) -> bool {
         self.mass_kg == 0.0 && self.servo_rad_per_nm.is_empty() && self.is_steady()
     }
@@ -49,12 +51,12 @@ impl Setup {
         self.softening.is_empty()
     }
 
-    /// How a joint softens; `None` if it does not.
+    /// How the joint named `joint` softens in these tests; `None` if it does not.
     pub fn softening_of(&self, joint: &str) -> Option<Softening> {
         self.softening.iter().rfind(|(name, _)| name == joint).map(|(_, softening)| *softening)
     }
 
-    /// Softens the joints of a structure, each by its factor.
+    /// Multiplies the compliance of each joint that softens in these tests, in `structure`, by the value of `factor`.
     pub(crate) fn soften(&self, structure: &mut Structure, factor: impl Fn(&Softening) -> f64) {
         for (name, softening) in &self.softening {
             if let Some(joint) = structure.joint_mut(name) {

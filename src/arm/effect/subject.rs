@@ -76,12 +76,13 @@ impl Subject {
         self.warming.is_none() && self.setups[channel as usize].is_steady()
     }
 
-    /// The arm as it is in a test of a channel at a moment.
+    /// The structure of the arm in a test of the channel `channel`, at the row and the temperature `when`.
     pub fn structure_at(&self, channel: Channel, when: &Moment) -> Structure {
         self.softened(channel, when, |softening| softening.factor(when.row))
     }
 
-    /// The arm as it was when the reference of a displacement was read.
+    /// The structure of the arm as it was when the reference of a displacement was read. `when` is the moment of the
+    /// displacement itself.
     pub fn reference_at(&self, when: &Moment) -> Structure {
         self.softened(Channel::Static, when, |softening| softening.reference_factor(when.row))
     }

@@ -110,9 +110,9 @@ impl Arm {
         self.effects.iter().filter(|e| e.is_of_test()).collect()
     }
 
-    /// The arm under test with all of its effects, including those of the payload and of the channels. An effect can
-    /// bring a new torsion curve; it is simplified to the model `joints` in the same way as the curve of the arm
-    /// itself.
+    /// The arm under test with all of its effects, including those of the payload and of the channels. If an effect
+    /// brings a new torsion curve, this curve is simplified to the model `joints` in the same way as the curve of the
+    /// arm itself.
     pub fn subject(&self, joints: JointModel) -> Subject {
         let mut subject = Subject::new(self.nominal_structure(joints));
         self.effects.iter().for_each(|effect| subject.apply(effect));

@@ -1,5 +1,5 @@
-//! Warming: how the moduli of the links change while an arm is tested, with its temperature or with the order of the tests,
-//! and how joints soften with the order of the tests.
+//! Warming: how the moduli of the links change while an arm is tested, with its temperature or with the order of the
+//! tests, and how joints soften with the order of the tests.
 
 /// When a reading was taken, as row and temperature.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -12,34 +12,35 @@ pub struct Moment {
 
 /// Temperature at which moduli have their nominal values \[°C\].
 pub(crate) const DRAWN_AT_C: f64 = 20.0;
-/// Least factor on a modulus or a compliance: a law that is carried far beyond its readings must not turn it around.
+/// Smallest factor on a modulus or a compliance. A law that is extrapolated far beyond its readings must not make the
+/// factor zero or negative.
 const LEAST: f64 = 0.05;
 
 /// How the compliance of a joint changes in the course of the tests of one channel: a gear warms up, bolts work loose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Softening {
-    /// Change of the factor on the compliance after many rows.
+    /// Change of the factor on the compliance that is approached after many rows; positive if the joint becomes softer.
     pub change: f64,
     /// Number of rows after which 63 % of this change is reached.
     pub rows: f64,
-    /// Part of the change that the reference of a displacement has: 1 if it is read just before the displacement, 0 if it was
-    /// read before all tests.
+    /// Part of the change that is already present when the reference of a displacement is read: 1 if the reference is
+    /// read just before the displacement, 0 if it was read before all tests.
     pub reference: f64,
 }
 
 impl Softening {
-    /// Factor on the compliance of the joint in a row of the channel's file, from 0.
+    /// Factor on the compliance of the joint in a row of the channel's file, counted from 0.
     pub fn factor(&self, row: usize) -> f64 {
         (1.0 + self.change * done(row, self.rows)).max(LEAST)
     }
 
-    /// The same factor when the reference of that row's displacement was read.
+    /// Factor on the compliance of the joint when the reference of the displacement in row `row` was read.
     pub fn reference_factor(&self, row: usize) -> f64 {
         (1.0 + self.change * self.reference * done(row, self.rows)).max(LEAST)
     }
 }
 
-/// Part of a change that is done in a row, where 63 % of it comes in `rows` rows.
+/// Part of a change that is reached in the row `row`, if 63 % of the change is reached after `rows` rows.
 fn done(row: usize, rows: f64) -> f64 {
     1.0 - libm::exp(-(row as f64) / rows)
 }

@@ -57,8 +57,8 @@ pub(crate) fn check(catalogs: &Catalogs, log: &Log) {
     catalogs.gears.iter().for_each(|gear| rated_point(catalogs, gear, log));
 }
 
-/// The strain-wave gears of each series in groups: `common` is equal for all gears of a group, and the group is sorted
-/// by `rising`. Both are numbers of a gear, such as its ratio and its size.
+/// The strain-wave gears of each series, in lists. The value of `common` is equal for all gears of a list, and the list
+/// is sorted by the value of `rising`. Both are numbers of a gear, such as its ratio and its size.
 fn families(gears: &[Gear], common: fn(&Gear) -> f64, rising: fn(&Gear) -> f64) -> Vec<Vec<&Gear>> {
     let mut families: BTreeMap<(&str, u64), Vec<&Gear>> = BTreeMap::new();
     for gear in gears.iter().filter(|gear| gear.kind == GearKind::StrainWave) {

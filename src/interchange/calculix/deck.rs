@@ -130,7 +130,7 @@ fn springs(out: &mut String, model: &Model, step: Step, element: &mut usize) {
 }
 
 /// Writes a spring of the given stiffness \[N/m, or N m/rad at a hinge\] between a degree of freedom of a node and the
-/// ground. `element` counts the elements of the deck.
+/// ground. `element` is the number of the last element of the deck. It is raised by one.
 fn spring(out: &mut String, element: &mut usize, node: usize, direction: usize, stiffness: f64) {
     *element += 1;
     let _ = writeln!(

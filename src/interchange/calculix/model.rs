@@ -2,11 +2,11 @@
 //!
 //! Everything that moves as one rigid body is a *region*. The end faces of a link are rigid: the root face belongs to
 //! the region before the link, and the end face begins a new region. The motion of a new region is described by a
-//! reference node (displacement) and a rotation node. A hinge has a node of its own, and displacement 1 of this node
-//! is the angle of the hinge. The displacement of any point of a region is thus a linear function of a few degrees of
-//! freedom, which an `*EQUATION` expresses: `u(p) = u_ref + θ × (p - p_ref) + Σ q_k t_k(p)`, where `t_k` is the
-//! motion by hinge `k`. This needs neither the rigid bodies of CalculiX nor constraints that depend on other
-//! constraints. Bearings, frames and linkages are further hinges.
+//! reference node (displacement) and a rotation node. A hinge has a node of its own, and displacement 1 of this node is
+//! the angle of the hinge. The displacement of any point of a region is thus a linear function of a few degrees of
+//! freedom, which an `*EQUATION` expresses: `u(p) = u_ref + θ × (p - p_ref) + Σ q_k t_k(p)`, where `q_k` is the angle
+//! of hinge `k` and `t_k(p)` is the displacement of `p` per unit of this angle. This needs neither the rigid bodies of
+//! CalculiX nor constraints that depend on other constraints. Bearings, frames and linkages are further hinges.
 
 use super::mesh::{Mesh, has_shape, mesh};
 use crate::arm::RigidBody;
@@ -57,7 +57,7 @@ pub(crate) struct Model {
     pub solids: Vec<Solid>,
     /// Hinges of joints, bearings and frames.
     pub hinges: Vec<HingeNode>,
-    /// Linear equations between degrees of freedom. The first term of each is the dependent one.
+    /// Linear equations between degrees of freedom. The degree of freedom of the first term is the dependent one.
     pub equations: Vec<Vec<Term>>,
     /// Degrees of freedom that are fixed: index of the node, and direction (0 to 2).
     pub held: Vec<(usize, usize)>,
@@ -67,7 +67,8 @@ pub(crate) struct Model {
     pub loads: Vec<Term>,
     /// Index of the node at the tip.
     pub tip: usize,
-    /// Names of elements with an inertia tensor that no solid can have, so that no point masses represent it.
+    /// Names of elements with an inertia tensor that no solid can have, so that no point masses can represent this
+    /// tensor.
     pub impossible: Vec<String>,
 }
 
@@ -78,7 +79,7 @@ struct Meshed<'m> {
     first: usize,
     own: &'m OwnMass,
     length_m: f64,
-    /// The region of the root face.
+    /// The region to which the root face of the link belongs.
     root: Region,
 }
 
@@ -87,8 +88,8 @@ struct Meshed<'m> {
 struct Region {
     /// Reference node, rotation node and the position of the reference node \[m\]. `None` for the ground.
     frame: Option<(usize, usize, Vector3<f64>)>,
-    /// Hinges between this reference node and the region: index of the hinge's node, and motion per unit of its
-    /// angle.
+    /// Hinges between the reference node and the region. Each has the index of its node, and the motion of the region
+    /// per unit of its angle.
     hinges: Vec<(usize, Twist)>,
 }
 
@@ -224,8 +225,8 @@ impl Builder<'_> {
         out
     }
 
-    /// Adds a link as a mesh of bricks, or as a rigid body if it cannot deform or cannot be meshed. `own` has its mass
-    /// and its place.
+    /// Adds a link as a mesh of bricks, or as a rigid body if it cannot deform or cannot be meshed. `own` has the mass
+    /// and the place of the link.
     fn link(&mut self, element: &ElasticElement, own: &OwnMass) {
         let link = self.snapshot.link(own.piece).cloned();
         let flexible = link.as_ref().and_then(|link| {
@@ -292,8 +293,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Makes a node move with a cross-section of a mesh, as the average of its nodes: with their mean displacement, and
-    /// with the rotation that fits their displacements best (least squares). `station` has the nodes of the
+    /// Makes a node move with a cross-section of a mesh: with the mean displacement of the nodes of the cross-section,
+    /// and with the rotation that fits their displacements best (least squares). `station` has the nodes of the
     /// cross-section, counted from the node `first`.
     fn average(&mut self, node: usize, first: usize, station: &[usize]) {
         let places: Vec<(usize, Vector3<f64>)> =

@@ -5,10 +5,10 @@
 //! best of many chance results, and the usual limit, a rise of 3.84, gives an interval that contains the true value too
 //! rarely.
 //!
-//! So every place counts by its probability. With both break points held, the readings are nearly linear in all other
-//! parameters. A fit then gives the likelihood of the place, and the distribution of the slopes there (Laplace's
-//! approximation). The places are nodes around the best fit, close together near it. The search visits the neighbours
-//! of every node that the readings do not rule out.
+//! So every place is weighted by its probability. With both break points fixed at a place, the readings are nearly
+//! linear in all other parameters. A fit of these then gives the likelihood of the place, and the distribution that the
+//! slopes have if the break points are at this place (Laplace's approximation). The places are nodes around the best
+//! fit, close together near it. The search visits the neighbours of every node that the readings do not rule out.
 
 use super::descent::data_curvature;
 use super::descent::{Effort, Fit, Weights, fit_below};
@@ -21,11 +21,12 @@ use std::collections::BTreeMap;
 
 /// Probability that the parameter lies beyond the interval, at each of its two ends.
 const TAIL: f64 = 0.025;
-/// An end of the interval is `None` if the probability density at that limit of the parameter's range is more than
-/// this fraction of its maximum. The fraction corresponds to a rise of the objective by 3.84: exp(-3.84 / 2).
+/// The lower end of the interval is `None` if the probability density at the lower limit of the parameter's range is
+/// more than this fraction of its maximum. The same holds for the upper end and the upper limit. The fraction
+/// corresponds to a rise of the objective by 3.84: exp(-3.84 / 2).
 const OPEN: f64 = 0.146;
-/// A pair of nodes is ruled out if the objective there exceeds the smallest objective found by more than this. The
-/// probability density there is then below a thousandth of the maximum: exp(-14 / 2).
+/// A pair of nodes (one value for each break point) is ruled out if its objective exceeds the smallest objective found
+/// by more than this. The probability density of the pair is then below a thousandth of the maximum: exp(-14 / 2).
 const RULED_OUT: f64 = 14.0;
 /// First step from the best fit to the next node, as a multiple of the standard deviation of the break point.
 const STEP: f64 = 0.5;
@@ -33,31 +34,32 @@ const STEP: f64 = 0.5;
 const STEPS: (f64, f64) = (0.004, 0.08);
 /// Ratio of each step between nodes to the step before it, going outwards from the best fit.
 const GROWTH: f64 = 1.4;
-/// Each node whose distance from the best fit, counted in nodes, is a multiple of this number is always fitted, so
+/// Spacing of a coarse grid of node pairs, counted in nodes from the best fit. All pairs of this grid are fitted, so
 /// that no separate peak of the density is missed.
 const COARSE: usize = 3;
-/// Largest number of steps, and tolerance, of a fit with both break points held.
+/// Largest number of steps, and tolerance, of a fit in which both break points are fixed.
 const HELD: Effort = Effort { steps: 4, tolerance: 0.05 };
 
-/// The nodes of one break point: the torques at which it is held, in ascending order \[ln of the torque\].
+/// One axis of the grid over the two break points. Its nodes are the torques at which this break point is fixed while
+/// the other parameters are fitted, ascending \[ln of the torque\].
 struct Axis {
     parameter: usize,
     nodes: Vec<f64>,
 }
 
-/// The fit with both break points held at the values of a pair of nodes.
+/// The fit in which the two break points are fixed at the torques of one pair of nodes.
 struct Cell {
     u: Vec<f64>,
-    /// Standard deviations of all parameters, in `u`. Those of the two held break points are infinite and not used.
+    /// Standard deviations of all parameters, in `u`. Those of the two fixed break points are infinite and not used.
     deviations: Vec<f64>,
     objective: f64,
     /// Natural logarithm of the probability density of the two break points at the nodes, up to a common constant.
     ln_density: f64,
 }
 
-/// 95 % intervals of the parameters of one gear's curve. `own` is the range of their indices and gives the order of
-/// the result. `pair` holds the indices of the two break points, and `deviations` the standard deviation of every
-/// parameter of the model.
+/// 95 % intervals of the parameters of one gear's curve. `own` is the range of the indices of these parameters, and the
+/// result is in its order. `pair` is the indices of the two break points. `deviations` has the standard deviation of
+/// every parameter of the model.
 pub(crate) fn curve_intervals(
     forward: &Forward,
     best: &Fit,
@@ -95,7 +97,7 @@ impl Axis {
         Self { parameter, nodes }
     }
 
-    /// The part of the axis for which a node stands: it reaches halfway to both neighbouring nodes \[ln of the
+    /// The interval of the axis that a node represents. It reaches halfway to both neighbouring nodes \[ln of the
     /// torque\].
     fn span(&self, node: usize) -> (f64, f64) {
         let middle = |a: usize, b: usize| 0.5 * (self.nodes[a] + self.nodes[b]);
@@ -167,10 +169,10 @@ impl Cell {
         let fitted = fit_below(forward, &model, start, weights, HELD, limit);
         let held = axes.each_ref().map(|a| a.parameter);
         let of_rest = without(&fitted.curvature, held);
-        // the density at the nodes is the evidence of the fit without the factor for the two held parameters
+        // the density at the nodes is the evidence of the fit without the factor for the two fixed parameters
         let ln_density =
             fitted.evidence + 0.5 * (ln_determinant(fitted.curvature.clone()) - ln_determinant(of_rest));
-        // the two held parameters are not part of the covariance
+        // the two fixed parameters are not part of the covariance
         let covariance = without(&data_curvature(&fitted), held).try_inverse();
         let mut deviations = vec![f64::INFINITY; fitted.point.u.len()];
         let rest = (0..deviations.len()).filter(|p| !held.contains(p)).collect::<Vec<_>>();
@@ -199,7 +201,7 @@ struct Posterior {
 }
 
 impl Posterior {
-    /// Probability of each cell, up to a common factor: its density times the area for which the node pair stands.
+    /// Probability of each cell, up to a common factor: its density times the area that its pair of nodes represents.
     fn masses(&self) -> impl Iterator<Item = (&Nodes, &Cell, f64)> {
         let top = self.cells.values().map(|c| c.ln_density).fold(f64::NEG_INFINITY, f64::max);
         let width = |axis: usize, node: usize| {

@@ -23,13 +23,13 @@ const HUBER: f64 = 4.0;
 /// Step of a parameter by which numerical derivatives are computed, in the scaled parameters `u`.
 const STEP: f64 = 1e-4;
 
-/// Weights of the data in a fit: which data count, and how much their declared standard deviations are enlarged.
+/// Weights of the data in a fit: which data are used, and how much their declared standard deviations are enlarged.
 #[derive(Debug, Clone)]
 pub struct Weights {
     /// Reciprocal of each datum's standard deviation, which is the declared one times the factor of its channel; 0
     /// where the datum is left out.
     pub inverse: Vec<f64>,
-    /// Whether only static and bench readings count. Natural frequencies are then not computed.
+    /// Whether only static and bench readings are used. Natural frequencies are then not computed.
     pub smooth_only: bool,
 }
 
@@ -64,7 +64,7 @@ pub struct Point {
 
 /// A fitted model, with its predictions, derivatives and evidence.
 pub struct Fit<'a> {
-    /// The model, with its effects and the parameters that are held.
+    /// The model, with its effects and the parameters that are held fixed.
     pub model: Model<'a>,
     /// The point where the objective is smallest, with its predictions.
     pub point: Point,
@@ -81,9 +81,9 @@ pub fn evaluate(forward: &Forward, model: &Model, u: &[f64], weights: &Weights) 
     evaluate_near(forward, model, u, weights, None)
 }
 
-/// Evaluates a model at the parameters `u`. A test that has the same stiffnesses and masses at the known point `near`
-/// takes its modes from there, because solving for modes takes most of the time. If only a break point of a gear's
-/// curve moves, this is so for most tests.
+/// Evaluates a model at the parameters `u`. If a modal test has the same stiffnesses and masses at `u` as at the known
+/// point `near`, its modes are copied from `near`, because solving for modes takes most of the time. Most modes can be
+/// copied if only a break point of a gear's curve moves.
 pub fn evaluate_near(
     forward: &Forward,
     model: &Model,
@@ -191,9 +191,9 @@ pub struct Normal {
     pub curvature: DMatrix<f64>,
 }
 
-/// Builds the normal equations at the parameters `u`, of which the first `calibrated` have a prior. `slopes` holds
-/// the derivatives of the predicted readings. Residuals are predicted minus measured, times the weight of the datum;
-/// large ones get less weight, as Huber's loss asks.
+/// Builds the normal equations at the parameters `u`, of which the first `calibrated` have a prior. `slopes` contains
+/// the derivatives of the predicted readings. Residuals are predicted minus measured, times the weight of the datum.
+/// Large residuals get less weight, as Huber's loss requires.
 pub fn normal(
     forward: &Forward,
     calibrated: usize,
@@ -319,7 +319,7 @@ fn damped(normal: &Normal, free: &[usize], damping: f64) -> DVector<f64> {
     }
 }
 
-/// Largest number of steps of a fit, and when it ends before.
+/// When a fit ends: after a largest number of steps, or earlier when a step hardly lowers the objective.
 #[derive(Debug, Clone, Copy)]
 pub struct Effort {
     /// Largest number of steps.
@@ -373,7 +373,7 @@ pub fn descent(
     descended(forward, model, start, weights, effort, limit).0
 }
 
-/// End point of a descent from `start`, and the derivatives of the predicted readings there if the descent has
+/// End point of a descent from `start`, and the derivatives of the predicted readings at this point if the descent has
 /// computed them.
 fn descended(
     forward: &Forward,
@@ -449,7 +449,8 @@ pub fn finish<'a>(
     mut jacobian: DMatrix<f64>,
     weights: &Weights,
 ) -> Fit<'a> {
-    // a parameter at the one below which it cannot lie could have any value below it, so it has no derivative
+    // a parameter that rests on its lower limit, which is another parameter, has no effect on the readings if it is
+    // lowered, so its derivative is taken as zero
     let resting = (0..model.len()).filter(|p| model.rests(*p, &point.u));
     resting.for_each(|p| jacobian.fill_column(p, 0.0));
     let slopes = Slopes(&[&jacobian]);

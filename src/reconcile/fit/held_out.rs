@@ -1,9 +1,9 @@
 //! Confirms a model on whole poses that are held out of the fit (cross-validation).
 //!
 //! The poses are divided into four folds. Each fold in turn is held out, the model is refitted to the rest, and the
-//! fold is predicted. The effects stay the same. Their sizes and the calibration are fitted again, and only break
-//! points of gear curves are held. All rows of a pose belong to the same fold, because they share a history and a
-//! reference reading. Bench rows belong to no pose and stay in every fit.
+//! fold is predicted. The effects stay the same. Their sizes and the calibration are fitted again. Only the break
+//! points of gear curves keep their values. All rows of a pose belong to the same fold, because they share a history
+//! and a reference reading. Bench rows belong to no pose and stay in every fit.
 
 use super::descent::{Effort, Weights, descent};
 use crate::reconcile::forward::prepared::Forward;
@@ -28,8 +28,8 @@ pub struct HeldOut {
 }
 
 /// Residual of every datum, predicted with its pose held out, measured minus predicted \[declared standard
-/// deviations\]. `u` holds the parameters of the full fit, from which each refit starts. `None` for data that are
-/// never held out.
+/// deviations\]. `u` are the parameters of the full fit, from which each refit starts. `None` for data that are never
+/// held out.
 pub(crate) fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &Weights) -> Vec<Option<f64>> {
     // A frequency jumps where a torque passes a break point. If the break points were free, a held-out test close to a
     // break point would be predicted from either side by chance.

@@ -81,8 +81,9 @@ impl Noise {
         })
     }
 
-    /// Judges the readings before an effect is sought: leaves out at most a few extreme outliers of each channel, by
-    /// their misfit in a fit with these weights. A single wrong frequency among ten would spoil a calibration.
+    /// Judges the readings before an effect is sought, by their misfit in `fit`, which was fitted with `weights`. At
+    /// most a few extreme outliers of each channel are left out. A single wrong frequency among ten would spoil a
+    /// calibration.
     pub fn without_worst(forward: &Forward, fit: &Fit, weights: &Weights) -> Self {
         let mut outliers = misses(forward, fit, weights);
         outliers.retain(|(_, _, size)| *size > UNMISTAKABLE);
@@ -309,10 +310,10 @@ fn spread(residuals: &[f64]) -> f64 {
     1.4826 * median(residuals.iter().map(|r| r.abs()).collect())
 }
 
-/// Factor on the declared standard deviations of a channel, at least 1, from the residuals and leverages of its rows
-/// `kept`. The square of a residual has the expectation `1 - leverage`, because the parameters absorb the rest. A
-/// factor that could be chance is applied too: waiting for significance would leave intervals too narrow in channels
-/// with few readings.
+/// Factor on the declared standard deviations of a channel, at least 1. `kept` gives the residual and the leverage of
+/// each datum of the channel that is no gross error. The square of a residual has the expectation `1 - leverage`,
+/// because the parameters absorb the rest. A factor that could be chance is applied too: waiting for significance would
+/// leave intervals too narrow in channels with few readings.
 fn scale(kept: impl Iterator<Item = (f64, f64)>) -> f64 {
     let (sum, count) =
         kept.fold((TRUST, TRUST), |(sum, count), (r, leverage)| (sum + r * r, count + 1.0 - leverage));

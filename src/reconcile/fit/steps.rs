@@ -9,15 +9,18 @@ use super::descent::{Effort, Fit, Weights, descent, fit};
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::Model;
 
-/// Widths over which the jumps of slope of a gear's curve are smoothed \[ln of the torque\], in the order of the
-/// descents. The wide one lets a descent pass the jumps of the frequencies. With the narrow one the jumps are nearly
-/// sharp.
+/// Width over which the jumps of slope of a gear's curve are smoothed in the first descent \[ln of the torque\]. It is
+/// so wide that the descent can pass the jumps of the frequencies.
 pub(crate) const WIDE: f64 = 0.1;
+/// Width over which the jumps of slope of a gear's curve are smoothed in the last descent \[ln of the torque\]. The
+/// jumps are then nearly sharp.
 pub(crate) const NARROW: f64 = 0.01;
+/// Widths of the smoothing in three successive descents \[ln of the torque\].
 const WIDTHS: [f64; 3] = [WIDE, 0.03, NARROW];
 
-/// Largest logarithm of the ratio of a torque to a break point at which the torque may lie on either side. It
-/// corresponds to five standard deviations of masses with a tolerance of 4 %.
+/// A torque is close to a break point if the logarithm of their ratio is at most this in magnitude. The true torque may
+/// then lie on either side of the break point. The value corresponds to five standard deviations of masses with a
+/// tolerance of 4 %.
 const CLOSE: f64 = 0.1;
 
 /// Starting parameters for a fit with the exact torsion curve: the end of three descents from `start`, in which the

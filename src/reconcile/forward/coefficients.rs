@@ -36,8 +36,8 @@ pub struct LinkSlot {
 }
 
 /// The strain coordinates of every elastic element that an arm can have, base to tip. They are the base's tilts (0 and
-/// 1), each joint's two tilts and its twist, and each link's strains. An arm with compliant frames also has coordinates
-/// for these.
+/// 1), each joint's two tilts and its twist, and each link's strains. An arm also has coordinates for each frame
+/// compliance (a rotational compliance about three axes) of its base and of its links' roots.
 pub struct Layout {
     /// Number of strain coordinates.
     pub n: usize,
@@ -47,10 +47,11 @@ pub struct Layout {
     pub links: Vec<LinkSlot>,
     /// For each prismatic joint, base to tip, the first of its four coordinates: three of its guide, then its travel.
     slides: Vec<usize>,
-    /// Index and compliance of each coordinate of compliant frames. No fit changes them.
+    /// Index and compliance of each coordinate that belongs to a frame compliance of the base or of a link's root. No
+    /// fit changes these compliances.
     frames: Vec<(usize, f64)>,
-    /// Compliance of each strain coordinate of the links as drawn, for arms whose links are rigid in the nominal
-    /// model. It is 0 for all other coordinates.
+    /// Compliance that each strain coordinate of a link has according to the link's section. It is used for trial
+    /// shapes where the nominal model has rigid links. It is 0 for all other coordinates.
     pub lacking: Vec<f64>,
     /// The arm with every elastic element present, so that mechanics lists all coordinates.
     pub template: Chain,
@@ -71,7 +72,7 @@ pub struct TestNumbers {
     pub servo_rad_per_nm: Vec<f64>,
     /// How each joint softens in the course of the tests, base to tip; empty if none does.
     pub softening: Vec<Option<Softening>>,
-    /// The base turned in the course of the tests.
+    /// How the base turned in the course of the tests; `None` if it did not.
     pub turned: Option<Turned>,
 }
 
@@ -109,7 +110,7 @@ impl TestNumbers {
 pub struct Coefficients {
     /// Compliance of each strain coordinate. It is 0 for a joint's torsion, because the joint's law is in `laws`.
     pub linear: Vec<f64>,
-    /// Base whose feet lift off; `None` if the feet stay on the ground.
+    /// How the base tilts once its feet lift off; `None` if the feet stay on the ground.
     pub lift: Option<BaseLift>,
     /// Torsion laws of the joints, base to tip.
     pub laws: Vec<JointLaw>,
@@ -280,7 +281,8 @@ impl Coefficients {
     pub fn new(layout: &Layout, nominal: &Subject, subject: &Subject) -> Self {
         let structure = &subject.structure;
         let mut linear = vec![0.0; layout.n];
-        // a frame of the nominal base has coordinates of its own; what the base of a subject deflects beyond it is a tilt
+        // a frame of the nominal base has coordinates of its own; what the base of a subject deflects beyond it is a
+        // tilt
         let further = structure.base_frame.0 - nominal.structure.base_frame.0;
         (0..2).for_each(|i| linear[i] = structure.base_tilt_rad_per_nm + further[(i, i)]);
         layout.frames.iter().for_each(|(at, compliance)| linear[*at] = *compliance);
@@ -332,7 +334,7 @@ impl Coefficients {
         }
     }
 
-    /// The law of a joint at an angle, in a row of a channel's file.
+    /// Torsion law of a joint at the joint angle `angle_rad`, in the test that one row of a channel's file reports.
     pub(crate) fn law_at(&self, joint: usize, channel: Channel, angle_rad: f64, row: usize) -> JointLaw {
         let law = self.law(joint, channel).at_angle(angle_rad);
         match self.tests[channel as usize].softening_of(joint) {
@@ -350,7 +352,7 @@ impl Coefficients {
         law
     }
 
-    /// Which numbers that static readings depend on differ between this subject and `other`.
+    /// Which of the numbers that static readings depend on differ between this subject and `other`.
     pub(crate) fn static_changes(&self, other: &Self) -> StaticChanges {
         let in_test = |c: &Self, joint: usize| {
             (c.law(joint, Channel::Static), c.tests[Channel::Static as usize].softening_of(joint))

@@ -1,9 +1,10 @@
 //! Predicts natural frequencies by a reduced flexibility form, with exact derivatives.
 //!
-//! Let `F` hold the inertia forces of the nominal arm's lowest modes, with all coordinates included, even those without
-//! compliance. The trial shapes `C F` are then correct to first order in every compliance and mass. With `B = C F` the
-//! reduced problem is `BᵀM B z = μ FᵀB z`, where `μ = 1/ω²`. One solution `x = B z`, scaled to `xᵀK x = 1`, with `y = M
-//! x`, gives the effect of every parameter: `dμ = yᵀ dC y / μ + xᵀ dM x`.
+//! Let the columns of `F` be the inertia forces of the nominal arm's lowest modes. They include all coordinates, even
+//! those without compliance. The trial shapes `C F` are then correct to first order in every compliance and mass. Here
+//! `C` is the diagonal matrix of the compliances, `K` its inverse and `M` the mass matrix. With `B = C F` the reduced
+//! problem is `BᵀM B z = μ FᵀB z`, where `μ = 1/ω²`. One solution `x = B z`, scaled to `xᵀK x = 1`, with `y = M x`,
+//! gives the effect of every parameter: `dμ = yᵀ dC y / μ + xᵀ dM x`.
 
 use super::added_mass::Factor;
 use super::coefficients::{Coefficients, Layout};
@@ -31,9 +32,9 @@ const SPARE_SHAPES: usize = 12;
 /// \[squared standard deviations\].
 const MISS: f64 = 400.0;
 
-/// Upper limit of what one frequency adds to the misfit when the order of a list is questioned: the logarithm of
-/// measured over predicted frequency. The limit is more than a change of stiffnesses and masses within tolerance
-/// causes.
+/// Upper limit of the misfit of one frequency when two numberings of a list are compared to put it in order. The misfit
+/// is the magnitude of the logarithm of measured over predicted frequency. The limit is larger than the misfit that a
+/// change of stiffnesses and masses within tolerance causes.
 const OFF: f64 = 0.05;
 
 /// A list is out of order if a mode has a frequency lower than that of a mode with a smaller number, by more than
@@ -139,8 +140,8 @@ impl ModalTest {
     /// coefficients.
     ///
     /// If few coordinates are compliant, as in an arm with rigid links, there may be too few trial forces. They then
-    /// come from an arm whose links have their compliance as drawn, and whose rigid joints have that of the softest
-    /// joint.
+    /// come from an arm whose links have the compliance that follows from their sections, and whose rigid joints have
+    /// the compliance of the softest joint.
     pub fn refresh(&mut self, layout: &Layout, coefficients: &Coefficients) {
         let mut compliances = self.compliances(layout, coefficients);
         let forces = self.trial_forces(layout, coefficients, &compliances);
@@ -478,8 +479,8 @@ enum UnitStrains {
     Columns(DMatrix<f64>),
 }
 
-/// A combination of trial shapes counts as a rounding error, and is dropped, if its strain energy is less than this
-/// fraction of the largest.
+/// A combination of trial shapes is taken as a rounding error, and is dropped, if its strain energy is less than this
+/// fraction of the largest strain energy of a combination.
 const RANK: f64 = 1e-10;
 
 /// A Cholesky factor is taken as singular if the ratio of its smallest to its largest pivot is below this.

@@ -170,8 +170,8 @@ impl Forward {
             })
     }
 
-    /// Expresses a subject (an arm under test) as compliances, joint laws and masses, the last relative to the
-    /// nominal arm.
+    /// Expresses a subject (an arm under test) as compliances, joint laws and masses. The masses are given as
+    /// differences from those of the nominal arm.
     pub fn coefficients(&self, subject: &Subject) -> Coefficients {
         Coefficients::new(&self.layout, &self.nominal, subject)
     }
@@ -207,7 +207,8 @@ impl Forward {
         out
     }
 
-    /// Adds to the displacements \[mm\] what a base that turned in the course of the tests moves the tip by.
+    /// Adds to the displacements in `out` the movement of the tip that is due to a turn of the base in the course of
+    /// the tests \[mm\].
     fn turn(&self, coefficients: &Coefficients, out: &mut [f64]) {
         let Some(turned) = coefficients.tests[Channel::Static as usize].turned else { return };
         for pose in &self.statics {
@@ -217,7 +218,8 @@ impl Forward {
         }
     }
 
-    /// Predicts statics and bench only. The modal entries stay as they are. Returns the state of each static pose.
+    /// Writes the predictions for static and bench data to `out`. The entries of modal data stay as they are. Returns
+    /// the state of each static pose.
     pub fn predict_smooth(&self, coefficients: &Coefficients, out: &mut [f64]) -> Vec<StaticState> {
         for bench in &self.bench {
             bench.predict(&coefficients.law(bench.joint, Channel::Windup), out);
@@ -231,8 +233,8 @@ impl Forward {
     }
 
     /// Predicts static and bench readings for each of the coefficient sets `to`, starting from the predictions with
-    /// `from`. `states` holds the loads and deflections in the static poses with `from`. On entry each column of
-    /// `out`, one per entry of `to`, holds the predictions with `from`. Parts that do not differ are not computed
+    /// `from`. `states` has the loads and deflections in the static poses with `from`. `out` has one column per entry
+    /// of `to`. On entry each column contains the predictions with `from`. Parts that do not differ are not computed
     /// again.
     pub fn change_smooth(
         &self,

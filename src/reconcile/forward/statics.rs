@@ -1,9 +1,9 @@
 //! Predicts static readings: the displacement of the tip from the reference state, which is the unloaded arm.
 //!
 //! The chain is statically determinate, so torques depend on masses only. All linear compliances together move the tip
-//! by `A w`, where `A` is a 3x6 matrix per pose and `w` the wrench of the load. A joint moves it by `θ(T) - θ(T0)`
-//! times its lever, where `T` and `T0` are the torques with and without load. Friction play depends on the order of the
-//! rows.
+//! by `A w`, where `A` is a 3x6 matrix per pose and `w` the wrench of the load. A joint moves the tip by `θ(T) - θ(T0)`
+//! times the displacement of the tip per unit of the joint's twist, where `T` and `T0` are the torques with and without
+//! load. Friction play depends on the order of the rows.
 
 use super::coefficients::{Coefficients, Layout, StaticChanges};
 use super::datum::{Datum, Groups};
@@ -48,8 +48,8 @@ pub struct PoseGeometry {
     pub dead_per_mass_nm: Vec<Vec<f64>>,
     /// The two coordinates of the base's tilt, about world x and y.
     pub base: [Mover; 2],
-    /// Moments of the template's weight about world x and y of the base \[N m\]. The next field has those of one unit
-    /// of each mass.
+    /// Moments of the template's weight about world x and y of the base \[N m\]. The next field has the moments by one
+    /// unit of each mass that a fit can change.
     dead_base_nm: [f64; 2],
     dead_base_per_mass_nm: Vec<[f64; 2]>,
 }
@@ -207,8 +207,8 @@ impl PoseGeometry {
         })
     }
 
-    /// Displacement of the tip per unit of the load's wrench, by those linear compliances for whose coordinate
-    /// `is_chosen` is true.
+    /// Displacement of the tip per unit of the load's wrench, due to the linear compliances of the strain coordinates
+    /// whose index satisfies `is_chosen`.
     fn compliance(&self, coefficients: &Coefficients, is_chosen: impl Fn(usize) -> bool) -> Matrix3x6<f64> {
         let mut out = Matrix3x6::zeros();
         for mover in self.linear.iter().filter(|mover| is_chosen(mover.index)) {
@@ -282,14 +282,14 @@ impl PoseGeometry {
 }
 
 /// Computes the twists (torsion angles) of a joint under successive loads, relative to the twist of the unloaded arm
-/// \[rad\]. `dead_nm` is the torque without load, and `loaded_nm` holds the additional torque of each load. The
-/// unloaded arm is the reference. It is taken to come to rest before each pose, so the friction play starts from
-/// rest.
+/// \[rad\]. `dead_nm` is the torque without load, and `loaded_nm` gives the additional torque of each load. The
+/// unloaded arm is the reference. It is taken to come to rest before each pose, so the friction play starts from rest.
 fn follow(law: &JointLaw, dead_nm: f64, loaded_nm: &[f64], twists_rad: &mut [f64]) {
     follow_from(law, law, dead_nm, loaded_nm, twists_rad);
 }
 
-/// The same where the unloaded arm had another law when the reference was read.
+/// Computes the twists (torsion angles) of a joint under successive loads like `follow`. The joint had the law
+/// `reference` when the reference of the unloaded arm was read, and has the law `law` under the loads.
 fn follow_from(
     reference: &JointLaw,
     law: &JointLaw,
@@ -304,8 +304,10 @@ fn follow_from(
     }
 }
 
-/// The same of a joint whose law is another under each load: each reading follows its own laws, of its reference and of
-/// itself, from rest on.
+/// Computes the twists (torsion angles) of a joint under successive loads like `follow`, for a joint whose law differs
+/// from load to load. For each load, `laws` gives the law when the reference of its reading was read, and the law under
+/// the load. The twist under a load is computed with the two laws of this load, through all loads from rest to this
+/// one.
 fn follow_changing(
     laws: impl Iterator<Item = (JointLaw, JointLaw)>,
     dead_nm: f64,
@@ -417,8 +419,8 @@ impl StaticPose {
         state.loaded_nm.extend(torques_nm);
     }
 
-    /// Computes the twists (torsion angles) of joint `j` under the loads from the torques in `state`, and stores them
-    /// there.
+    /// Computes the twists (torsion angles) of joint `j` under the loads from the torques in `state`, and stores the
+    /// twists in `state`.
     fn update_twists(&self, j: usize, coefficients: &Coefficients, state: &mut StaticState) {
         let count = self.loads.len();
         let angle_rad = self.geometry.angles_rad[j];
@@ -489,8 +491,9 @@ impl StaticPose {
         }
     }
 
-    /// Adds to `out` the displacement of the tip under each load by compliances in addition to those of the
-    /// coefficients \[mm\]. `further` holds pairs of strain coordinate and additional compliance.
+    /// Adds to `out` the displacement of the tip under each load that is due to additional compliances \[mm\]. Each
+    /// entry of `further` is the index of a strain coordinate and the compliance that is added to that of the
+    /// coefficients.
     pub fn add_yielding(
         &self,
         layout: &Layout,

@@ -14,7 +14,7 @@ use crate::arm::joint_law::Curve;
 use crate::arm::structure::Piece;
 use crate::reconcile::forward::prepared::Forward;
 
-/// The candidates of a campaign: every effect at every place of the arm that its channels could show.
+/// The candidates of a campaign: every effect at every place of the arm that the channels of the campaign could show.
 pub fn candidates(forward: &Forward) -> Vec<Candidate> {
     let structure = &forward.nominal.structure;
     let sizes = Sizes::of(forward);
@@ -105,9 +105,9 @@ struct Asked<'a> {
     channel: Option<Channel>,
 }
 
-/// The channels in each of which a compliance of the joint that acts in this channel only is sought. Empty if a
-/// single channel shows how the joint twists, because the compliance could then not be told from one that acts in all
-/// channels.
+/// The channels in which a further compliance of the joint is sought. Each of these compliances acts in the tests of
+/// its channel only. Empty if a single channel shows how the joint twists, because the compliance could then not be
+/// told from one that acts in all channels.
 fn channels_apart(forward: &Forward, kind: &Kind, joint: &str) -> Vec<Channel> {
     let shown = channels_of_joint(forward, joint);
     let sought = kind.traits.sought_in.iter().filter(|channel| shown.contains(channel));
@@ -125,7 +125,7 @@ fn channels_of_joint(forward: &Forward, joint: &str) -> Vec<Channel> {
     Channel::ALL.into_iter().filter(is_shown).collect()
 }
 
-/// Whether the component with index `component` of a parameter is fitted. `freed` holds the fitted parameters of a
+/// Whether the component with index `component` of a parameter is fitted. `freed` lists the fitted parameters of a
 /// variant; with `None`, the parameters without a default value are fitted.
 fn is_free(parameter: &Parameter, component: usize, freed: Option<&[Freed]>) -> bool {
     let Some(freed) = freed else { return parameter.default.is_none() && !parameter.is_channel };

@@ -207,8 +207,8 @@ fn rest(posed: &Posed) -> Vec<f64> {
     joints(posed).iter().map(|(law, _, torque)| law.play_at_rest_nm(*torque)).collect()
 }
 
-/// Displacement of the tip from its place in the weightless arm \[m\]. `play` holds the state of each joint's
-/// friction play and is brought to the torques of this pose.
+/// Displacement of the tip from its place in the weightless arm \[m\]. `play` is the state of each joint's friction
+/// play. It is updated to the torques of this pose.
 fn tip_m(posed: &Posed, play: &mut [f64]) -> Vector3<f64> {
     let joints = joints(posed);
     let statics = posed.statics();

@@ -116,9 +116,9 @@ impl FreeParameter {
         Estimate { value, low: low.map(|u| self.value(u)), high: high.map(|u| self.value(u)) }
     }
 
-    /// The interval with its open ends at the limits of what the number can be, where it says how an effect acts: a torque is
-    /// positive, and a gear's slopes are within the range in which they are looked for. The size of an effect has no such
-    /// limit.
+    /// This interval, with each open end replaced by a limit of the parameter if the parameter only says how an effect
+    /// acts. A torque is positive, and a gear's slopes lie in the range that is searched. An open end stays open if the
+    /// parameter says how large the effect is, because such a parameter has no limit.
     pub(crate) fn closed(&self, interval: Interval) -> Interval {
         match self.scale {
             Scale::Stiffness if self.absent.is_none() => {
@@ -129,7 +129,7 @@ impl FreeParameter {
         }
     }
 
-    /// Whether an end of an interval is such a limit.
+    /// Whether the end `u` of an interval is a limit by which `closed` replaces an open end.
     pub(crate) fn is_limit(&self, u: f64) -> bool {
         match self.scale {
             Scale::Stiffness if self.absent.is_none() => u <= self.low || u >= self.high,
@@ -148,7 +148,8 @@ impl FreeParameter {
         self.absent.is_some()
     }
 
-    /// Whether the effect is absent at `u`, so that an end of an interval there is no bound of the stiffness.
+    /// Whether `u` stands for an infinite stiffness, so that the effect is absent. An end of an interval at this `u` is
+    /// no bound of the stiffness.
     pub fn unbounded(&self, u: f64) -> bool {
         self.scale == Scale::Stiffness && u <= 1e-6
     }
@@ -182,7 +183,7 @@ impl FreeParameter {
         ends.into_iter().any(|end| (u - end).abs() <= near)
     }
 
-    /// Width of the prior at a value of `u`: the reciprocal of the prior density there.
+    /// Width of the prior at a value of `u`: the reciprocal of the prior density at this value.
     ///
     /// The size of an effect may be of any order of magnitude. So each decade of sizes is equally likely, up to the
     /// largest size that a part can have. A parameter that only says how an effect acts is equally likely anywhere in
@@ -321,7 +322,7 @@ fn corners(free_parameters: &[FreeParameter]) -> Vec<Vec<f64>> {
     (0..1 << free_parameters.len()).map(corner).collect()
 }
 
-/// A model to fit: the calibration and a list of effects. Its parameter vector holds the calibrated parameters first,
+/// A model to fit: the calibration and a list of effects. Its parameter vector lists the calibrated parameters first,
 /// then the fitted parameters of each effect.
 #[derive(Clone)]
 pub struct Model<'a> {
@@ -387,15 +388,16 @@ impl<'a> Model<'a> {
         None
     }
 
-    /// Whether the parameter with index `index` is equal to or below the other parameter below which it cannot lie.
-    /// Lowering it further would have no effect.
+    /// Whether the parameter with index `index` is at its lower limit or below it, if another parameter is this limit.
+    /// Lowering the parameter further would have no effect.
     pub fn rests(&self, index: usize, u: &[f64]) -> bool {
         self.floor(index).is_some_and(|least| u[index] <= u[least])
     }
 
-    /// Raises each parameter that lies below the other parameter that is its lower limit to this limit. Below the
-    /// limit a parameter has no effect on the predictions, so a descent would see no slope and leave it there. A held
-    /// parameter is not raised; its limit is then lowered to it.
+    /// For some parameters, another parameter is the lower limit. This function raises each parameter that lies below
+    /// its limit to the limit. Below the limit a parameter has no effect on the predictions, so a descent would see no
+    /// slope and leave the parameter where it is. A parameter that is held fixed is not raised. Its limit is lowered to
+    /// it instead.
     pub fn put_in_order(&self, u: &mut [f64]) {
         for index in self.calibrated()..u.len() {
             let Some(least) = self.floor(index).filter(|least| u[index] < u[*least]) else { continue };
@@ -444,7 +446,7 @@ impl<'a> Model<'a> {
     }
 
     /// Smallest and largest value of `u` for the parameter with index `index`. Both are equal for a parameter that is
-    /// held.
+    /// held fixed.
     pub fn bounds(&self, index: usize) -> (f64, f64) {
         if let Some((_, value)) = self.held.iter().find(|(held, _)| *held == index) {
             return (*value, *value);

@@ -6,7 +6,8 @@ use crate::reconcile::fit::descent::{Weights, change, evaluate};
 use crate::reconcile::forward::prepared::Forward;
 
 /// An effect of its usual size is left out if it changes no reading by more than this \[standard deviations\]. The
-/// largest size that is sought is at most a thousand times the usual one. So even such an effect would not be seen.
+/// largest size that is sought is at most a thousand times the usual one. So even an effect of the largest size would
+/// not be seen.
 const UNSEEN: f64 = 1e-6;
 
 /// Fraction of its range by which a parameter is changed to find out whether readings change.
@@ -91,7 +92,7 @@ mod tests {
         }
     }
 
-    /// A joint that the campaign had on the bench.
+    /// Name of a joint that the campaign had on the bench.
     fn campaign_joint() -> String {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/campaigns/plain-0251e");
         let campaign = Campaign::read(&folder, &Catalogs::default()).expect("sound");

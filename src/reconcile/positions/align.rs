@@ -1,5 +1,5 @@
-//! Finds a first placement of the arm in the instrument's frame, and the attitude behind each link of unknown mounting.
-//! No starting values are needed.
+//! Finds a first placement of the arm in the instrument's frame, and the attitude of the part outboard of each link of
+//! unknown mounting. No starting values are needed.
 
 use super::fit::fit;
 use super::fitted::{Fitted, Sample};
@@ -9,7 +9,7 @@ use crate::reconcile::readings::campaign::PositionsSpec;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use rayon::prelude::*;
 
-/// Scale of the position errors with which each fit starts \[m\]: about what a wrong attitude leaves.
+/// Scale of the position errors with which each fit starts \[m\]: about the errors that a wrong attitude causes.
 const ROUGH_M: f64 = 0.3;
 
 /// Smallest number of positions with all three coordinates from which the nearest rigid motion is computed. With
@@ -17,8 +17,9 @@ const ROUGH_M: f64 = 0.3;
 const FEWEST_WHOLE: usize = 10;
 
 /// Finds a first placement of the arms, one by one, and stores it in `geometry`. If an arm has a link of unknown
-/// mounting, a fit starts from each of the 24 attitudes of a cube behind the first such link, and the best fit
-/// counts. Otherwise the nearest rigid motion is used.
+/// mounting, the part outboard of the first such link is put into each of the 24 attitudes of a cube. A fit starts from
+/// each of these attitudes, and the best fit is used. Otherwise the rigid motion is used that brings the nominal points
+/// nearest to the measured ones.
 pub(crate) fn align(tree: &Tree, spec: &PositionsSpec, samples: &[Sample], geometry: &mut Geometry) {
     let mounts = mount_numbers(tree, spec);
     let mut placed = false;
@@ -44,9 +45,9 @@ pub(crate) fn align(tree: &Tree, spec: &PositionsSpec, samples: &[Sample], geome
     }
 }
 
-/// Finds the best of the cube's attitudes behind a link of unknown mounting (the piece with index `piece`), and
-/// returns the geometry with it. `own` are the arm's samples (measured positions). `placed` says whether the base is
-/// already placed.
+/// Finds the best of a cube's 24 attitudes for the part outboard of a link of unknown mounting (the piece with index
+/// `piece`), and returns the geometry with this attitude. `own` are the arm's samples (measured positions). `placed`
+/// says whether the base is already placed.
 fn settle_mount(
     own: &[&Sample],
     geometry: &Geometry,

@@ -58,7 +58,7 @@ pub(crate) struct Positions {
     /// Indices of the driven joints for which a transmission error was found, counted as in a pose.
     pub(super) transmissions: Vec<usize>,
     pub(super) tree: Tree,
-    /// The points on the tools. A point that was moved on the tool between two sessions counts as two points.
+    /// The points on the tools. A point that was moved on the tool between two sessions is listed as two points.
     pub(super) points: Vec<Point>,
     /// The boundaries between sessions (runs of rows with one set-up) that are in the model.
     pub(super) sessions: Vec<Boundary>,
@@ -94,11 +94,11 @@ pub(crate) fn calibrated(campaign: &Campaign) -> Calibrated {
 /// Analyses the positions of a campaign: calibrates the geometry, finds sessions, and finds compliances and
 /// transmission errors.
 ///
-/// A compliance can look like a change of session if the rows were taken configuration by configuration. So each
-/// session is examined again once the effects are in the model. It is suspect if it is no longer worth its price, or
-/// if it begins at a row where something else changes. The analysis is then repeated with two other sets of sessions:
-/// those that remain, and those that are needed in addition to effects that were found without sessions. The model
-/// with the best score is kept.
+/// A compliance can look like a change of session if the rows were taken in one configuration of the arm after the
+/// other. So each session is examined again once the effects are in the model. It is suspect if it is no longer worth
+/// its price, or if it begins at a row where something else changes. The analysis is then repeated with two other sets
+/// of sessions: those that remain, and those that are needed in addition to effects that were found without sessions.
+/// The model with the best score is kept.
 pub(crate) fn analyze(campaign: &Campaign) -> Positions {
     let calibrated = Positions::in_declared_sessions(campaign);
     let mut found = calibrated.clone();

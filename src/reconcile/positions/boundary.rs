@@ -12,10 +12,10 @@ use crate::reconcile::readings::campaign::Campaign;
 /// A jump of the measured points of at least this size is too large to come from a reflector that was put back
 /// \[mm\].
 const LARGE_MM: f64 = 1.0;
-/// Number of rows on each side of a session boundary that are compared to find what else changes there.
+/// Number of rows on each side of a session boundary that are compared to find what else changes at the boundary.
 const BESIDE: usize = 15;
-/// Smallest number of rows on each side of a session boundary for this comparison. With fewer, nothing is said to
-/// change.
+/// Smallest number of rows on each side of a session boundary from which it is judged what else changes at the
+/// boundary. With fewer rows, it is assumed that nothing else changes.
 const FEWEST_BESIDE: usize = 4;
 
 impl Positions {
@@ -33,8 +33,8 @@ impl Positions {
         undeclared.map(|b| self.session_price(b.earlier.numbers().len(), kinds)).sum()
     }
 
-    /// One sentence for each session boundary, in the order of the rows. It states how far the measured points jump
-    /// there by the final model.
+    /// One sentence for each session boundary, in the order of the rows. It states how far the measured points jump at
+    /// this boundary according to the final model.
     pub(crate) fn session_sentences(&self, campaign: &Campaign) -> Vec<String> {
         let mut in_order: Vec<&Boundary> = self.sessions.iter().collect();
         in_order.sort_by_key(|b| b.first);
@@ -78,7 +78,8 @@ impl Positions {
         Some((boundary.kind.label(before), boundary.kind.label(after)))
     }
 
-    /// Median distance by which the measured points jump at a session boundary by the fitted geometry \[mm\].
+    /// Median distance by which the measured points jump at a session boundary, according to the fitted geometry
+    /// \[mm\].
     fn jump_mm(&self, boundary: &Boundary) -> f64 {
         let Some((before, after)) = self.labels(boundary) else { return 0.0 };
         let mut placer = self.fitted.geometry.placer();
@@ -100,9 +101,9 @@ impl Positions {
         large.filter(|(_, mm)| *mm >= LARGE_MM).map(|(row, mm)| format!("{mm:.2} mm at row {row}")).collect()
     }
 
-    /// Names what else changes where a session begins: a joint's angle, the payload or the measured arm. A quantity
-    /// counts as changed if all its values in the rows before the boundary are below all values in the rows after it,
-    /// or all above. `None` if nothing else changes.
+    /// Names what else changes where a session begins: a joint's angle, the payload or the measured arm. A quantity is
+    /// taken as changed if all its values in the rows before the boundary are below all values in the rows after it, or
+    /// all above. `None` if nothing else changes.
     fn changes_at(&self, campaign: &Campaign, boundary: &Boundary) -> Option<String> {
         let own =
             |range: std::ops::Range<usize>| range.filter(|&i| self.is_of(&self.samples[i], boundary.kind));
@@ -175,8 +176,8 @@ impl Positions {
     }
 
     /// Whether an undeclared session would fit as well as the effect `effect` does. If so, returns the row, counted
-    /// from 1, at which this session would begin; otherwise `None`. `tie` is the difference in ln of the likelihood
-    /// that does not count.
+    /// from 1, at which this session would begin; otherwise `None`. Two fits are taken as equally good if the
+    /// logarithms of their likelihoods differ by at most `tie`.
     pub(crate) fn session_instead(&self, campaign: &Campaign, effect: usize, tie: f64) -> Option<usize> {
         let spec = &campaign.statement.positions;
         let kinds = self.kinds(spec.tool_offset, spec.base_placement);

@@ -1,9 +1,11 @@
 //! Tests whether positions that no calibration fits were written by another convention: in another unit, in a frame
 //! whose axes are swapped or left-handed, or with joint angles of another sign or zero.
 //!
-//! The search is greedy. From the file as it is, in the unit in which its positions spread as the arm's do, every single change, or every pair, is tried by a quick fit of the
-//! placement alone; the best is kept while it helps. What it finds is then calibrated in full like the file itself, and said if the errors
-//! that are left are several times smaller. Nothing is applied: which convention holds is for the user to say.
+//! The search is greedy. It starts from the file as it is, read in the unit in which its positions spread as widely as
+//! those of the nominal arm. Every single change of convention, or every pair of changes, is tried by a quick fit of
+//! the placement alone. The best change is kept as long as the errors fall. The geometry is then calibrated in full
+//! with the convention that was found. The convention is reported if the errors that remain are several times smaller
+//! than with the file as it is. The file is used unchanged, because only the user knows which convention is right.
 
 use super::align::nearest_motion;
 use super::analysis::{Positions, samples};
@@ -38,7 +40,7 @@ const FAR_OFF: f64 = 0.01;
 const MOST_CHANGES: usize = 8;
 /// Largest number of positions that a quick fit uses.
 const QUICK: usize = 60;
-/// Scale of the position errors with which each fit starts \[m\]: about what another convention leaves.
+/// Scale of the position errors with which each fit starts \[m\]: about the errors that a wrong convention causes.
 const ROUGH_M: f64 = 0.3;
 /// Units other than the millimetre, each with its length \[mm\].
 const UNITS: [(&str, f64); 4] =
@@ -72,7 +74,7 @@ impl Change {
         }
     }
 
-    /// The sample (a measured position) as it would be if the file had been written by this convention.
+    /// The sample (a measured position), converted on the assumption that the file was written by this convention.
     fn applied(&self, mut sample: Sample) -> Sample {
         let turned = |sample: &mut Sample, j: usize, of: &dyn Fn(f64) -> f64| {
             let mut angles_rad = sample.pose.angles_rad.clone();
@@ -115,8 +117,8 @@ impl Change {
     }
 }
 
-/// The changes of convention that are tried, for an arm with `joints` driven joints. If the base placement is free, a
-/// turned frame is no change, and only the frame's handedness counts.
+/// The changes of convention that are tried, for an arm with `joints` driven joints. If the base placement is free, the
+/// fit itself turns the frame, so only a left-handed frame is tried.
 fn changes(spec: &PositionsSpec, joints: usize) -> Vec<Change> {
     let mut out: Vec<Change> = (0..UNITS.len()).map(Change::Unit).collect();
     match spec.base_placement {
@@ -157,8 +159,9 @@ struct Asked<'a> {
 }
 
 impl Asked<'_> {
-    /// Scale of the position errors after a fit with the `changes` of convention made \[m\]. The first `groups`
-    /// groups of the geometry's numbers are free, and about `most` samples (measured positions) are used.
+    /// Scale of the position errors after a fit with the `changes` of convention made \[m\]. The numbers of the
+    /// geometry in the first `groups` lists of `self.groups` are fitted, and about `most` samples (measured positions)
+    /// are used.
     fn scale_m(&self, changes: &[Change], groups: usize, most: usize) -> f64 {
         let step = self.samples.len().div_ceil(most).max(1);
         let written = self.samples.iter().step_by(step).cloned();
@@ -219,8 +222,9 @@ impl Asked<'_> {
         tried.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// The unit in which the positions spread about as much as those of the nominal arm; `None` for millimetres. Whatever
-    /// else is written otherwise, this can be told, and no other change can be judged before.
+    /// The unit in which the positions spread about as much as those of the nominal arm; `None` for millimetres. The
+    /// spread shows the unit even if the file differs in other conventions too. The unit must be known first, because
+    /// no other change can be judged in a wrong unit.
     fn unit_by_size(&self) -> Option<Change> {
         let nominal = Fitted::rigid(self.nominal.clone(), ROUGH_M);
         // a coordinate that was not measured is zero in both
@@ -235,7 +239,7 @@ impl Asked<'_> {
         (off(UNITS[nearest].1) < off(1.0)).then_some(Change::Unit(nearest))
     }
 
-    /// Root mean square distance of the positions from their centre \[m\].
+    /// Root mean square distance of the positions from their centre, with the `changes` of convention made \[m\].
     fn spread_m(&self, changes: &[Change]) -> f64 {
         spread_m(self.samples.iter().map(|sample| {
             changes.iter().fold(sample.clone(), |sample, change| change.applied(sample)).measured_m
@@ -257,8 +261,8 @@ impl Asked<'_> {
         made
     }
 
-    /// Sets of changes that differ from `made` in one change, for one of `all`, and leave errors about as small.
-    /// `scale_m` is the scale of the errors with `made` \[m\].
+    /// Sets of changes in which one change of `made` is replaced by one of `all`, and with which the errors are about
+    /// as small as with `made`. `scale_m` is the scale of the errors with `made` \[m\].
     fn equals(&self, all: &[Change], made: &[Change], scale_m: f64) -> Vec<Vec<Change>> {
         let quick_m = self.quick_m(made);
         let others = || all.iter().filter(|change| !made.iter().any(|m| m.replaces(change)));

@@ -38,8 +38,8 @@ impl Fitted {
         self
     }
 
-    /// Stores standard deviations. In `deviations` come first those of the geometry's numbers, of which there are
-    /// `numbers`, and then those of the compliances.
+    /// Stores the standard deviations `deviations` in this model. The first `numbers` of them belong to the numbers of
+    /// the geometry, all others to the compliances.
     fn set_deviations(&mut self, numbers: usize, deviations: &[f64]) {
         self.number_deviations = deviations[..numbers].to_vec();
         let own = self.deviations.iter_mut().flatten();

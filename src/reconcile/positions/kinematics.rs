@@ -11,7 +11,8 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 /// The amplitudes of a joint's transmission error if the joint has none.
 const EVEN: [f64; 4] = [0.0; 4];
 
-/// One number of the geometry that a fit can change. Rotations and shifts are changes; indices say of what.
+/// One number of the geometry that a fit can change. Rotations, tilts and shifts are counted from the nominal geometry.
+/// The indices say to which part of the geometry a number belongs.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Number {
     /// Rotation of the arm's base about the instrument axis with this index \[rad\].
@@ -20,8 +21,8 @@ pub(crate) enum Number {
     BasePosition(usize),
     /// Offset of a point on the last frame \[m\]: index of the point, component.
     Tool(usize, usize),
-    /// Rotation of everything behind a link of unknown mounting \[rad\]: index of the piece (joint or link), and axis
-    /// of the frame inboard of the link.
+    /// Rotation of everything outboard of a link of unknown mounting \[rad\]: index of the link among the pieces, and
+    /// axis of the frame inboard of the link.
     Mount(usize, usize),
     /// Vector of a link of unknown mounting \[m\]: index of the piece, component.
     MountVector(usize, usize),
@@ -35,7 +36,7 @@ pub(crate) enum Number {
     /// (sine or cosine, once or twice a turn).
     Transmission(usize, usize),
     /// Factor by which the angle of a passive joint follows that of a driven joint: index of the piece, index of the
-    /// term.
+    /// term among those of the joint's coupling.
     Ratio(usize, usize),
     /// Horizontal component of the unit vector of gravity \[-\]: index of the axis, x or y, of the level frame.
     Gravity(usize),
@@ -69,9 +70,9 @@ impl Number {
     }
 }
 
-/// The numbers of the geometry that a campaign leaves free, in named groups. The groups are freed one after the
-/// other: placement of arm and points, joint zeros, geometry, direction of gravity. `points` is the number of
-/// measured points.
+/// The numbers of the geometry that a campaign leaves free, in named groups of numbers. These are freed one after the
+/// other: placement of arm and points, joint zeros, geometry, direction of gravity. `points` is the number of measured
+/// points.
 pub(crate) fn number_groups(
     tree: &Tree,
     spec: &PositionsSpec,
@@ -99,7 +100,8 @@ pub(crate) fn number_groups(
     out
 }
 
-/// The numbers of attitude and position behind each link of unknown mounting, three of each.
+/// The numbers that describe the mounting of each link of unknown mounting: three for the attitude of the part outboard
+/// of it, three for its vector.
 pub(crate) fn mount_numbers(tree: &Tree, spec: &PositionsSpec) -> Vec<Number> {
     let mounts = (0..tree.pieces.len()).filter(|&i| is_mount(&tree.pieces[i], spec));
     mounts
@@ -238,7 +240,8 @@ impl Geometry {
         }
     }
 
-    /// Sets the attitude of everything behind the link of unknown mounting with the index `piece` to `rotation`.
+    /// Sets the attitude of everything outboard of a link of unknown mounting to `rotation`. The link has the index
+    /// `piece` among the pieces.
     pub(crate) fn set_mount(&mut self, piece: usize, rotation: Rotation3<f64>) {
         self.mounts[piece] = rotation;
     }
@@ -463,7 +466,7 @@ impl Placer<'_> {
     }
 
     /// Derivative of the placed point's position with respect to the angle of the driven joint with index `driven`
-    /// \[m/rad\]. `along` holds, for each piece, its index in the arm's chain, or `None`.
+    /// \[m/rad\]. `along` gives the index of each piece in the arm's chain; `None` for a piece of another arm.
     fn turning(&self, driven: usize, along: &[Option<usize>]) -> Vector3<f64> {
         let pieces = self.turned_by[driven].iter();
         pieces

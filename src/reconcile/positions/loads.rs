@@ -3,7 +3,7 @@
 //!
 //! A joint of compliance `c` about an axis `u` through `p` moves a point `x` by `c g (u x (x - p)) (u x (S - m p))ᵀ ĝ`.
 //! Here `m` and `S` are mass and first moment of everything outboard, `g` the strength and `ĝ` the direction of
-//! gravity. Other arms on the same trunk count too.
+//! gravity. The mass of other arms on the same trunk is included.
 
 use super::kinematics::Geometry;
 use super::tree::Tree;

@@ -45,8 +45,8 @@ impl Moved {
 /// What was moved between two sessions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Kind {
-    /// A point on the tool, by its index among the points. A point has one index for each of its sessions; any of
-    /// them stands for it.
+    /// A point on the tool, by its index among the points. A point has one index for each of its sessions, and any of
+    /// these indices may be given.
     Point(usize),
     /// The instrument or the base.
     Station,

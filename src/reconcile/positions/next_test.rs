@@ -14,9 +14,9 @@ use std::collections::HashSet;
 const PROPOSED_POSES: usize = 60;
 
 impl Positions {
-    /// For each competing model, the test that separates it best from the model, the most telling test first.
-    /// `competitors` holds, for each effect of the model, the candidates that fit as well in its place. If nothing is
-    /// explained, the test asks for the unknown cause instead.
+    /// For each competing model, the test that separates it best from this model. The test with the largest expected
+    /// difference comes first. `competitors` lists, for each effect of this model, the candidates that fit as well in
+    /// its place. If the verdict is `unexplained`, the only test is one that helps to find the unknown cause.
     pub(crate) fn next_tests(
         &self,
         campaign: &Campaign,
@@ -45,8 +45,8 @@ impl Positions {
     }
 
     /// The pose among `proposed` in which this model and the model `competitor` predict the most different positions,
-    /// as a test. `names` are the labels of the two models. If no pose is enough, the test is a sentence that says
-    /// so. `None` if that is so and the names are equal.
+    /// as a test. `names` are the labels of the two models. If the difference is too small in every pose, the test is a
+    /// sentence that says so, or `None` if the two names are equal.
     fn telling_pose(&self, proposed: &Campaign, competitor: &Fitted, names: [String; 2]) -> Option<NextTest> {
         let own = samples(proposed, &self.tree, &self.fitted.geometry, &self.candidates, &self.points);
         let sigma_mm =

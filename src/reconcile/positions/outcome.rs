@@ -29,11 +29,11 @@ use std::collections::{HashMap, HashSet};
 
 /// Smallest number of positions from which anything can be concluded.
 pub(crate) const FEWEST: usize = 20;
-/// If the variance of the errors exceeds the declared variance by this factor, the verdict is that nothing is
-/// explained, whatever else is found. The errors are then five times as large as those of the instrument.
+/// If the variance of the errors exceeds the declared variance by this factor, the verdict is `unexplained`, whatever
+/// else is found. The errors are then five times as large as those of the instrument.
 const HOPELESS_VARIANCE: f64 = 25.0;
-/// Largest ratio of the median error at held-out poses to the median error in the fit. Above it, the poses are too
-/// similar for what is calibrated.
+/// Largest ratio of the median error at held-out poses to the median error in the fit. If the ratio is larger, the
+/// poses are too similar to determine everything that is calibrated.
 const UNSTABLE: f64 = 8.0;
 /// Effects that do not explain everything are still written into the corrected arm if they lower the median error at
 /// held-out poses to less than this fraction of the error with calibration alone.
@@ -340,9 +340,9 @@ impl Positions {
     }
 }
 
-/// Root mean squares of the residuals before and after \[declared standard deviations\]: of all positions, of each
-/// point, of each payload and of the worst poses. Gross errors are left out. `residuals` holds the residuals of the
-/// positions, row by row.
+/// Root mean squares of the residuals of all positions, of each point, of each payload and of the worst poses
+/// \[declared standard deviations\]. There are two of each: with calibration alone (before) and with the effects
+/// (after). Gross errors are left out. `residuals` are the residuals of the positions, row by row.
 pub(crate) fn located(campaign: &Campaign, residuals: &[ReadingResidual]) -> Vec<Located> {
     let mut parts: Vec<(String, Vec<&ReadingResidual>)> = Vec::new();
     let mut known: HashMap<String, usize> = HashMap::new();
@@ -393,8 +393,8 @@ fn stiffness(compliance: f64, deviation: f64) -> Estimate {
     }
 }
 
-/// The compliances of a frame as parameters of its effect, with 95 % intervals \[rad/(N m)\]. A compliance that is
-/// not fitted, because no weight loads it, has no ends.
+/// The compliances of a frame as parameters of its effect, with 95 % intervals \[rad/(N m)\]. A compliance that is not
+/// fitted, because no weight loads it, has no interval.
 fn frame_parameters(compliances: &[f64], deviations: &[f64]) -> Vec<(String, Vec<Estimate>)> {
     let matrix = frame_matrix(compliances);
     let entry = |at: (usize, usize)| {

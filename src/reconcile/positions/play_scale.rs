@@ -11,9 +11,9 @@ use rayon::prelude::*;
 const FALL: f64 = 1.92;
 
 impl Positions {
-    /// Torque scale `scale_nm` of the play that is effect number `position`, with its 95 % interval \[N m\]. An end
-    /// is the nearest of the tried scales with which the logarithm of the likelihood is lower by [`FALL`] or more;
-    /// `None` if no tried scale on this side is that unlikely.
+    /// Torque scale `scale_nm` of the play that is effect number `position`, with its 95 % interval \[N m\]. An end is
+    /// the nearest of the tried scales with which the logarithm of the likelihood is lower by [`FALL`] or more; `None`
+    /// if no tried scale on this side lowers it so much.
     pub(crate) fn play_scale(&self, position: usize, scale_nm: f64) -> Estimate {
         let own = &self.candidates[self.fitted.effects[position]];
         let is_variant = |c: &usize| {

@@ -1,4 +1,4 @@
-//! The points on the tools of the arms. A point that was moved between two sessions counts as two points.
+//! The points on the tools of the arms. A point that was moved between two sessions is listed as two points.
 
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::rows::PositionRow;

@@ -11,8 +11,8 @@ use crate::reconcile::readings::placement::Stand;
 use nalgebra::Rotation3;
 use rayon::prelude::*;
 
-/// Predicted position of each row of the campaign, in the instrument's frame \[mm\]. `arms` holds the placements, and
-/// `subjects` each arm with all of its effects.
+/// Predicted position of each row of the campaign, in the instrument's frame \[mm\]. `arms` gives the placements of the
+/// arms, and `subjects` gives each arm with all of its effects.
 pub(crate) fn predicted_mm(mut campaign: Campaign, arms: &[Placed], subjects: &[Subject]) -> Vec<[f64; 3]> {
     for row in &mut campaign.positions {
         row.payload = subjects[row.arm].payload(&row.payload);

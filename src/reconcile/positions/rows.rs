@@ -19,8 +19,8 @@ const BLOCK: usize = 64;
 /// Number of columns of the product matrix that are computed together.
 const STRIPE: usize = 32;
 
-/// A function that appends columns to the equations that belong to no number of the model: derivatives of a sample's
-/// position with respect to whatever the caller tests \[m per unit\].
+/// A function that appends further columns to the equations: derivatives of a sample's position with respect to
+/// whatever the caller tests \[m per unit\]. These columns belong to no number of the model.
 pub(crate) type Further<'a> = &'a mut dyn FnMut(&Sample, &Placer, &mut Vec<Vector3<f64>>);
 
 /// A model of positions, linearized about the values of its numbers.
@@ -126,8 +126,8 @@ impl Products {
         self.right.fixed_rows_mut::<3>(3 * k).copy_from(error);
     }
 
-    /// Adds the products of the present block, which holds `samples` samples, to the sums. Columns that are zero in
-    /// the whole block are left out.
+    /// Adds the products of the present block, which has `samples` samples, to the sums. Columns that are zero in the
+    /// whole block are left out.
     fn add(&mut self, samples: usize) {
         let rows = self.rows.columns(0, 3 * samples);
         let own: Vec<usize> = (0..rows.nrows()).filter(|i| rows.row(*i).iter().any(|x| *x != 0.0)).collect();

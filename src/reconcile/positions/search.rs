@@ -60,7 +60,7 @@ impl Positions {
         ln_likelihood(&misses, scale(&misses, self.fitted.scale_m))
     }
 
-    /// Fits the model, with the deflection under gravity computed again for the geometry of the fit before, and drops
+    /// Fits the model, with the deflection under gravity computed again for the geometry of the previous fit, and drops
     /// effects that are not worth their price. This is repeated until no effect is dropped.
     fn settle(&mut self, campaign: &Campaign) {
         loop {
@@ -102,7 +102,7 @@ impl Positions {
         let numbers = self.fitted.compliances[position].iter().zip(&self.fitted.deviations[position]);
         // an effect that others can replace has large standard deviations
         let is_small = |(c, deviation): (&f64, &f64)| 0.5 * (c / deviation).powi(2) < 2.0 * price;
-        // if some compliance is held at its constraint, the standard deviations of the others are too small
+        // if some compliance is fixed at its constraint, the standard deviations of the others are too small
         let is_held = self.fitted.deviations.iter().flatten().any(|d| !d.is_finite());
         is_held || numbers.into_iter().all(is_small)
     }
@@ -171,7 +171,7 @@ impl Positions {
         models.into_par_iter().map(|(c, effects)| (c, fit(&all, &self.numbers, &effects, base))).collect()
     }
 
-    /// The sets of effects to fit if the candidate `added` joins the model `base`. The first set holds the model's
+    /// The sets of effects to fit if the candidate `added` joins the model `base`. The first set contains the model's
     /// effects and the added one. The second leaves out those effects that the added one contains, because in their
     /// presence the added effect would be close to zero.
     fn with(&self, base: &Fitted, added: usize) -> Vec<Vec<usize>> {
@@ -197,9 +197,9 @@ impl Positions {
         gains.into_iter().enumerate().collect()
     }
 
-    /// Rise of the logarithm of the likelihood for each block of columns that is added to the linearized model
-    /// `base`. `columns` computes them, and `counts` holds the number of columns of each block. A block of a single
-    /// column is a compliance and gains nothing where it would be negative.
+    /// Rise of the logarithm of the likelihood for each block of columns that is added to the linearized model `base`.
+    /// `columns` computes the columns of all blocks, and `counts` gives the number of columns of each block. A block of
+    /// a single column is a compliance, and its rise is 0 if the compliance would be negative.
     pub(crate) fn linear_gains(&self, base: &Fitted, counts: &[usize], columns: Further) -> Vec<f64> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let normal = normal(&all, &self.numbers, base, columns);

@@ -9,10 +9,10 @@
 //! - `b = Σ s e - Cᵀ W g`,
 //! - `C = Σ W m sᵀ`.
 //!
-//! Here `A` is the curvature of the model, whose factor whitens (`A⁻¹ = WᵀW`), and `g` its gradient. The sums are over
-//! the earlier rows: of the slopes `s` of the offset, the slopes `m` of the model's numbers, and the errors `e`. All
-//! sums grow row by row, so one pass tries every row. The computing time is proportional to the number of rows, and the
-//! memory does not depend on it.
+//! Here `A` is the curvature matrix of the model, `W` its whitening factor (`A⁻¹ = WᵀW`), and `g` the gradient. The
+//! sums are over the earlier rows: of the slopes `s` of the offset, the slopes `m` of the model's numbers, and the
+//! errors `e`. All sums grow row by row, so one pass tries every row. The computing time is proportional to the number
+//! of rows, and the memory does not depend on it.
 
 use super::analysis::Positions;
 use super::fit::fit;
@@ -30,7 +30,7 @@ const FEWEST: usize = 5;
 /// Largest number of sessions that are found, beyond the first.
 const MOST: usize = 6;
 
-/// The model after the rows before some row have got a placement of their own, as a session.
+/// A fitted model in which the rows before the row `first` have become a session with a placement of its own.
 pub(super) struct Split {
     samples: Vec<Sample>,
     numbers: Vec<Number>,
@@ -113,8 +113,8 @@ impl Positions {
         Some(Whole { factor: Factor::new(&normal.curvature, &own)?, gradient: normal.gradient })
     }
 
-    /// The best first row for a new session in which `moved` was moved, counted from 0, with the rise of the
-    /// logarithm of the likelihood that the linearized model expects. `None` if no row has enough rows before and
+    /// The best first row, counted from 0, for a new session that begins because `moved` was moved, with the rise of
+    /// the logarithm of the likelihood that the linearized model expects. `None` if no row has enough rows before and
     /// after it.
     pub(super) fn best_first(&self, moved: Moved, whole: &Whole) -> Option<(usize, f64)> {
         let rows = self.samples.iter().filter(|s| moved.has(s)).count();
@@ -181,10 +181,11 @@ impl Positions {
 /// Sums over the rows before some row. They give the gain if these rows had an offset (a placement) of their own.
 struct Earlier<'a> {
     factor: &'a Factor,
-    /// The model's gradient, multiplied by the whitening factor `W`.
+    /// Derivatives of the logarithm of the likelihood of all rows with respect to the model's numbers, multiplied by
+    /// the whitening factor `W`.
     gradient: DVector<f64>,
     /// Derivatives of a row's position with respect to the model's numbers, multiplied by `W`. The next field,
-    /// `offset`, holds the derivatives with respect to the offset.
+    /// `offset`, has the derivatives with respect to the offset.
     model: DMatrix<f64>,
     offset: DMatrix<f64>,
     cross: DMatrix<f64>,
@@ -241,7 +242,8 @@ mod tests {
     const ROWS: usize = 40;
     const NUMBERS: usize = 7;
 
-    /// The dense definition: one set of normal equations, in which the offset's columns are zero from `first` on.
+    /// The gain by its definition, for comparison: one set of normal equations for all rows, in which the columns of
+    /// the offset are zero from the row `first` on.
     fn dense_gain(rows: &[(Vec<Vector3<f64>>, Vector3<f64>)], width: usize, first: usize) -> f64 {
         let column = |r: usize, j: usize| {
             let is_on = j < NUMBERS || r / 3 < first;

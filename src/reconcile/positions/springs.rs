@@ -2,7 +2,7 @@
 //! positive semidefinite.
 //!
 //! The normal equations of a fit describe a quadratic function, which is minimized under these constraints. A
-//! compliance that would be negative is held at zero. The matrix of a frame is written as `L Lᵀ`, which is positive
+//! compliance that would be negative is fixed at zero. The matrix of a frame is written as `L Lᵀ`, which is positive
 //! semidefinite for every `L`, and the quadratic function is minimized over the entries of `L` and all other numbers.
 
 use super::loads::FRAME_ENTRIES;
@@ -17,7 +17,8 @@ const MOST_HALVINGS: i32 = 8;
 /// The Newton steps end when the next one would lower half of chi-squared by less than this.
 const SETTLED: f64 = 1e-6;
 /// Fraction of the frame's largest compliance that is added to its diagonal before `L` is computed. If an entry of `L`
-/// were zero, half of chi-squared could have zero slope there and the iteration would not leave it.
+/// were zero, half of chi-squared could have zero slope with respect to it, and the entry would stay zero in the
+/// iteration.
 const ROOM: f64 = 1e-3;
 /// Row and column of each entry of `L` (the factor of a frame's compliance matrix). The base lacks the last entry:
 /// its zz follows from the couplings.
@@ -35,7 +36,7 @@ pub(crate) struct Best {
 }
 
 impl Best {
-    /// Standard deviations of the model's numbers, in their units; infinite for a number that is held at its
+    /// Standard deviations of the model's numbers, in their units; infinite for a number that is fixed at its
     /// constraint.
     pub(crate) fn deviations(&self) -> Vec<f64> {
         let variance = |row: usize| {
@@ -52,15 +53,15 @@ impl Best {
 #[derive(Clone)]
 enum Block {
     Free,
-    /// The compliances have been set to their constraint: each changes by this amount \[rad/(N m)\].
+    /// The compliances are fixed at their constraint. To get there, each changes by this amount \[rad/(N m)\].
     Held(Vec<f64>),
     /// The compliances are those of a frame: the entries of the matrix `L Lᵀ`, with this `L`.
     Frame(Matrix3<f64>),
 }
 
-/// The step to the minimum of half of chi-squared at which every compliance is physically possible. `now` holds the
-/// compliances of each effect before the step. In the equations they follow the numbers of the geometry, of which
-/// there are `numbers`. `None` if the equations are singular.
+/// The step to the minimum of half of chi-squared at which every compliance is physically possible. `now` lists the
+/// compliances of each effect before the step. The equations have `numbers` numbers of the geometry, followed by these
+/// compliances. `None` if the equations are singular.
 pub(crate) fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) -> Option<Best> {
     let mut first = numbers;
     let ranges: Vec<Range<usize>> = (now.iter())
@@ -91,7 +92,7 @@ pub(crate) fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) ->
             let step = &best.step[parabola.ranges[k].clone()];
             let wanted: Vec<f64> = own.iter().zip(step).map(|(c, by)| c + by).collect();
             let spring = nearest_spring(&wanted);
-            // the step would leave the constraint: hold this block there and solve for the others again
+            // the step would leave the constraint: fix this block at it and solve for the others again
             if spring != wanted {
                 is_settled = false;
                 parabola.blocks[k] = match own.len() {
@@ -126,8 +127,8 @@ struct Parabola<'a> {
 }
 
 impl Parabola<'_> {
-    /// The step to the minimum. Without frames one Newton step leads there; the entries of `L` need several, because
-    /// the compliances are quadratic in them.
+    /// The step to the minimum of half of chi-squared. Without frames, one Newton step leads to the minimum. With
+    /// frames several are needed, because the compliances of a frame are quadratic in the entries of `L`.
     fn best(&mut self) -> Option<Best> {
         let mut linear = vec![0.0; self.gradient.len()];
         let mut step = self.step(&linear);
@@ -162,7 +163,7 @@ impl Parabola<'_> {
     }
 
     /// Sets the entries of `L` of every frame so that `L Lᵀ` is the frame's present compliance matrix, slightly
-    /// enlarged. The descent then starts there again.
+    /// enlarged. A new descent can then start from the present compliances.
     fn frames_from_now(&mut self) {
         for (block, now) in self.blocks.iter_mut().zip(self.now) {
             if let Block::Frame(l) = block {
@@ -184,7 +185,8 @@ impl Parabola<'_> {
     }
 
     /// Factorizes the curvature of half of chi-squared over the free variables: free numbers and entries of `L`.
-    /// `slopes` holds the derivatives of the numbers with respect to these variables. `None` if it is singular.
+    /// `slopes` are the derivatives of the numbers with respect to these variables. `None` if the curvature is
+    /// singular.
     fn factor(&self, slopes: &DMatrix<f64>) -> Option<Factor> {
         let all_free = self.blocks.iter().all(|block| matches!(block, Block::Free));
         let curvature = match all_free {
@@ -194,7 +196,7 @@ impl Parabola<'_> {
         Factor::new(&curvature, &(0..curvature.nrows()).collect::<Vec<_>>())
     }
 
-    /// The step of every number of the model. `linear` holds the steps of the free numbers. The steps of the others
+    /// The step of every number of the model. `linear` gives the steps of the free numbers. The steps of the others
     /// follow from their constraint or from the entries of `L`.
     fn step(&self, linear: &[f64]) -> Vec<f64> {
         let mut step = linear.to_vec();
@@ -267,9 +269,9 @@ fn nearest_spring(compliances: &[f64]) -> Vec<f64> {
     }
 }
 
-/// Projects the compliance of a base onto the positive semidefinite cone. Rotation about z cannot be observed, so zz
-/// is not among the numbers and takes the smallest value that the couplings xz and yz need. If the part of x and y is
-/// not positive definite, it is projected and the couplings are set to zero.
+/// Projects the compliance of a base onto the positive semidefinite cone. Rotation about z cannot be observed, so zz is
+/// not among the numbers. It follows as the smallest value with which the couplings xz and yz are possible. If the 2x2
+/// matrix of x and y is not positive definite, it is projected, and the couplings are set to zero.
 fn nearest_base(compliances: &[f64]) -> Vec<f64> {
     let level: Matrix2<f64> = frame_matrix(compliances).fixed_view::<2, 2>(0, 0).into_owned();
     let mut eigen = level.symmetric_eigen();

@@ -13,8 +13,9 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 impl Positions {
-    /// The placement of the arm with the index `arm` in the instrument's frame, by the fit `shown`: in each session,
-    /// and one for all. `turned` is the rotation of the arm's last frame by the calibrated zeros and mountings.
+    /// The placement of the arm with the index `arm` in the instrument's frame, by the fit `shown`: one placement for
+    /// each session, and one for all sessions together. `turned` is the rotation of the arm's last frame by the
+    /// calibrated zeros and mountings.
     pub(crate) fn placement(
         &self,
         campaign: &Campaign,
@@ -84,7 +85,7 @@ impl Positions {
     }
 
     /// Placement of the arm, and of the points on its tool, during the samples `run`. `own_points` lists the arm's
-    /// points by name, with the index that each has if it does not occur in the run.
+    /// points. Each comes with the index among all points that is used if the run does not contain the point.
     fn stand(
         &self,
         geometry: &Geometry,

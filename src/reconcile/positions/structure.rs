@@ -21,8 +21,8 @@ use nalgebra::{DMatrix, SymmetricEigen, Vector3};
 
 /// A structure in the errors is material if it explains at least this fraction of their sum of squares.
 pub(crate) const MATERIAL_PART: f64 = 0.1;
-/// If the variance of the errors is below this multiple of the declared variance, the declared standard deviations
-/// are taken to be too small, and the model is not blamed.
+/// If the variance of the errors is below this multiple of the declared variance, the excess is ascribed to declared
+/// standard deviations that are too small, and not to the model.
 pub(crate) const MATERIAL_VARIANCE: f64 = 1.75;
 /// A structure of the errors is taken as real if chance gives it with a probability below this, after correction for
 /// the number of tests.
@@ -90,7 +90,7 @@ impl Positions {
     }
 
     /// Ratio of the variance of the errors to the declared variance. It is estimated from the median length of an
-    /// error, so that gross errors do not count.
+    /// error, so that a few gross errors hardly change it.
     fn variance_ratio(&self, campaign: &Campaign) -> f64 {
         let rows = campaign.positions.iter().zip(&self.samples);
         let lengths = rows.map(|(row, s)| declared_length(row, &self.fitted.error(s)) / median_length(s));
@@ -125,7 +125,7 @@ pub(crate) fn squares(s: &DMatrix<f64>, z: &nalgebra::DVector<f64>) -> (f64, f64
     let eigen = SymmetricEigen::new((s + s.transpose()) * 0.5);
     let largest = eigen.eigenvalues.max();
     let (mut statistic, mut dof) = (0.0, 0.0);
-    // directions that the model can already fit carry no information
+    // directions that the model can already fit give no information
     for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
         if *value > 1e-6 * largest && *value > 1e-9 {
             statistic += vector.dot(z).powi(2) / value;

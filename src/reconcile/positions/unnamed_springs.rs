@@ -3,8 +3,9 @@
 //! Every joint and bearing is slightly compliant. Compliances that are too small to be worth their price are not in the
 //! model, and those in the model take over a part of their effect. The linearized model with all of them gives the size
 //! of this part. Before the readings are used, the prior standard deviation of a compliance outside the model is that
-//! of the smallest compliance in it. With the readings it becomes `m ± P`. A number of the model moves by `-L` per unit
-//! of it and then has the variance `σ² + L P Lᵀ + (L m)²`.
+//! of the smallest compliance in it. With the readings, the compliances outside the model have the most probable values
+//! `m` and the covariance matrix `P`. A number of the model with the variance `σ²` changes by `-L` per unit of these
+//! compliances. Its variance then becomes `σ² + L P Lᵀ + (L m)²`.
 
 use super::analysis::Positions;
 use super::fitted::Sample;

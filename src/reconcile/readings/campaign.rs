@@ -46,8 +46,8 @@ pub struct PositionsSpec {
     pub geometry: bool,
     /// Whether the direction of gravity may deviate from the -z axis of the arm's base.
     pub gravity_direction: bool,
-    /// Links behind which position and attitude are unknown, such as where an arm is bolted to a trunk at an unknown
-    /// attitude.
+    /// Names of the links whose mounting is unknown: position and attitude of everything outboard of such a link are
+    /// fitted. An example is an arm that is bolted to a trunk at an unknown attitude.
     pub mounts: Vec<String>,
     /// Sessions that are declared, because something was moved on purpose.
     pub sessions: Vec<DeclaredSession>,
@@ -105,7 +105,7 @@ pub struct Campaign {
     pub windup: Vec<WindupRow>,
     /// Absolute positions, in the order of the file.
     pub positions: Vec<PositionRow>,
-    /// Sentences on readings that were not taken as they are written, such as a constant column that counts as not
+    /// Sentences on readings that were not taken as they are written, such as a constant column that is taken as not
     /// measured.
     pub remarks: Vec<String>,
     /// Records against time.
@@ -159,7 +159,7 @@ fn statement(node: &Node) -> Option<Statement> {
 const DEFAULT_TOLERANCE: Tolerance =
     Tolerance { joint_stiffness: 0.10, modulus: 0.03, joint_mass: 0.02, bearing_stiffness: 0.0 };
 
-/// Reads the density of the payloads from `conventions`; everything else there is text for people.
+/// Reads the density of the payloads from `conventions`; everything else in `conventions` is text for people.
 fn read_payload_density(node: &Node) -> Option<f64> {
     let (_, density) = node.entries()?.into_iter().find(|(key, _)| *key == "payload_density_kg_m3").unzip();
     density.map_or(Some(DEFAULT_PAYLOAD_DENSITY_KG_M3), |density| density.positive())

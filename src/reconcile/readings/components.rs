@@ -24,7 +24,7 @@ pub type Components = [Option<Component>; 3];
 /// Smallest number of rows from which equal readings of a component are suspicious.
 pub(crate) const FEWEST_ALIKE: usize = 4;
 
-/// Names of the columns that hold the components of a vector and their standard deviations.
+/// Names of the columns with the components of a vector and with their standard deviations.
 pub(crate) struct Names {
     /// Names of the columns with the measured values, for x, y and z.
     pub values: [&'static str; 3],

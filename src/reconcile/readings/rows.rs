@@ -299,8 +299,8 @@ pub(crate) fn windup_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Win
     rows
 }
 
-/// Reads the rows of `positions.csv`. `arms` holds the names of the arms, and `driven` the driven joints, each of
-/// which has a column.
+/// Reads the rows of `positions.csv`. `arms` lists the names of the arms, and `driven` lists the driven joints, each of
+/// which has a column. `purpose` says whether readings may be blank.
 pub(crate) fn position_rows(
     table: &Table,
     arms: &[&str],
@@ -366,10 +366,10 @@ fn each_row<T>(table: &Table, read: impl Fn(usize) -> Option<T>) -> Vec<T> {
     rows.into_iter().flatten().collect()
 }
 
-/// Reports each row that repeats an earlier row in everything but the label of the test. Such a row is a copying
-/// error, because a repeated test would have noise of its own. The rows `coarse`, in which not all components were
-/// measured, are an exception: a gauge may show the same digits twice, so rows with different labels count as
-/// repeated tests there.
+/// Reports each row that repeats an earlier row in everything but the label of the test. Such a row is a copying error,
+/// because a repeated test would have noise of its own. The rows `coarse`, in which not all components were measured,
+/// are an exception: a gauge may show the same digits twice, so two such rows with different labels are taken as
+/// repeated tests.
 fn check_duplicates(table: &Table, coarse: &HashSet<usize>) {
     let label = table.optional("test");
     let mut seen: HashMap<Vec<&str>, usize> = HashMap::new();

@@ -1,4 +1,5 @@
-//! Sources of the readings of a channel: the file, the sheet of a spreadsheet, and the names of its columns there.
+//! Sources of the readings of a channel: the file, the sheet if it is a spreadsheet, and the names that the columns
+//! have in it.
 
 use super::keys::{COLUMNS as COLUMN_NAMES, FILES, SHEET};
 use crate::arm::effect::channel::Channel;

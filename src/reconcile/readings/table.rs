@@ -120,8 +120,8 @@ impl Table {
         }
     }
 
-    /// Renames columns. Each pair in `names` holds the name in this program and the name in the file. A name that the
-    /// file lacks is a fault.
+    /// Renames columns. Each pair in `names` is the name in this program and the name in the file. A name that the file
+    /// lacks is a fault.
     fn rename(&mut self, names: &[(String, String)]) {
         for (name, shown) in names {
             match self.shown.iter().position(|column| column == shown) {

@@ -2,8 +2,8 @@
 //!
 //! The rows of a record are cut into stretches of time. Each block keeps the sums of products of all columns, so that a
 //! model of any of the columns can be fitted with any block left out without a further pass through the rows. Two
-//! results come from it. One is the error on held-out blocks. The other is the delete-a-block jackknife (Tukey 1958;
-//! for autocorrelated errors Künsch 1989), whose intervals need no model of the autocorrelation.
+//! results come from these fits. One is the error on held-out blocks. The other is the delete-a-block jackknife (Tukey
+//! 1958; for autocorrelated errors Künsch 1989), whose intervals need no model of the autocorrelation.
 
 use crate::reconcile::model::estimate::Estimate;
 use nalgebra::{DMatrix, DVector};
@@ -199,9 +199,9 @@ pub(crate) fn student_quantile(dof: f64) -> f64 {
     Z + terms.iter().enumerate().map(|(i, term)| term / dof.powi(i as i32 + 1)).sum::<f64>()
 }
 
-/// Number of rows that carry as much information as one independent reading, because errors are autocorrelated: 1 + 2
-/// times the sum of the autocorrelations of `errors`. The sum ends at the first pair of lags that is not positive
-/// (Geyer 1992).
+/// Number of rows that together have as much information as one independent reading. It is more than 1 because errors
+/// are autocorrelated: 1 + 2 times the sum of the autocorrelations of `errors`. The sum ends at the first pair of lags
+/// that is not positive (Geyer 1992).
 pub(crate) fn rows_per_reading(errors: &[f64]) -> f64 {
     const MOST_LAGS: usize = 4000;
     let n = errors.len();

@@ -1,9 +1,10 @@
 //! Nonlinear torsion laws of a joint, beyond a single compliance: three segments, lost motion and hysteresis.
 //!
-//! The torque of the spring is the motor's torque without friction and rotor inertia, as the linear fit of the twist
-//! gives it. Each law is written as a few columns of the spring torque, on a grid of the law's own torques. The best
-//! grid point is improved with the derivatives of the twist with respect to these torques. The columns of the
-//! derivatives also bring the uncertainty of the torques into the intervals.
+//! The spring is the joint as a compliance. Its torque is the motor's torque without friction and rotor inertia, as the
+//! linear fit of the twist gives them. Each law is written as a few columns, which are functions of the spring torque
+//! and of the law's own torques (break points, closing torque or half width `r`). The law's torques are first tried on
+//! a grid. The best grid point is then improved with the derivatives of the twist with respect to these torques. The
+//! columns of the derivatives are part of the fit, so that the intervals contain the uncertainty of the torques.
 //!
 //! - three segments: `clip(T, T1)` and `clip(T, T2)` in addition to `T`, with slopes that fall;
 //! - lost motion: `tanh(T / T_c)`;
@@ -50,12 +51,13 @@ pub(crate) struct Curve {
     pub refused: Vec<(&'static str, &'static str)>,
     /// Name of a law that held-out blocks cannot tell from one that was chosen; `None` if there is none.
     pub competing: Option<&'static str>,
-    /// Fit of the twist with the columns of all laws, including the derivatives with respect to their torques.
+    /// Fit of the twist with the columns of all laws, including the derivatives with respect to the torques of the
+    /// laws.
     pub fitted: Fitted,
     /// Root mean square error of the twist on held-out blocks after each law was added \[rad\], with the law's name.
     pub steps: Vec<(String, f64)>,
     first: usize,
-    /// Torque of the spring, one per row \[N m\].
+    /// Torque of the spring (the motor's torque without friction and rotor inertia), one per row \[N m\].
     pub spring_nm: Vec<f64>,
 }
 
@@ -77,10 +79,10 @@ impl Law {
         if matches!(self, Law::Segments(..)) { 2 } else { 1 }
     }
 
-    /// The four columns of the law at the spring torque `t` \[N m\]. The first two are shapes, and the others are
-    /// their derivatives with respect to the torques of the law; 0 where the law has fewer than two. `drag` is the
-    /// state `s` of the hysteresis, for the law's half width and for one that is larger by [`WIDER`]; other laws do
-    /// not use it.
+    /// The four columns of the law at the spring torque `t` \[N m\]. The first two are shapes, and the others are their
+    /// derivatives with respect to the torques of the law. For a law with a single torque, the second of each pair is
+    /// 0. `drag` is the state `s` of the hysteresis, for the law's half width and for one that is larger by [`WIDER`];
+    /// other laws do not use it.
     fn columns(self, t: f64, drag: [f64; 2]) -> [f64; 4] {
         let beyond = |edge: f64| if t.abs() > edge { t.signum() } else { 0.0 };
         match self {
@@ -109,9 +111,9 @@ impl Law {
 /// Relative change of the half width of a hysteresis by which its derivative is computed.
 const WIDER: f64 = 0.01;
 
-/// State `s` of a hysteresis with the half width `width` at each row \[N m\]: the value nearest to the state of the
-/// row before that lies within `width` of the spring torque. `record` gives the record of a row. In every record the
-/// state starts at the spring torque of the first row.
+/// State `s` of a hysteresis with the half width `width` at each row \[N m\]: of all values within `width` of the
+/// spring torque, the one that is nearest to the state of the row before. `record` gives the record of a row. In every
+/// record the state starts at the spring torque of the first row.
 fn dragged(spring_nm: &[f64], record: impl Fn(usize) -> usize, width: f64) -> Vec<f64> {
     let mut state = f64::NAN;
     let mut of = usize::MAX;
@@ -281,7 +283,7 @@ impl Curve {
         out
     }
 
-    /// Columns of the shapes of `law` in a table in which the columns of the laws `singles` follow those of `known`
+    /// Indices of the columns of the shapes of `law`. In the table of columns, the laws `singles` come after `known`
     /// earlier laws.
     fn shapes_of(&self, law: Law, known: usize, singles: &[Law]) -> Vec<usize> {
         let place = |law: Law| singles.iter().position(|s| *s == law).map(|i| self.first + 4 * (known + i));
@@ -293,7 +295,8 @@ impl Curve {
         }
     }
 
-    /// Columns of `law` if it has the index `place` among the laws: its shapes first, then the derivatives.
+    /// Indices of the columns of `law` if it has the index `place` among the laws: its shapes first, then the
+    /// derivatives.
     fn law_columns(&self, place: usize, law: Law) -> Vec<usize> {
         let at = self.first + 4 * place;
         let n = law.torques();

@@ -102,7 +102,7 @@ pub struct JointRecord {
     pub joint: String,
     /// Number of rows that enter the fit.
     pub rows: usize,
-    /// Number of independent readings that carry as much information as these rows. It is smaller than `rows` because
+    /// Number of independent readings that have as much information as these rows. It is smaller than `rows` because
     /// errors are autocorrelated.
     pub effective_rows: f64,
     /// Number of blocks of time that were held out in turn.

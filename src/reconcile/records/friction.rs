@@ -2,9 +2,13 @@
 //!
 //! `T_m = T_0 + J a_m + I a_l + A sin q_l + B cos q_l + (coupling with other joints) + (F_c + f |T_l|) sgn w + F_v w`
 //!
+//! Here `a_m` and `a_l` are the accelerations of motor and link, `q_l` is the angle of the link, `w` the speed of the
+//! motor, and `T_l` the torque of the load. All other letters are coefficients that are fitted: `F_c` is Coulomb
+//! friction, `f` friction in proportion to the load, and `F_v` viscous friction.
+//!
 //! The load of a joint also depends on the position and motion of the other joints. Their angles, speeds and
-//! accelerations enter as free columns, joint by joint, where held-out blocks are predicted better with them. `T_l` is
-//! the torque of the load. It comes from a first fit, without the terms of friction.
+//! accelerations enter as free columns, joint by joint, where held-out blocks are predicted better with them. The
+//! torque of the load `T_l` comes from a first fit, without the terms of friction.
 
 use super::blocks::Fitted;
 use super::reading::Record;
@@ -13,14 +17,14 @@ use super::smooth::{half_width, smooth};
 use super::twist::CLEARLY;
 use crate::reconcile::model::estimate::Estimate;
 
-/// Number of columns of the joint's own load, which stand behind the offsets of the records: accelerations of motor
-/// and link, sine and cosine of the link's angle, and of twice this angle.
+/// Number of columns of the joint's own load, which come after the columns of the records' offsets: accelerations of
+/// motor and link, sine and cosine of the link's angle, and of twice this angle.
 const OWN_LOAD: usize = 6;
 /// Number of columns of friction: sign of the speed, speed, and sign of the speed times the magnitude of the load.
 const FRICTION: usize = 3;
-/// The link's acceleration is added to the balance of torques if it makes held-out blocks better by this many
-/// standard errors. Less is asked than for other columns, because the inertia of the link surely exists and is one
-/// column only.
+/// The link's acceleration is added to the balance of torques if held-out blocks are then predicted better by this many
+/// standard errors. The number is smaller than for other columns, because the inertia of the link surely exists and is
+/// one column only.
 const SLIGHTLY: f64 = 1.0;
 /// A row enters the balance of torques only if the magnitude of the smoothed sign of the speed differs from one by at
 /// most this. Near a reversal the friction is not known.
@@ -140,7 +144,7 @@ impl Balance<'_> {
 }
 
 /// Motion (angle, speed, acceleration) of each other joint at the rows of this joint. Only joints that are in all
-/// records of this joint count.
+/// records of this joint are used.
 fn motions(rows: &JointRows, records: &[Record]) -> Vec<Motion> {
     let own: Vec<&Record> = records
         .iter()

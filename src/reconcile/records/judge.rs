@@ -85,7 +85,7 @@ impl<'a> Judged<'a> {
     }
 
     /// Stated compliance of the joint, given as a stiffness with its interval. If hysteresis or lost motion was found,
-    /// the compliance comes from the fit that includes it; the linear fit would count part of that effect as
+    /// the compliance comes from the fit that includes it; the linear fit would take a part of that effect for
     /// compliance. If a torsion curve was found, its segments have their own stiffnesses, and the compliance stated
     /// here is that of the linear fit, a mean over the record. The linear fit is also taken where the interval of the
     /// other fit does not exclude zero compliance.
@@ -174,7 +174,7 @@ impl<'a> Judged<'a> {
         let Some(f) = self.friction.filter(|f| f.is_possible && is_positive(&f.viscous_nms_per_rad)) else {
             return (plain, String::new());
         };
-        // the columns of a torsion law use the torque without viscous friction, so only the linear compliance counts
+        // the columns of a torsion law use the torque without viscous friction, so only the linear compliance is used
         // here
         let c = self.fitted().coefficient(self.model.places.torque());
         let is_known = is_positive(&c);

@@ -7,7 +7,7 @@
 //! - `blocks` fits columns to rows, with intervals and held-out errors by blocks.
 //! - `twist` chooses the terms of the twist, `friction` balances the torques, `curve` looks for torsion laws beyond a
 //!   single compliance, and `ringing` for free vibration.
-//! - `judge` says of each effect whether it is found; [`finding`] holds the results.
+//! - `judge` says of each effect whether it is found. [`finding`] defines the results.
 //! - `outcome` reaches the verdict, and `report` writes it in words and pictures.
 
 pub(crate) mod blocks;

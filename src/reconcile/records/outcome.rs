@@ -27,8 +27,8 @@ const LEFT: f64 = 0.158;
 /// A joint is also explained if the root mean square error of its twist on held-out blocks is at most this many times
 /// the noise of the twist from row to row.
 const NOISY: f64 = 1.5;
-/// Effects that change how far a joint twists under torque. If other readings name one of them at a joint, the
-/// records add none of them there.
+/// Effects that change how far a joint twists under torque. If other readings name one of them at a joint, the records
+/// add none of them at this joint.
 const OF_TWIST: [&str; 5] = [
     joint_compliance::KIND.name,
     connection_compliance::KIND.name,
@@ -150,7 +150,8 @@ fn verdict(
     (Verdict::NoGap, vec!["noise and the tolerance of the joints explain the records".into()])
 }
 
-/// Effects of the library that the records show at a joint, as findings. Its single compliance is not among them.
+/// Effects of the library that the records show at a joint, as findings. The joint's single compliance is not among
+/// them.
 fn named(joint: &JointRecord) -> Vec<Finding> {
     let like = |what: &str| -> Vec<(String, String)> {
         // a transmission error once a turn and gravity give the same twist if no other joint changes the torque
@@ -287,8 +288,8 @@ fn as_effect(campaign: &Campaign, finding: &Finding) -> Option<Effect> {
 }
 
 /// Root mean square error of the twist on held-out blocks, with an offset alone (before) and with everything that was
-/// found (after). The errors of each joint are divided by the noise of its twist, and joints count by their number of
-/// rows.
+/// found (after). The errors of each joint are divided by the noise of its twist, and joints are weighted by their
+/// number of rows.
 fn held_out(joints: &[JointRecord]) -> Option<HeldOut> {
     let count: usize = joints.iter().map(|j| j.rows).sum();
     let mean = |of: fn(&JointRecord) -> f64| {

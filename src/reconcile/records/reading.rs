@@ -42,8 +42,8 @@ pub struct Record {
     pub joints: Vec<JointSignals>,
 }
 
-/// Indices of the columns of a file that hold the signals of a joint. Motor angle and torque come with the factor
-/// that refers them to the output of the gear.
+/// Indices of the columns of a file with the signals of a joint. Motor angle and torque come with the factor that
+/// refers them to the output of the gear.
 struct Columns {
     joint: String,
     motor: (usize, f64),

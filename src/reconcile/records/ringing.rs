@@ -11,7 +11,7 @@ use crate::reconcile::model::estimate::Estimate;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
-/// The motor counts as standing still if its speed is below this fraction of its largest speed in the record.
+/// The motor is taken as standing still if its speed is below this fraction of its largest speed in the record.
 const AT_REST: f64 = 0.02;
 /// Smallest number of rows of a stretch (rows in which the motor stands still) that is fitted.
 const FEWEST_ROWS: usize = 60;
@@ -47,7 +47,7 @@ struct Swing {
 }
 
 /// Finds free vibrations in one record of one joint, from the angles of motor and link. Each result belongs to one
-/// stretch in which the motor stands still. It holds the frequency \[Hz\], the decay rate \[1/s\] and the standard
+/// stretch in which the motor stands still. The result is the frequency \[Hz\], the decay rate \[1/s\] and the standard
 /// deviation of the frequency \[Hz\].
 pub(crate) fn swings(t_s: &[f64], motor_rad: &[f64], link_rad: &[f64]) -> Vec<(f64, f64, f64)> {
     let half = half_width(t_s, motor_rad);
@@ -73,7 +73,7 @@ pub(crate) fn swings(t_s: &[f64], motor_rad: &[f64], link_rad: &[f64]) -> Vec<(f
 
 /// Joins the vibrations of all stretches (frequency, decay rate, standard deviation of the frequency) into one
 /// frequency and damping. `None` if fewer than half of the stretches agree on a frequency. If there are several
-/// stretches, the interval is at least as wide as their scatter asks for.
+/// stretches, the interval is at least as wide as the scatter of their frequencies requires.
 pub(crate) fn joined(swings: &[(f64, f64, f64)]) -> Option<Ringing> {
     let median = crate::reconcile::fit::stats::median(swings.iter().map(|s| s.0).collect());
     let alike: Vec<_> = swings.iter().filter(|s| (s.0 / median - 1.0).abs() < 0.2).collect();

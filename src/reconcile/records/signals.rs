@@ -5,11 +5,11 @@ use super::reading::{JointSignals, Record};
 use super::smooth::{Smooth, half_width, noise, slope_noise, smooth, usual_step_s};
 use super::wave::Wave;
 
-/// Fraction of the largest speed below which the sign of the speed is smoothed, because friction does not jump
-/// either.
+/// Fraction of the largest speed below which the sign of the speed changes smoothly, because real friction does not
+/// jump at zero speed either.
 const SLOW_PART: f64 = 0.002;
-/// Largest ratio of the root mean square accelerations on the two sides of a gear. Above it, the larger one is not a
-/// motion of the joint but an error of the gear or its sensor.
+/// Largest ratio of the root mean square accelerations on the two sides of a gear. If the ratio is larger, the larger
+/// acceleration is not a motion of the joint but an error of the gear or its sensor.
 const RESTLESS: f64 = 1.2;
 /// Smallest number of blocks of a record, so that the result for a record does not depend on one block.
 const FEWEST_BLOCKS: usize = 4;
@@ -82,7 +82,7 @@ pub(crate) struct Twist {
 impl JointRows {
     /// Gathers the rows of a joint from all records that have the angles on both sides of its gear. The rows are
     /// divided into about `blocks` blocks of time. The error `wave` of the gear within a turn of the motor is removed
-    /// before smoothing. `None` if there is no such record.
+    /// before smoothing. `None` if no record has both angles.
     pub(crate) fn gather(records: &[Record], joint: &str, blocks: usize, wave: &Wave) -> Option<Self> {
         let whole = |j: &&JointSignals| j.joint == joint && !j.link_rad.is_empty();
         let own: Vec<(&Record, &JointSignals)> =
@@ -118,10 +118,10 @@ impl JointRows {
         [mean(&|s| s.acceleration_rad_s2), mean(&of_link)]
     }
 
-    /// Accelerations of motor and link at the row `sample` \[rad/s²\], if the link's signal is late by `shift_s`
-    /// \[s\]. A transmission error within a turn of the motor adds a large false acceleration on one side of the
-    /// gear. The side with the smaller acceleration then stands for both. `None` beyond the ends of the record and at
-    /// gaps.
+    /// Accelerations of motor and link at the row `sample` \[rad/s²\], if the link's signal is late by `shift_s` \[s\].
+    /// A transmission error within a turn of the motor adds a large false acceleration on one side of the gear. The
+    /// acceleration of the other side, which is smaller, is then used for both. `None` beyond the ends of the record
+    /// and at gaps.
     pub(crate) fn accelerations(&self, sample: &Sample, shift_s: f64) -> Option<[f64; 2]> {
         let both = [sample.acceleration_rad_s2, self.link(sample, shift_s)?[1]];
         let [motor, link] = self.accelerations_rad_s2;
@@ -231,9 +231,9 @@ impl JointRows {
     }
 
     /// Sums of the products of every two of `width` columns over all rows, one matrix per block. `fill` writes the
-    /// columns of a row and returns whether the row counts.
+    /// columns of a row and returns whether the row is used.
     pub(crate) fn sums(&self, width: usize, fill: impl Fn(usize, &Sample, &mut [f64]) -> bool) -> Blocks {
-        // a row that cannot be filled counts as zeros
+        // a row that cannot be filled is replaced by zeros
         Blocks::new(
             self.samples.len(),
             width,

@@ -16,7 +16,8 @@ const LONGEST: f64 = 1.5;
 /// Sum of the squares of the weights of a fourth difference (1, -4, 6, -4, 1).
 const FOURTH_DIFFERENCE_VARIANCE: f64 = 70.0;
 
-/// Smoothed value and derivatives of a signal, one per row. Rows too near to an end or a gap hold NaN.
+/// Smoothed value and derivatives of a signal, one per row. The entries of rows that are too near to an end or a gap
+/// are NaN.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Smooth {
     /// Smoothed value, in the unit of the signal.
@@ -65,8 +66,8 @@ pub(crate) fn half_width(t_s: &[f64], x: &[f64]) -> usize {
         .unwrap_or(HALF_WIDTHS[0])
 }
 
-/// Fits, at each row, a cubic to the rows from `half` before to `half` after it, and returns its value and
-/// derivatives there.
+/// Fits, at each row, a cubic to the rows from `half` before to `half` after it, and returns the value and the
+/// derivatives of the cubic at this row.
 pub(crate) fn smooth(t_s: &[f64], x: &[f64], half: usize) -> Smooth {
     let n = x.len();
     let step = usual_step_s(t_s);
@@ -99,8 +100,8 @@ pub(crate) fn smooth(t_s: &[f64], x: &[f64], half: usize) -> Smooth {
 mod tests {
     use super::*;
 
-    /// Noise that is the same in every run: twelve uniform numbers of a linear congruential generator added to a nearly
-    /// normal deviate.
+    /// Noise that is the same in every run. Each value is the sum of twelve uniform numbers of a linear congruential
+    /// generator, which is nearly a normal deviate.
     fn deviates(n: usize) -> Vec<f64> {
         let mut state = 1u64;
         let mut uniform = move || {

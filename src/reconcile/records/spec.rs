@@ -30,7 +30,7 @@ pub struct RecordSpec {
     pub file: String,
     /// Whether `campaign.json` names the file. If not, the file need not exist.
     pub is_named: bool,
-    /// Pairs of names: the column of this program, and the column of the file that holds it.
+    /// Pairs of names: the name of the column in this program, and its name in the file.
     pub columns: Vec<(String, String)>,
     /// Gear ratio: turns of the motor for one turn of the output.
     pub ratio: PerJoint,

@@ -7,6 +7,9 @@
 //!
 //! | symbol | what it is | unit |
 //! |---|---|---|
+//! | `w`, `w_l` | speeds of the motor (at the output) and of the link | rad/s |
+//! | `a` | acceleration of the motor at the output | rad/s² |
+//! | `q`, `N` | angle of the motor at the output, gear ratio | rad, 1 |
 //! | `s` | time by which the link's reading is late | s |
 //! | `c` | compliance | rad/(N m) |
 //! | `T_m` | torque of the motor at the output | N m |
@@ -81,7 +84,8 @@ impl Places {
     pub(crate) fn input(self) -> [usize; 4] {
         std::array::from_fn(|i| self.records + 10 + i)
     }
-    /// Index of the first column after those of the linear model. The target stands there, or the torsion laws.
+    /// Index of the first column after those of the linear model. This column is the target or, if torsion laws are
+    /// fitted, the first column of these laws.
     pub(crate) fn further(self) -> usize {
         self.records + 14
     }
@@ -151,7 +155,8 @@ pub(crate) struct TwistModel<'a> {
     pub rows: &'a JointRows,
     /// Indices of the model's columns.
     pub places: Places,
-    /// Time by which the link's signal is late, at which the signal is read and its Taylor series is taken \[s\].
+    /// Time by which the link's signal is late \[s\]. The signal is read this much later than the motor's signal, and
+    /// is expanded into a Taylor series about the row nearest to this time.
     pub shift_s: f64,
     /// Sums of the products of every two columns of the model, one matrix per block of time. The last column is the
     /// twist.
@@ -163,7 +168,8 @@ pub(crate) struct TwistModel<'a> {
     pub groups: Vec<Group>,
     /// Fit of the twist with the columns of these groups.
     pub fitted: Fitted,
-    /// Number of rows that carry as much information as one independent reading, because errors are autocorrelated.
+    /// Number of rows that together have as much information as one independent reading. It is more than 1 because
+    /// errors are autocorrelated.
     pub rows_per_reading: f64,
     /// Root mean square error of the twist on held-out blocks after each step \[rad\], with the name of the step.
     pub steps: Vec<(String, f64)>,

@@ -34,17 +34,19 @@ const LARGEST: f64 = 3.0;
 
 /// Channels in whose tests a joint may soften, in the order of their parameters.
 const SOFTENING_IN: [Channel; 2] = [Channel::Static, Channel::Modal];
-/// Parts of the rows of a file in which most of a change comes, where a fit starts.
+/// Values from which fits start, for the number of rows in which 63 % of a joint's softening takes place, as fractions
+/// of the rows of the file.
 const SOFTENED_AFTER: [f64; 2] = [0.08, 0.5];
-/// The place of the base.
+/// Name of the base, by which a candidate states its place.
 const BASE: &str = "base";
-/// Largest tilt of a base that is looked for, as a multiple of the deflection of the first joint.
+/// Largest compliance of a base against tilt that is sought, as a multiple of the compliance of the first compliant
+/// joint.
 const SOFTEST: f64 = 100.0;
-/// Fewest poses before and after a base turned.
+/// Smallest number of poses that must come before a turn of the base, and of poses that must come after it.
 const FEWEST_POSES: usize = 2;
 
-/// Every law at every place where the readings could show it. `baseline` is the best fit of calibration alone: its residuals
-/// say when a base could have turned.
+/// Every law at every place where the readings could show it. `baseline` is the best fit with calibration alone. Its
+/// residuals show at which row the base could have turned.
 pub(crate) fn laws(forward: &Forward, baseline: &Fit, weights: &Weights) -> Vec<Candidate> {
     let nominal = forward.coefficients(&forward.nominal);
     let torques_nm: Vec<f64> =
@@ -69,7 +71,8 @@ pub(crate) fn laws(forward: &Forward, baseline: &Fit, weights: &Weights) -> Vec<
     out
 }
 
-/// A stiffness of a joint that changes with the order of the tests of a channel, by its number in [`SOFTENING_IN`].
+/// The candidate that the stiffness of a joint changes with the order of the tests of one channel. `channel` is the
+/// index of this channel in [`SOFTENING_IN`].
 fn softening(forward: &Forward, joint: &str, torque_nm: f64, channel: usize) -> Option<Candidate> {
     let range = forward.range(SOFTENING_IN[channel]);
     let rows = forward.data[range].iter().map(|datum| datum.row + 1).max()? as f64;
@@ -97,13 +100,14 @@ fn softening(forward: &Forward, joint: &str, torque_nm: f64, channel: usize) -> 
     Some(Candidate { kind: &KIND, at: joint.into(), free_parameters, numbers, starts, twins: Vec::new() })
 }
 
-/// The numbers of a joint that does not soften.
+/// The softening parameters of a joint that does not soften, as stated numbers.
 fn steady() -> Vec<Number> {
     [0.0, 1.0, 0.0, 1.0, 1.0].map(Stated).to_vec()
 }
 
-/// A base that tilts about world x and about y, each by its own compliance; sizes are those of the first compliant joint.
-/// `None` if a piece of the arm is called as the base is.
+/// The candidate that the base tilts about world x and about world y with a compliance of its own for each. The usual
+/// size of these compliances is the compliance of the first compliant joint. `None` if no joint is compliant, or if a
+/// piece of the arm has the name of the base.
 fn lean(forward: &Forward) -> Option<Candidate> {
     let laws = forward.coefficients(&forward.nominal).laws;
     let size = laws.iter().map(|law| law.tangent_compliance_rad_per_nm(0.0)).find(|c| *c > 0.0)?;
@@ -114,7 +118,7 @@ fn lean(forward: &Forward) -> Option<Candidate> {
     is_free.then_some(lean)
 }
 
-/// A base that turned before a row of the displacements.
+/// The candidate that the base turned just before the row `from_row` (counted from 0) of the displacements.
 fn base_turn(from_row: usize) -> Candidate {
     let turn = Parameter { count: 3, ..Parameter::number(BASE_TURN, -0.1, 0.1, 1e-4, Scale::Linear) };
     let straight = vec![Stated(0.0), Stated(0.0), Stated(1.0), Stated(1.0), Stated(1.0), Stated(1.0)];
@@ -150,7 +154,7 @@ fn most_telling_row(forward: &Forward, fit: &Fit, weights: &Weights) -> Option<u
     gains.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, row)| row).filter(|row| *row != usize::MAX)
 }
 
-/// What a law may be, in a sentence.
+/// Clause on the physical causes that a law without a name may have.
 pub(crate) fn may_be(candidate: &Candidate) -> &'static str {
     match candidate.free_parameters.first().map(|free| free.name) {
         Some(ODD_TWIST) => "it may be a gear or a connection that stiffens or softens as it is loaded",
@@ -224,8 +228,8 @@ fn next_law<'a>(search: &Search<'a>, first: usize, from: &Scored) -> Option<(Sco
     (scored.score > from.score + BETTER).then_some((scored, fit))
 }
 
-/// Two laws of a joint as candidates: a further twist that is an odd function of the joint's torque, and one that is
-/// an even function. `torque_nm` is the largest torque on the joint, and `twist_rad` its twist there.
+/// Two laws of a joint as candidates: a further twist that is an odd function of the joint's torque, and one that is an
+/// even function. `torque_nm` is the largest torque on the joint, and `twist_rad` its twist under this torque.
 fn twists(joint: &str, torque_nm: f64, twist_rad: f64) -> [Candidate; 2] {
     let most = LARGEST * twist_rad;
     let sized =

@@ -2,8 +2,8 @@
 //! sets.
 //!
 //! Sets of one, two and three effects are fitted, up to one effect more than the smallest explaining set has. A set is
-//! kept if it explains the readings within their standard deviations, and no longer does so without any one of its
-//! effects. A set whose evidence is far below the best is dropped.
+//! kept if it explains the readings within their standard deviations, and if no smaller set that is a part of it does
+//! so too. A set whose evidence is far below the best is dropped.
 //!
 //! The readings determine the properties in which all kept sets agree, masses and stiffnesses included. They do not
 //! determine a property in which the sets differ.
@@ -37,12 +37,12 @@ const IMPLAUSIBLE: f64 = 15.0;
 const MATERIAL: f64 = 0.02;
 /// A stiffness is not identified if the ratio of its largest to its smallest possible value is larger than this.
 const WIDE: f64 = 1.2;
-/// Factors by which a stiffness is multiplied, and then divided, to find its possible range.
+/// Factors by which a stiffness is divided, and then multiplied, to find its possible range.
 const FACTORS: [f64; 9] = [1.1, 1.2, 1.4, 1.7, 2.0, 3.0, 4.0, 6.0, 10.0];
 /// Largest number of explaining sets, the best first, for which the stiffnesses are varied.
 const MOST_PROFILES: usize = 6;
 
-/// Fits every small set of effects of the campaign. In the result, `others` holds the sets that explain the readings,
+/// Fits every small set of effects of the campaign. In the result, `others` lists the sets that explain the readings,
 /// the best first.
 pub(crate) fn weigh(search: &Search) -> Selection {
     let baseline = scored(search, &[], &[]);
@@ -146,8 +146,8 @@ fn scored(search: &Search, effects: &[usize], starts: &[Vec<f64>]) -> Scored {
     Scored { score: scored.score - strange, ..scored }
 }
 
-/// Charge for a parameter whose `u` is beyond its expected range \[ln of the evidence\]. The distance beyond the
-/// range counts as a normal deviate with a standard deviation of a quarter of the range's width.
+/// Charge for a parameter whose `u` is beyond its expected range \[ln of the evidence\]. The distance beyond the range
+/// is treated as a normal deviate whose standard deviation is a quarter of the range's width.
 fn surprise(parameter: &FreeParameter, u: f64) -> f64 {
     0.5 * (parameter.beyond_expected(u) / 0.25).powi(2)
 }
@@ -267,8 +267,8 @@ fn outboard_kg(subject: &Subject, joint: &str) -> f64 {
         .sum()
 }
 
-/// Sentences on joints whose stiffness cannot be identified: it can have very different values with which the
-/// readings are still explained. The joint with the widest range comes first.
+/// Sentences on joints whose stiffness cannot be identified: the readings are still explained with very different
+/// values of this stiffness. The joint with the widest range comes first.
 fn unidentified_stiffnesses(search: &Search, explaining: &[Scored], subjects: &[Subject]) -> Vec<String> {
     let joints = search.forward.nominal.structure.joints().filter(|j| !j.law.is_rigid());
     let mut ranges: Vec<(String, f64, f64)> = joints
@@ -316,7 +316,7 @@ fn free_factors(search: &Search, set: &Scored, joint: &str) -> (f64, f64) {
         for factor in factors {
             model.held = vec![(index, libm::log(*factor))];
             let fitted = fit(search.forward, &model, &u, search.weights, Effort::default());
-            // the prior of the held factor is not part of the misfit
+            // the prior of the fixed factor is not part of the misfit
             let misfit = fitted.point.objective - libm::log(*factor).powi(2);
             if !is_probable(search, set, misfit) {
                 break;
@@ -334,7 +334,7 @@ fn span(values: impl Iterator<Item = f64>) -> (f64, f64) {
 
 /// All effects of the sets `explaining`, which explain the readings, as findings. The interval of a parameter covers
 /// its intervals in all sets that contain the effect. The alternatives are the effects of the sets without it. If the
-/// effect is a stiffness and some set does without it, its interval has no upper end.
+/// effect is a stiffness and some set does not contain the effect, the interval has no upper end.
 pub(crate) fn suspects(search: &Search, explaining: &[Scored], weights: &Weights) -> Vec<Finding> {
     let mut effects: Vec<usize> = Vec::new();
     for &e in explaining.iter().flat_map(|s| &s.effects) {

@@ -3,8 +3,9 @@
 //! The residuals of a correct model are noise. They do not depend on the order of the tests, a joint's angle, the load,
 //! the branch or the torque. For each such quantity a few columns `X`, functions of it, are tested. After the part that
 //! the model could still fit is removed, the statistic is `zᵀ S⁻¹ z` with `z = Xᵀr` and `S = XᵀX - XᵀJ (JᵀWJ)⁻¹ JᵀX`.
-//! It follows a chi-squared distribution if there is no structure. The smooth laws of [`unnamed`](super::unnamed) are
-//! tested too.
+//! Here `r` are the residuals and `J` the derivatives of the predicted readings with respect to the parameters, both in
+//! standard deviations, and `(JᵀWJ)⁻¹` is the covariance matrix of the parameters. The statistic follows a chi-squared
+//! distribution if there is no structure. The smooth laws of [`unnamed`](super::unnamed) are tested too.
 
 use super::structure::Structure;
 use super::unnamed;
@@ -85,8 +86,8 @@ pub(crate) fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, wei
     LackOfFit { structures, chi2_per_dof, fails }
 }
 
-/// A direction of the columns is dropped if the model already explains all but this fraction of its sum of squares. The
-/// remainder would only show how well the fit converged.
+/// A linear combination of the columns of a test is dropped if the model already explains all but this fraction of its
+/// sum of squares. The remainder would only show how well the fit converged.
 const ABSORBED: f64 = 1e-3;
 
 /// Scales every column of the matrix to length 1. A column of zeros stays.
@@ -304,7 +305,7 @@ fn static_questions(campaign: &Campaign, forward: &Forward, fit: &Fit, ask: Ask)
 }
 
 /// Four functions of the position of a joint at each row: waves of its angle, or smooth functions of its travel.
-/// `entries` holds the joint's entry of the pose, row by row.
+/// `entries` gives the joint's entry in the pose of each row.
 fn positions_of(joint: &DrivenJoint, entries: impl Iterator<Item = f64>) -> Vec<[f64; 4]> {
     let entries: Vec<f64> = entries.collect();
     let (low, high) =

@@ -62,13 +62,13 @@ struct State {
     channel: Channel,
 }
 
-/// A function that gives, for a state of the joint, an additional torque-like term and its derivative with respect to
-/// the torque. The additional twist is the compliance times the first \[N m\], and the additional tangent compliance
-/// is the compliance times the second.
+/// A function that gives two numbers for a state of the joint: an additional torque \[N m\], and its derivative with
+/// respect to the joint's torque. The additional twist of the joint is its compliance times the additional torque. The
+/// additional tangent compliance is the compliance times the derivative.
 type Shape<'a> = &'a dyn Fn(&State) -> (f64, f64);
 
-/// A function that builds a column of a channel's readings. It receives the entry as a function of the datum's index
-/// and predicted reading.
+/// A function that builds a column of a channel's readings. Its argument is a function that gives the entry of a datum
+/// from the index and the predicted reading of this datum.
 type ColumnOf<'a> = &'a dyn Fn(&dyn Fn(usize, f64) -> f64) -> Vec<f64>;
 
 struct Builder<'a> {
@@ -269,8 +269,8 @@ impl Builder<'_> {
         change_to(self.forward, &self.fit.point, moved).into_iter().map(|d| d / PART).collect()
     }
 
-    /// The change of every reading, in its unit, by additional compliances. `further` holds pairs: index of the
-    /// strain coordinate, and its additional compliance.
+    /// The change of every reading, in its unit, by additional compliances. Each entry of `further` is a pair: index of
+    /// the strain coordinate, and its additional compliance.
     fn yielding_column(&self, further: &[(usize, f64)]) -> Vec<f64> {
         let forward = self.forward;
         let mut truth = vec![0.0; forward.data.len()];
@@ -281,8 +281,9 @@ impl Builder<'_> {
         self.read(&truth)
     }
 
-    /// Writes into `truth` the change of the frequencies by a change `dC` of the matrix of compliances \[Hz\].
-    /// `energy` receives the index of a datum and the inertia forces `y` of its mode, and gives `yᵀ dC y`.
+    /// Sets the entries of `truth` that belong to frequencies: the first-order change of each frequency \[Hz\] when
+    /// the compliance matrix changes by `dC`. `energy` receives the index of a datum and the inertia forces `y` of its
+    /// mode, and returns `yᵀ dC y`.
     fn add_modal(&self, truth: &mut [f64], energy: impl Fn(usize, &DVector<f64>) -> f64) {
         for (test, solved) in self.forward.modal.iter().zip(&self.fit.point.solved) {
             for &(datum, mode) in &test.modes {
@@ -327,8 +328,8 @@ impl Builder<'_> {
     }
 
     /// Laws of static readings that follow the load in a way that the model lacks: loads other than stated, a support
-    /// that deflects in the direction of the load, and readings that grow while a pose is held. `column` builds a
-    /// column.
+    /// that deflects in the direction of the load, and readings that grow while the arm stays in one pose. `column`
+    /// builds a column.
     fn load_laws(&self, column: ColumnOf) -> Vec<Law> {
         let rows = &self.campaign.statics;
         let gravity = self.forward.layout.gravity_m_s2;
@@ -456,7 +457,8 @@ mod tests {
     use crate::reconcile::model::parameters::Model;
     use std::path::Path;
 
-    /// Checks the laws about the model as it is against the sensitivities of the calibration.
+    /// Calls `check` with a builder of laws for a test campaign, linearized about the nominal arm, and with the
+    /// calibrated parameters.
     fn about_the_bare_model(check: impl FnOnce(&Builder, &Nuisance)) {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/campaigns/plain-0251e");
         let campaign = Campaign::read(&folder, &Catalogs::default()).expect("sound");

@@ -25,9 +25,11 @@ const WORTH: f64 = 3.0;
 /// The listed alternatives to an effect are as many as are needed so that the effect and they together contain the
 /// right one with this probability.
 const CREDIBLE: f64 = 0.95;
-/// A model whose score after a few steps of a fit is below the best by more than this is not fitted further.
+/// A model whose score after a few steps of a fit is below the best score by more than this is not fitted further \[ln
+/// of the evidence\].
 const HOPELESS: f64 = 40.0;
-/// A model whose score is below the best of its stage by less than this is examined further.
+/// A model whose score is below the best of its stage by less than this may still be the best one, and is refined or
+/// fitted again \[ln of the evidence\].
 const PROMISING: f64 = 12.0;
 /// Largest number of effects in a model.
 pub(crate) const MOST_EFFECTS: usize = 3;
@@ -64,7 +66,7 @@ pub(crate) struct Selection {
     pub given_up: bool,
 }
 
-/// A model with its predictions at one point, and the derivatives of the predictions there.
+/// The predictions of a model at one point, and their derivatives at this point.
 struct Linearized {
     here: Point,
     slopes: DMatrix<f64>,
@@ -326,8 +328,8 @@ impl<'a> Search<'a> {
             .expect("at least one start")
     }
 
-    /// The candidates that raise the score of the model `base` most by the linearized model, the best first: index,
-    /// parameters from which a full fit starts, and the score.
+    /// The candidates that, according to the linearized model, raise the score of the model `base` most, the best
+    /// first. Each is given as its index, the parameters from which a full fit starts, and the score.
     fn screen(&self, base: &Scored) -> Vec<(usize, Vec<f64>, f64)> {
         let model = self.model(&base.effects);
         let sharp = self.linearized(&model, &base.u);
@@ -423,7 +425,7 @@ impl<'a> Search<'a> {
         let candidate = &self.candidates[index];
         let mut model = base.with(candidate);
         model.smoothing = if self.is_smoothed(base, index) { WIDE } else { 0.0 };
-        // break points are held, because the linearized model does not contain the jumps of the frequencies there
+        // break points are held fixed, because the linearized model does not contain the jumps of the frequencies there
         model.held =
             model.break_points().into_iter().filter(|p| *p < base.len()).map(|p| (p, here.u[p])).collect();
         let held = model.held.clone();
@@ -444,9 +446,8 @@ impl<'a> Search<'a> {
             .map(|(u, score)| (index, u, score))
     }
 
-    /// Best parameters and score of the model `model` (the model at `here` and one candidate). The model is
-    /// linearized about the parameters of `here` and the candidate's start `start`; `slopes` holds the derivatives at
-    /// `here`.
+    /// Best parameters and score of the model `model` (the model at `here` and one candidate). The model is linearized
+    /// about the parameters of `here` and the candidate's start `start`; `slopes` are the derivatives at `here`.
     fn linear(&self, model: &Model, here: &Point, slopes: &DMatrix<f64>, start: &[f64]) -> (Vec<f64>, f64) {
         let mut u = here.u.clone();
         u.extend_from_slice(start);
@@ -490,8 +491,8 @@ impl<'a> Search<'a> {
         (u, score)
     }
 
-    /// For each effect of the model `best`, the models of `seen` that have another effect in its place and that the
-    /// data cannot tell from `best`.
+    /// For each effect of the model `best`, the models of `seen` that have another effect in place of this one and that
+    /// the data cannot tell from `best`.
     ///
     /// The most probable model comes first. There are as many as are needed so that they and `best` together contain
     /// the right model with a probability of 95 %.

@@ -115,8 +115,8 @@ impl<'a> Search<'a> {
         self.centre_breaks(model, best)
     }
 
-    /// The model `scored`, fitted until it has converged if it has break points and may be the explanation; otherwise
-    /// as it is. If the descent had stopped early, a further effect would seem necessary.
+    /// Fits the model `scored` until it has converged, if it has break points and may be the explanation. Otherwise the
+    /// model is returned as it is. If a descent had stopped too early, a further effect would seem necessary.
     pub(super) fn settled(&self, scored: Scored) -> Scored {
         if self.model(&scored.effects).break_points().is_empty() || !self.may_explain(&scored) {
             return scored;
@@ -151,8 +151,8 @@ impl<'a> Search<'a> {
         fit(self.forward, &model, &end.u, self.weights, Effort { steps: 0, tolerance: 0.0 })
     }
 
-    /// Fits the model with the parameter number `parameter` held at `value`, and then with this parameter free.
-    /// `from` is the point from which the fit starts. `None` if the readings rule the value out.
+    /// Fits the model with the parameter number `parameter` fixed at `value`, and then fits it with this parameter
+    /// free. `from` is the point from which the fit starts. `None` if the readings rule the value out.
     fn held_then_free(&self, model: &Model, from: &Point, parameter: usize, value: f64) -> Option<Point> {
         let effort = Effort { steps: 5, tolerance: 0.02 };
         let mut held = model.clone();

@@ -172,9 +172,9 @@ impl Settling<'_> {
         with.filter(|with| with.hopeful && with.score() > without.score()).unwrap_or(without)
     }
 
-    /// Renumbers the modes of frequency lists from which a mode is missing, and returns the search that follows.
-    /// Missing modes are first sought with calibration alone, if it fits most readings. Then they are sought with the
-    /// first effects found, and last with effects that were found without the suspect lists. `remarks` gets a
+    /// Renumbers the modes of frequency lists from which a mode is missing, and returns the result of the search that
+    /// follows. Missing modes are first sought with calibration alone, if it fits most readings. Then they are sought
+    /// with the first effects found, and last with effects that were found without the suspect lists. `remarks` gets a
     /// sentence for each list.
     fn count_missed_modes(&mut self, remarks: &mut Vec<String>) -> Round {
         let (baseline, _) = self.baseline();

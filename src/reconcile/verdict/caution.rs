@@ -17,9 +17,9 @@ const TOLERANCE: f64 = 2.0;
 /// A calibrated factor is called improbable if fewer than one in this many faultless parts deviate so far.
 const RARE: f64 = 200.0;
 
-/// Sentence that two effects of the model have opposite signs at neighbouring places; `None` if no two have. Both are
-/// of one kind, or both are masses. Each then cancels a part of the other. Together they describe one thing that is
-/// at another place, or that is present in one kind of test only.
+/// Sentence that two effects of the model have opposite signs at neighbouring places; `None` if no two have. The two
+/// effects are of the same kind, or both are masses. Each then cancels a part of the other. Together they describe one
+/// thing that is at another place, or that is present in one kind of test only.
 pub(crate) fn opposed(forward: &Forward, fit: &Fit) -> Option<String> {
     let effects = &fit.model.effects;
     let size = |i: usize| -> Option<(&FreeParameter, f64)> {
@@ -43,8 +43,8 @@ pub(crate) fn opposed(forward: &Forward, fit: &Fit) -> Option<String> {
     ))
 }
 
-/// Number of elements of the chain between the places of the effects `a` and `b`; `None` if a place is not in the
-/// chain. The payload counts as the end of the chain.
+/// Distance between the places of the effects `a` and `b`, as a number of elements of the chain; `None` if a place is
+/// not in the chain. The payload is taken to be at the end of the chain.
 fn distance(forward: &Forward, a: &Candidate, b: &Candidate) -> Option<usize> {
     let structure = &forward.nominal.structure;
     let at = |candidate: &Candidate| {
@@ -58,7 +58,7 @@ fn distance(forward: &Forward, a: &Candidate, b: &Candidate) -> Option<usize> {
 }
 
 /// Indices of the effects of the model `fit` whose 95 % interval contains the size at which the effect is absent.
-/// `ends` holds the intervals of the parameters of all effects, in the order of the model.
+/// `ends` are the intervals of the parameters of all effects, in the order of the model.
 pub(crate) fn may_be_absent(fit: &Fit, ends: &[Interval]) -> Vec<usize> {
     let mut at = 0;
     let mut out = Vec::new();
@@ -74,7 +74,8 @@ pub(crate) fn may_be_absent(fit: &Fit, ends: &[Interval]) -> Vec<usize> {
     out
 }
 
-/// Says which numbers of the effects have an end of their interval that the readings do not bound, if some do.
+/// Sentence on the parameters of effects whose interval has an end that the readings do not bound; `None` if there are
+/// none.
 pub(crate) fn unbounded(fit: &Fit, ends: &[Interval]) -> Option<String> {
     let labels =
         fit.model.effects.iter().flat_map(|effect| vec![effect.label(); effect.free_parameters.len()]);
@@ -92,7 +93,7 @@ pub(crate) fn unbounded(fit: &Fit, ends: &[Interval]) -> Option<String> {
     })
 }
 
-/// Says which calibrated factors leave the tolerance, if any do.
+/// Sentence on the calibrated factors that are outside their tolerance; `None` if there are none.
 pub(crate) fn beyond_tolerance(fit: &Fit, calibrated: &[Calibrated]) -> Option<String> {
     let numbers = fit.model.nuisance.numbers.iter().zip(calibrated);
     let beyond = numbers.filter_map(|((_, sd), calibrated)| {

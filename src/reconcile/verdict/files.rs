@@ -1,4 +1,4 @@
-//! Names of the files that hold corrected arms.
+//! Names of the files with the corrected arms.
 
 use crate::arm::Arm;
 use crate::report::file_names::file_names;

@@ -40,9 +40,11 @@ pub(crate) const ENOUGH: f64 = 4.0;
 pub(crate) const LEAST_SIGMAS: f64 = ENOUGH / 10.0;
 /// Largest number of readings that is printed.
 const MOST_READINGS: f64 = 9999.0;
-/// Standard deviations that are assumed where a channel was not measured.
+/// Standard deviation of a displacement that is assumed if the campaign has no displacements \[mm\].
 const DEFAULT_SIGMA_MM: f64 = 0.01;
+/// Standard deviation of a frequency that is assumed, as a fraction of the frequency.
 const DEFAULT_SIGMA_PART: f64 = 0.003;
+/// Standard deviation of a twist that is assumed if the campaign has no bench readings \[arcmin\].
 const DEFAULT_SIGMA_ARCMIN: f64 = 0.05;
 const MODES: usize = 4;
 
@@ -107,12 +109,13 @@ pub(crate) fn propose(question: &Question) -> Vec<NextTest> {
     out
 }
 
-/// How many readings settle a question, if the models differ by so many standard deviations in one.
+/// Number of readings that suffice to decide between two models whose predictions differ by `sigmas` standard
+/// deviations in one reading.
 pub(crate) fn readings_needed(sigmas: f64) -> usize {
     (ENOUGH / sigmas).powi(2).ceil().min(MOST_READINGS) as usize
 }
 
-/// Says that no reading of the arm tells the models apart.
+/// A test in words, for the case that no reading of the arm separates the model `best` from the `competitors`.
 fn nothing_tells(best: &str, competitors: &[&str]) -> NextTest {
     NextTest::of_another_kind(format!(
         "no displacement, frequency or bench reading separates {best} from {}: weigh the parts in question, or take them apart",

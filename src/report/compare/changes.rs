@@ -35,7 +35,7 @@ pub(crate) enum Model {
 pub(crate) struct Changed {
     /// Name of the design.
     pub design_id: String,
-    /// Whether the design is on the front of the nominal and of the corrected model.
+    /// Whether the design is on the front of the nominal model, and whether it is on the front of the corrected model.
     pub on_front: [bool; 2],
     /// Objectives of the design under the nominal and the corrected model. `None` if no catalog drive is strong
     /// enough or the design breaks a limit.
@@ -56,7 +56,7 @@ pub(crate) struct PickChange {
     pub changes: bool,
     /// Name of the design that the nominal model picks.
     pub nominal_design_id: String,
-    /// Objectives of this design under the nominal model.
+    /// Objectives of the design that the nominal model picks, under the nominal model.
     pub nominal: Option<Values>,
     /// Objectives of the design that the nominal model picks, under the corrected model; `None` if it is no longer
     /// feasible.

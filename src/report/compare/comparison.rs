@@ -1,4 +1,4 @@
-//! The answers of all fronts to all questions, with the winner and its lead.
+//! The answers of all fronts to all questions, with the winner and how much better it is than the next front.
 
 use super::contender::Contender;
 use super::moved::Moved;
@@ -16,7 +16,7 @@ pub struct Answer {
     pub label: String,
     /// Whether at least one design of the front meets the limit.
     pub reached: bool,
-    /// Whether no other competing front has a better answer.
+    /// Whether the front meets the limit and no other competing front has a better answer.
     pub winner: bool,
     /// Whether the front is only a reference and cannot win.
     pub reference: bool,
@@ -62,13 +62,14 @@ pub struct Comparison {
     pub reach: Vec<Reach>,
     /// One row per question and limit.
     pub rows: Vec<Row>,
-    /// Where the questions of the results differ, and what the results say beside their numbers, in sentences.
+    /// Sentences for the reader: where the questions of the results differ, and the remarks of the results.
     pub remarks: Vec<String>,
-    /// Changes from the first result to each other one, if all are runs of one study.
+    /// Changes from the first result to each of the other results, if all are runs of one study.
     pub moved: Vec<Moved>,
 }
 
-/// Compares fronts by the best design of each under the limits in `thresholds`. If none is given, limits are chosen.
+/// Compares fronts by the best design of each under the limits in `thresholds`. If no limit is given, round limits are
+/// chosen.
 pub fn compare(contenders: &[Contender], thresholds: &Thresholds) -> Comparison {
     let fronts: Vec<Vec<Design>> = contenders.iter().map(|c| designs(&c.front)).collect();
     let competing: Vec<&[Design]> = contenders
@@ -165,8 +166,8 @@ fn sentence(question: Question, limit: f64, answers: &[Answer]) -> String {
     capital(&(out + "."))
 }
 
-/// Words on the answer of the reference front, which cannot win, to the question: the value that it reaches. Empty if
-/// this is no better than the value of `winner`.
+/// Words that state the value that the reference front reaches in the question. Empty if this value is no better than
+/// that of `winner`. The reference front itself cannot win.
 fn mixed(question: Question, winner: &Design, answers: &[Answer]) -> String {
     let sought = question.sought();
     let better = |a: &&Answer| {

@@ -5,7 +5,7 @@ use crate::report::front_table::FrontTable;
 /// A front that takes part in a comparison.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contender {
-    /// Name of the material or of the result.
+    /// Name of the material or of the result to which the front belongs.
     pub label: String,
     /// Designs of the front.
     pub front: FrontTable,

@@ -12,9 +12,9 @@ use std::collections::HashMap;
 /// The changes from one front to another.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Moved {
-    /// Label of the front before.
+    /// Label of the earlier front.
     pub from: String,
-    /// Label of the front after.
+    /// Label of the later front.
     pub to: String,
     /// Number of designs (equal in every choice) that are on both fronts with the same objectives.
     pub unchanged: usize,
@@ -47,8 +47,8 @@ pub fn moved(before: &Contender, after: &Contender) -> Moved {
     moved
 }
 
-/// For each design of a front, its objectives (as texts of the table), under its choices as the key. If the table has
-/// no choices, the name of the design is the key.
+/// A map with one entry for each design of a front, as texts of the table. The key is the choices of the design, and
+/// the value is its objectives. If the table has no choices, the key is the name of the design.
 fn by_choice(front: &FrontTable) -> HashMap<Vec<&str>, Vec<&str>> {
     let objectives: Vec<usize> = OBJECTIVE_COLUMNS.iter().filter_map(|c| front.column(c)).collect();
     let first = objectives.iter().copied().min().unwrap_or(0);

@@ -19,7 +19,7 @@ pub enum Question {
 }
 
 impl Question {
-    /// All questions that have a limit.
+    /// All questions.
     pub const ALL: [Self; 4] =
         [Self::LightestAtDeflection, Self::StiffestAtMass, Self::HighestModeAtMass, Self::LightestAtMode];
 

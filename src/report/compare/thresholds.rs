@@ -34,8 +34,8 @@ impl Thresholds {
         self.deflection_mm.is_empty() && self.mass_kg.is_empty() && self.mode_hz.is_empty()
     }
 
-    /// These limits, if at least one is given. Otherwise round limits are chosen for the given fronts, none of which
-    /// may be empty. Most fronts can meet them, and for most fronts they still force a trade-off.
+    /// The limits of `self`, if it has at least one. Otherwise round limits are chosen for the given fronts, none of
+    /// which may be empty. Most fronts can meet them, and for most fronts they still force a trade-off.
     pub fn or_chosen(&self, fronts: &[&[Design]]) -> Self {
         if !self.is_empty() || fronts.is_empty() {
             return self.clone();

@@ -60,7 +60,7 @@ pub struct Found {
     pub label: String,
     /// Parameters of the effect, with intervals.
     pub parameters: Vec<Ranged>,
-    /// Effects that these readings cannot distinguish from this effect.
+    /// Effects that the readings of the campaign cannot distinguish from this effect.
     pub like: Vec<String>,
 }
 
@@ -82,7 +82,7 @@ pub struct Test {
     pub words: String,
     /// The models that the test distinguishes.
     pub separates: Vec<String>,
-    /// Expected difference between these models \[standard deviations\].
+    /// Expected difference between the models in `separates` \[standard deviations\].
     pub expected_sigmas: f64,
     /// Number of readings after which one model can be ruled out.
     pub readings_needed: usize,
@@ -97,12 +97,13 @@ pub struct CampaignPage {
     pub sentence: String,
     /// Reasons for the verdict, one sentence each.
     pub reasons: Vec<String>,
-    /// Whether the effects explain the difference between model and readings. Otherwise they are only suspected.
+    /// Whether the effects in `found` explain the difference between model and readings. Otherwise these effects are
+    /// only suspected.
     pub explained: bool,
     /// The driven joints, base to tip.
     pub joints: Vec<DrivenJoint>,
-    /// Root mean squares of the residuals before and after, for each part of the readings: channel, branch, load, mode,
-    /// joint.
+    /// Root mean squares of the residuals before and after the effects were added, for each part of the readings: by
+    /// channel, branch, load, mode and joint.
     pub parts: Vec<Compared>,
     /// All measured values.
     pub readings: Vec<Reading>,

@@ -1,6 +1,6 @@
-//! The page of a campaign: the verdict in a sentence, the difference between model and readings before and after,
-//! where it is largest, the evidence for each candidate, its parameters with intervals, the prediction of held-out
-//! readings, and the next measurements.
+//! The page of a campaign: the verdict in a sentence, the difference between model and readings before and after the
+//! effects were added, where this difference is largest, the evidence for each candidate, its parameters with
+//! intervals, the prediction of held-out readings, and the next measurements.
 
 use super::campaign::{CampaignPage, Compared, Found, Ranged, Reading, Test, Weighed};
 use super::gallery::{Gallery, Page};

@@ -5,7 +5,7 @@ use crate::report::section::Figure;
 use crate::report::table::Table;
 use serde_json::{Value, json};
 
-/// The contents of such a page.
+/// The contents of a page of pictures and tables.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct DocumentPage {
     /// Title of the page.

@@ -1,9 +1,9 @@
 //! The designs of fronts as columns of data, which the linked views draw, filter and label.
 //!
-//! Numbers are rounded to the digits that are shown ([`SHOWN_DIGITS`]), so that a number on the page is the number
-//! of `front.csv` rounded once. If there are too many designs, some are left out: first those that are only on the
-//! front of their own group, then those on the front of all designs. The picks and the designs at the edge of each
-//! view always stay; the others are thinned evenly along the mass.
+//! Numbers are rounded to the digits that are shown ([`SHOWN_DIGITS`]), so that a number on the page is the number of
+//! `front.csv` rounded once. If there are too many designs, some are left out: first those that are only on the front
+//! of their own group, then those on the front of all designs. The picks always stay. The designs that are best for
+//! their mass in a view get up to half of the places. The others are thinned evenly along the mass.
 
 use super::packed::{self, packed};
 use crate::report::front_svg::WIDE;
@@ -323,8 +323,8 @@ fn sampled<'a>(rows: &[Row<'a>], room: usize, kept: &[String]) -> Vec<Row<'a>> {
     by_mass(front.into_iter().chain(own).collect())
 }
 
-/// At most `room` of the designs `rows`. Designs named in `kept` and those at the edge of a view stay; the others are
-/// taken at even steps in the order of mass.
+/// At most `room` of the designs `rows`. Designs named in `kept` stay. The designs that [`edges`] finds get up to half
+/// of the places. The others are taken at even steps in the order of mass.
 fn thinned<'a>(rows: Vec<Row<'a>>, room: usize, kept: &[String]) -> Vec<Row<'a>> {
     if rows.len() <= room {
         return rows;
@@ -357,7 +357,7 @@ fn thin(list: &mut Vec<usize>, room: usize) {
     }
 }
 
-/// Indices of the designs that form the edge of a front in a view: in each group, those with the best deflection or the
+/// Indices of the designs that are best for their mass in a view: in each group, those with the best deflection or the
 /// best mode among all designs of no more mass.
 fn edges(rows: &[Row]) -> Vec<usize> {
     let groups = rows.iter().map(|r| r.group).max().map_or(0, |g| g + 1);

@@ -76,7 +76,7 @@ impl FrontViews<'_> {
         out
     }
 
-    /// A static picture of parallel coordinates: some hundred designs, with the picks drawn on top.
+    /// A static picture of parallel coordinates: some hundreds of designs, with the picks drawn on top.
     fn parallel(&self) -> Figure {
         let data = &self.data;
         let step = data.rows.len().div_ceil(STILL_LINES).max(1);

@@ -12,7 +12,7 @@ use std::collections::HashSet;
 pub struct Page {
     /// Content of `report.html`.
     pub html: String,
-    /// Pictures and tables: file name below [`PLOTS`], and content.
+    /// Pictures and tables: name of the file in the folder [`PLOTS`], and content.
     pub files: Vec<(String, Vec<u8>)>,
 }
 

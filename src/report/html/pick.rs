@@ -64,7 +64,7 @@ pub struct DeflectionPart {
     pub torque_nm: Option<f64>,
     /// Displacement of the tip by this element's deformation, world axes \[mm\].
     pub moved_mm: [f64; 3],
-    /// Component of this displacement along the whole tip deflection \[mm\].
+    /// Component of `moved_mm` along the whole tip deflection \[mm\].
     pub along_mm: f64,
 }
 
@@ -217,7 +217,7 @@ impl PickedArm {
         }
     }
 
-    /// End points of the balance springs between two points, in the plane of a view.
+    /// End points of those balance springs that act along a line between two points, in the plane of a view.
     fn springs(&self, case: &LoadCase, view: &View) -> Vec<(Place, Place)> {
         let chain = Chain::new(&self.arm.structure_in(case), case.links);
         let ends = |(_, drawn): (String, Drawn)| match drawn {

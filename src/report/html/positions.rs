@@ -40,9 +40,9 @@ pub struct Position {
     pub row: usize,
     /// Joint angles \[deg\].
     pub pose_deg: Vec<f64>,
-    /// Error with calibration only.
+    /// Error with calibration only, by component \[mm\].
     pub before_mm: [f64; 3],
-    /// Error with the effects found.
+    /// Error with the effects found, by component \[mm\].
     pub after_mm: [f64; 3],
     /// Error of this position with the effects found and parameters fitted without its pose, by component \[mm\].
     pub kept_out_mm: [f64; 3],

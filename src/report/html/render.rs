@@ -3,7 +3,7 @@
 use minijinja::Environment;
 use serde_json::{Value, json};
 
-/// Name of the folder next to a page that has its pictures and the numbers behind them.
+/// Name of the folder next to a page that contains its pictures, and the numbers of the pictures as CSV.
 pub(crate) const PLOTS: &str = "plots";
 
 const STYLE: &str = include_str!("page.css");
@@ -18,7 +18,8 @@ const TEMPLATES: [(&str, &str); 7] = [
     ("document.html", include_str!("document.html")),
 ];
 
-/// Fills a template. The content security policy allows only scripts and styles that have the page's nonce.
+/// Fills a template. The content security policy of the page allows only those scripts and styles that are marked with
+/// its nonce, a hash of style, program and title.
 pub(super) fn render(template: &str, title: &str, content: Value, data: &Value) -> String {
     let mut environment = Environment::new();
     environment.add_filter("anchor", |name: String| anchor(&name));

@@ -103,7 +103,7 @@ impl StackedBars {
         out
     }
 
-    /// The numbers behind the bars as CSV, one line per bar and part.
+    /// The values of the bars as CSV, one line per bar and part.
     pub(crate) fn to_csv(&self) -> String {
         let mut out = csv_line(&["case".into(), "part".into(), self.unit.clone()]);
         for bar in &self.bars {

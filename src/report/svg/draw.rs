@@ -7,7 +7,7 @@ use std::fmt::Write;
 pub const PALETTE: [&str; 8] =
     ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#B8A90A"];
 
-/// A style for what stays in the background: grey and round.
+/// Index of the style for series in the background: grey, with round markers.
 pub const MUTED: usize = 999;
 
 pub(crate) const INK: &str = "#222222";

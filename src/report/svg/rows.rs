@@ -12,7 +12,7 @@ const ROW_PX: f64 = 26.0;
 const TOP_PX: f64 = 88.0;
 const WIDTH_PX: f64 = 900.0;
 
-/// Value of the mark on the axis.
+/// A mark in a row: a value, with an interval around it if it has one.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Mark {
     /// Value at which the mark is drawn, in the unit of the axis.
@@ -85,7 +85,7 @@ impl RowPlot {
         out
     }
 
-    /// The numbers behind the rows as CSV, one line per mark.
+    /// The values of the marks as CSV, one line per mark.
     pub(crate) fn to_csv(&self) -> String {
         let cells = ["row", "mark", "value", "low", "high"].map(String::from);
         let mut out = csv_line(&cells);

@@ -1,9 +1,9 @@
 //! Where to branch a subproblem below a single upper bound: at the options of a level, or at a torque.
 //!
 //! When no weights refute the subproblem, a mixture of its cheapest members satisfies all rows, although no single
-//! design need do so. The search branches where this mixture is furthest from a design. That is at a level whose
-//! mixed options differ most in what they add to the rows. Or it is at a torque, if the gears of the mixture twist
-//! less, or are stiffer, than they would under the torque that the mixture's own weights cause.
+//! design need do so. The search branches where this mixture differs most from a design. This may be a level whose
+//! mixed options differ in what they add to the rows. It may also be the torque on a joint, if the gears of the mixture
+//! twist less, or are stiffer, than they would under the torque that the mixture's own weights cause.
 
 use super::super::bound::{Members, compliances};
 use super::super::pose::Pose;
@@ -25,8 +25,8 @@ const SAY: f64 = 0.1;
 const SHARE: f64 = 1e-3;
 /// A torque is not branched if its interval is narrower than this fraction of the torque's greatest magnitude.
 const KNOWN: f64 = 2e-3;
-/// If the torque of the mixture is nearer to an end of the interval than this fraction of its width, the interval
-/// is divided elsewhere.
+/// If the torque of the mixture is nearer to an end of the interval than this fraction of the interval's width, the
+/// interval is divided elsewhere.
 const EDGE: f64 = 0.1;
 
 /// One way to divide a subproblem in two.
@@ -84,7 +84,7 @@ impl Rows<'_> {
 
     /// Score of a division by the options of a part, and this division. The score says how much the members of the
     /// mixture differ in what the part adds to the rows. The options are divided by their value in the row in which the
-    /// members differ most. `between` holds the numbers of the mixture.
+    /// members differ most. `between` are the numbers of the mixture.
     fn by_options(
         &self,
         part: usize,
@@ -174,7 +174,7 @@ impl Rows<'_> {
 
     /// Ways to divide a subproblem at the torques of a judged case, each with its score. The score is positive if the
     /// gears of the mixture twist less, or are stiffer, than they are under the torques that the mixture's own masses
-    /// cause. `between` holds the numbers of the mixture.
+    /// cause. `between` are the numbers of the mixture.
     fn by_torques(&self, case: usize, between: &[f64], left: &Reduced) -> Vec<(f64, Branching)> {
         let pose = self.pose(case);
         let own_nm = |torque: &Linear| {
@@ -305,8 +305,8 @@ impl Subproblem {
     }
 }
 
-/// Divides `options` into those whose `value` is at most `at` and the others. If either group would be empty, the
-/// options are sorted by their value and divided into equal parts. `None` if there is only one option.
+/// Divides `options` into those whose `value` is at most `at` and the others. If one of the two lists would be empty,
+/// the options are sorted by their value and divided into equal halves. `None` if there is only one option.
 fn halved(options: &[u32], value: impl Fn(&u32) -> f64, at: Option<f64>) -> Option<[Vec<u32>; 2]> {
     let (mut low, mut high): (Vec<u32>, Vec<u32>) =
         options.iter().partition(|option| at.is_some_and(|at| value(option) <= at));

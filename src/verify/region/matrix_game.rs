@@ -38,9 +38,9 @@ pub(super) struct Minimax {
 
 /// The weights of the columns for which the smallest weighted row sum is greatest.
 ///
-/// Weights of conditions do not count in the sum of the weights; each is at most [`MOST`] instead. Conditions come
-/// in pairs of opposite sign (a torque is at least a value, and at most another). If their weights counted, equal
-/// weights on both columns of a pair would use up part of the sum without any effect.
+/// The sum of the weights, which is one, does not include the weights of conditions. Each of these is at most [`MOST`]
+/// instead. Conditions come in pairs of opposite sign (a torque is at least a value, and at most another). If the sum
+/// included them, equal weights on both columns of a pair would use up a part of it without any effect.
 pub(super) fn solve(rows: &[Vec<f64>], conditions: Range<usize>) -> Minimax {
     let (count, width) = (rows.len(), rows[0].len());
     let is_counted = |column: &usize| !conditions.contains(column);

@@ -9,11 +9,11 @@
 //! sum of any member is more than the upper bound allows, no member is below the bound. Otherwise options that
 //! raise the least sum by more than the difference are excluded ([`weights`], by reduced costs).
 //!
-//! The upper bounds are the leaves of a tree; the bound of a node covers all bounds below it. At every node, from
-//! the root on, options are excluded as long as enough of them go ([`search`]). If no option is left, or if no
-//! member can be below the bound, this branch of the tree is done. Otherwise its two halves are searched with the
-//! remaining options. Below a single bound the search branches: it divides the options of a level, or a torque, in
-//! two ([`branch`]). When few designs are left, they are searched box by box.
+//! The upper bounds are the leaves of a tree; the bound of a node covers all bounds below it. At every node, from the
+//! root on, options are excluded as long as each step excludes enough of them ([`search`]). If no option is left, or if
+//! no member can be below the bound, this branch of the tree is done. Otherwise its two halves are searched with the
+//! remaining options. Below a single bound the search branches: it divides the options of a level, or a torque, in two
+//! ([`branch`]). When few designs are left, they are searched box by box.
 
 pub(super) mod branch;
 pub(super) mod matrix_game;

@@ -25,14 +25,14 @@ pub(super) struct PartsTable {
 /// no drive of the subproblem has.
 pub(super) type Numbers = Vec<Option<Vec<f64>>>;
 
-/// The drives that a joint may have, sorted by torsion curve and bearing.
+/// The drives that a joint may have, each with the index of its torsion curve and bearing.
 pub(super) struct JointTable {
     pub drives: DriveOptions,
     pub masses_kg: Vec<f64>,
     /// For each drive, the index of its torsion curve in `curves`.
     pub curve: Vec<u32>,
-    /// The distinct torsion curves, each together with a bearing. An entry holds the numbers of the first drive that
-    /// has this curve and this bearing.
+    /// The distinct torsion curves, each together with a bearing. An entry has the numbers of the first drive with this
+    /// curve and this bearing.
     pub curves: Vec<DriveRange>,
 }
 
@@ -107,7 +107,7 @@ impl JointTable {
 }
 
 impl JointTable {
-    /// The numbers of the drive with this index, as a range of a single curve.
+    /// The numbers of the drive with this index, as a range that contains this drive alone.
     pub(super) fn range(&self, drive: u32) -> &DriveRange {
         &self.drives.options[drive as usize].range
     }

@@ -9,7 +9,7 @@ use std::collections::BinaryHeap;
 const MOST_LOOKS: usize = 400;
 
 /// Prices of a tube's numbers, with the positive and the negative prices apart. For a set of tubes, a number with a
-/// positive price (paid) counts at its least value, a number with a negative price (earned) at its greatest.
+/// positive price (`paid`) is taken at its least value, and a number with a negative price (`earned`) at its greatest.
 pub(super) struct Prices {
     paid: Vec<f64>,
     earned: Vec<f64>,
@@ -28,8 +28,8 @@ impl Prices {
         dot(&self.paid, least) + dot(&self.earned, most)
     }
 
-    /// The number of a tube at which [`Self::of`] takes each price: the least where the price is positive, the greatest
-    /// where it is negative.
+    /// The values of a tube's numbers that [`Self::of`] uses: the least value of a number with a positive price, and
+    /// the greatest value of one with a negative price.
     pub(super) fn numbers(&self, [least, most]: [&[f64]; 2]) -> Vec<f64> {
         let cheapest = |i: usize| if self.earned[i] < 0.0 { most[i] } else { least[i] };
         (0..least.len()).map(cheapest).collect()
@@ -65,8 +65,9 @@ pub(super) fn cheapest(table: &TubeTable, nodes: &[u32], prices: &Prices) -> (f6
     }
 }
 
-/// About `about` nodes that contain every tube below `nodes` that is cheap enough. `limits` holds sets of prices, each
-/// with the greatest price that a tube may have under them. The nodes with the most tubes are divided first.
+/// About `about` nodes that together contain every tube below `nodes` that is cheap enough under all sets of prices in
+/// `limits`. With each set comes the greatest price that a tube may have under it. The nodes with the most tubes are
+/// divided first.
 pub(super) fn affordable(
     table: &TubeTable,
     nodes: &[u32],

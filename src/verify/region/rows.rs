@@ -63,14 +63,15 @@ pub(super) struct Rows<'a> {
     pub rows: Vec<Row>,
     /// Index of the first row of a torque interval.
     pub first_interval: usize,
-    /// Index of the first row of a mode. `modes` holds the case and the trial shape of each row of a mode.
+    /// Index of the first row of a mode. `modes` has the case and the trial shape of each row of a mode.
     pub first_mode: usize,
     pub modes: Vec<(usize, Vec<f64>)>,
     /// For each joint, the twists, slopes and bearing numbers of its torsion curves. `None` for a curve that no
     /// drive of the subproblem has.
     pub curves: Vec<Numbers>,
-    /// Interval of the torque on each joint in each judged case \[N m\]. `per_torque` holds the least compliance
-    /// \[rad/(N m)\] with which the twist grows from the end of the interval where it is least.
+    /// Interval of the torque on each joint in each judged case \[N m\]: first index the case, second the joint.
+    /// `per_torque` has the least compliance \[rad/(N m)\] with which the twist grows from that end of the interval at
+    /// which the twist is least.
     pub torques: Vec<Vec<Span>>,
     pub per_torque: Vec<Vec<f64>>,
     /// For each row on a tip displacement: the index of the row, its judged case, and the direction along which the
@@ -162,8 +163,8 @@ impl Row {
 }
 
 impl<'a> Rows<'a> {
-    /// The rows (inequalities) of a subproblem for the local upper bound `upper`. `members` holds the intervals of its
-    /// parts' numbers. There is one row of a mode for each trial shape of the subproblem.
+    /// The rows (inequalities) of a subproblem for the local upper bound `upper`. `members` has the intervals of the
+    /// numbers of the subproblem's parts. There is one row of a mode for each trial shape of the subproblem.
     pub(super) fn new(
         skeleton: &'a Skeleton,
         table: &'a PartsTable,
@@ -272,8 +273,8 @@ impl<'a> Rows<'a> {
     }
 
     /// Adds the displacement of the tip by the twist of a gear to `row`, and stores the least twist of each torsion
-    /// curve among its numbers. `torque` is the torque on the joint as a function of the loads. `along_m` is the
-    /// displacement of the tip per radian along the direction of the row.
+    /// curve among the numbers of the curve. `torque` is the torque on the joint as a function of the loads. `along_m`
+    /// is the displacement of the tip per radian along the direction of the row.
     fn add_twist(
         &mut self,
         row: &mut Row,
@@ -330,7 +331,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Adds the row of a mode for the trial shape `shape` in a judged case. Coordinates that may be rigid in some
-    /// member are set to zero in it, because a rigid coordinate cannot move.
+    /// member are set to zero in the shape, because a rigid coordinate cannot move.
     pub(super) fn add_mode(&mut self, case: usize, mut shape: Vec<f64>) {
         let eigenvalue = self.upper.eigenvalue();
         if eigenvalue == 0.0 {

@@ -24,7 +24,7 @@ const WORTH_IT: f64 = 0.3;
 
 /// The inputs of a search, except the parts.
 pub(in super::super) struct Work<'s> {
-    /// The designs of the front, and an index that finds the highest frequency among them.
+    /// The designs of the front. `index` finds the highest frequency among those up to a given mass and deflection.
     pub front: &'s [Objectives],
     pub index: &'s FrontIndex,
     pub settings: Settings,
@@ -65,7 +65,8 @@ impl RegionSearch<'_> {
         RegionSearch { skeleton, table, work }.explore((&uppers, 0), whole, Branch::ROOT)
     }
 
-    /// Searches the regions below a node of the tree of upper bounds, unless that was done before.
+    /// Searches the regions below a node of the tree of upper bounds, unless the ledger has the result of this branch
+    /// already.
     fn explore(&self, uppers: (&UpperBounds, usize), subproblem: Subproblem, branch: Branch) -> Found {
         self.work.ledger.of(branch, self.work.halt, || self.explore_now(uppers, subproblem, branch))
     }
@@ -152,7 +153,7 @@ impl RegionSearch<'_> {
 
     /// Adds a trial shape to `subproblem` in each judged case in which it has none: the lowest mode of the ideal arm
     /// (every stiffness greatest, every inertia least). `None` if this arm has a frequency of at most `hz` in some
-    /// case, so that no member is faster.
+    /// case, so that no member has a higher lowest mode.
     fn stiffest_shapes(&self, subproblem: &mut Subproblem, members: &Members, hz: f64) -> Option<()> {
         let eigenvalue = eigenvalue_of(hz);
         if !eigenvalue.is_finite() {

@@ -20,7 +20,7 @@ pub(super) struct TorqueInterval {
     pub between: Span,
 }
 
-/// The options of every joint and link, together with what the parent subproblem passes on: torque intervals,
+/// The options of every joint and link, together with what a subproblem takes over from its parent: torque intervals,
 /// weights of rows and trial shapes.
 #[derive(Clone)]
 pub(super) struct Subproblem {
@@ -59,7 +59,7 @@ impl Subproblem {
         })
     }
 
-    /// Number of designs that the options make. A joint with the first-fit rule has no choice and counts once.
+    /// Number of designs that the options make. A joint with the first-fit rule is counted as having one option.
     pub(super) fn designs(&self, table: &PartsTable) -> f64 {
         let joints = self.joints.iter().zip(&table.joints);
         let joints = joints.map(|(kept, joint)| if joint.drives.level.is_some() { kept.len() } else { 1 });
@@ -98,9 +98,9 @@ impl Subproblem {
         self.tubes.iter().zip(&table.tubes).map(|(nodes, tubes)| tubes.range(nodes)).collect()
     }
 
-    /// Removes the drives that cannot meet their demand, going from the tip inward. Returns the remaining members: the
-    /// ranges of their drives, and of their tubes, which are in `tubes`. `None` if it is proved that no member passes
-    /// its checks.
+    /// Removes the drives that cannot meet their demand, going from the tip inward. Returns the remaining members, with
+    /// the ranges of the drives that remain. `tubes` are the ranges of their tubes. `None` if it is proved that no
+    /// member passes its checks.
     pub(super) fn hold<'t>(
         &mut self,
         skeleton: &Skeleton,

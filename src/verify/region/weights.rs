@@ -160,7 +160,8 @@ impl Rows<'_> {
             }
             weights = minimax.weights;
         };
-        // each row alone; for the rows of the objectives the parent has done so already
+        // weightings of a single row; those of mass and tip displacement were tried for the parent already, if there is
+        // one
         let first = if subproblem.weights.is_empty() { 0 } else { self.first_interval };
         let singles = (first..self.first_mode).map(|row| {
             let mut weights = vec![0.0; self.rows.len()];
@@ -183,8 +184,8 @@ impl Rows<'_> {
         })
     }
 
-    /// Indices of the rows of torque intervals. These rows come in pairs of opposite sign, so their weights do not
-    /// count in the sum of the weights.
+    /// Indices of the rows of torque intervals. These rows come in pairs of opposite sign, so the sum of the weights,
+    /// which is one, does not include theirs.
     fn conditions(&self) -> Range<usize> {
         self.first_interval..self.first_mode
     }
