@@ -96,11 +96,11 @@ pub(crate) const KIND: Kind = Kind {
     traits: Traits { is_sought: false, in_bounds: false, ..Traits::USUAL },
 };
 
-/// Whether a law of a joint with these parameters describes the tests and not the product. It does if it has no further
-/// twist.
+/// Whether a law of a joint or of the base with these parameters describes the tests and not the product. It does if it
+/// has neither a further twist nor a further tilt.
 pub(crate) fn is_of_tests_alone(parameters: &[(String, Vec<f64>)]) -> bool {
     let is_twist = |(name, numbers): &(String, Vec<f64>)| {
-        [ODD_TWIST, EVEN_TWIST].contains(&name.as_str()) && numbers.iter().any(|x| *x != 0.0)
+        [ODD_TWIST, EVEN_TWIST, LEAN].contains(&name.as_str()) && numbers.iter().any(|x| *x != 0.0)
     };
     !parameters.iter().any(is_twist)
 }
@@ -180,6 +180,15 @@ mod tests {
             let sum = first.angle_rad(torque_nm) + second.angle_rad(torque_nm);
             assert!((law.angle_rad(torque_nm) - torque_nm / 1e5 - sum).abs() < 1e-15, "{torque_nm}");
         }
+    }
+
+    #[test]
+    fn a_law_is_of_the_tests_alone_unless_something_twists_or_tilts_further() {
+        let with = |name: &str, numbers: &[f64]| vec![(name.to_owned(), numbers.to_vec())];
+        assert!(is_of_tests_alone(&with(SOFTENING[0], &[0.1])));
+        assert!(is_of_tests_alone(&with(LEAN, &[0.0, 0.0])));
+        assert!(!is_of_tests_alone(&with(LEAN, &[1e-6, 0.0])));
+        assert!(!is_of_tests_alone(&with(ODD_TWIST, &[0.0, 1e-5])));
     }
 
     #[test]
