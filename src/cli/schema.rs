@@ -1,8 +1,10 @@
 //! `armwright schema`: the keys or columns of a kind of file, for editors and other programs. It describes the files
 //! that users write and the files that the program writes.
 
+use super::effects_schema::{EFFECTS, effects_schema};
 use super::failure::Failure;
-use super::output_keys::{EFFECTS, OUTPUTS, TABLES, effects_schema};
+use super::output_keys::OUTPUTS;
+use super::output_tables::TABLES;
 use crate::arm::{ARM_FILE, CASES_FILE};
 use crate::catalog::schema::CatalogFile;
 use crate::input::schema::FileKind;
