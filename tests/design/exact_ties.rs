@@ -127,7 +127,7 @@ fn study_of_a_wrist() -> Value {
     json!({"name": "wrist", "chain": [
         joint("shoulder", [0, 1, 0]),
         {"type": "link", "name": "arm", "vector_m": [0.4, 0, 0], "choose": {"materials": ["Aluminium 6061-T6"],
-            "sections": [{"shape": "round_tube", "diameter_mm": [50, 70, 90], "wall_mm": [1, 3]}]}},
+            "sections": [{"shape": "round_tube", "diameter_mm": [50, 60, 70, 80, 90], "wall_mm": [1, 2, 4]}]}},
         joint("roll", [1, 0, 0]), joint("pitch", [0, 1, 0]), joint("twist", [1, 0, 0]),
         {"type": "link", "name": "flange", "vector_m": [0.05, 0, 0]}],
         "payload": {"mass_kg": 2, "cg_m": [0, 0, 0.05]}, "poses": [{"pose_deg": [0, 0, 0, 0]}],
