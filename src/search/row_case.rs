@@ -59,7 +59,7 @@ pub(crate) struct RowCase {
     pub ends: [usize; 2],
     /// Whether at least one option of the row's link is elastic in this case. If none is, the link is rigid (or the row
     /// level is not a link).
-    pub links_yield: bool,
+    pub links_are_compliant: bool,
     /// Contribution of the given tubes to Dunkerley's sum (the sum of `1/λ` over the eigenvalues) of each block \[s²\].
     /// Only the mass of each tube itself is included, and not the mass outboard of it.
     pub tubes_trace_s2: [f64; 2],
@@ -123,12 +123,12 @@ impl RowCase {
         let (per_kg, fixed) = at_joints_of_pieces(slots, pieces, hinges, numbers);
         let links = link_options(&slots[0]);
         let link_weight = link_weight_per_n(links, &station.down);
-        let links_yield = links.iter().any(|l| l.end.amax() > 0.0);
+        let links_are_compliant = links.iter().any(|l| l.end.amax() > 0.0);
         let link_weight_at_root = match &slots[0] {
             StationSlot::Link { place, .. } => place.local(&link_weight, &place.root_m),
             _ => [0.0; 4],
         };
-        let spread_entries = if links_yield { spread_entries(&station.modal) } else { Vec::new() };
+        let spread_entries = if links_are_compliant { spread_entries(&station.modal) } else { Vec::new() };
         // the entries of block 0 come first
         let of_first = spread_entries.partition_point(|(block, ..)| *block == 0);
         let (turned, link_torque) = turning(station, slots, hinges, numbers, &link_weight);
@@ -141,8 +141,8 @@ impl RowCase {
             bends: bends(links),
             spread_of: [0..of_first, of_first..spread_entries.len()],
             spread_entries,
-            ends: yielding_ends(&station.modal, first, links_yield),
-            links_yield,
+            ends: compliant_ends(&station.modal, first, links_are_compliant),
+            links_are_compliant,
             tubes_trace_s2: tubes_trace_s2(&slots[1..]),
             judged,
             sizing,
@@ -199,12 +199,12 @@ fn link_weight_per_n(links: &[StationLink], down: &Vector3<f64>) -> Wrench {
 }
 
 /// For each block of the eigenvalue problem, the number of inner slots that take part in its modes: all from the row
-/// level to the last compliant one. `first` is the slot of the row level, and `links_yield` tells whether some option
+/// level to the last compliant one. `first` is the slot of the row level, and `links_are_compliant` tells whether some option
 /// of the row's link is compliant.
-fn yielding_ends(modal: &Modal, first: usize, links_yield: bool) -> [usize; 2] {
+fn compliant_ends(modal: &Modal, first: usize, links_are_compliant: bool) -> [usize; 2] {
     match modal {
-        Modal::Planar(blocks) => [0, 1].map(|b| last_yielding(&blocks[b], first, links_yield)),
-        Modal::Spatial(block) => [last_yielding(block, first, links_yield), 0],
+        Modal::Planar(blocks) => [0, 1].map(|b| last_compliant(&blocks[b], first, links_are_compliant)),
+        Modal::Spatial(block) => [last_compliant(block, first, links_are_compliant), 0],
     }
 }
 
@@ -280,8 +280,8 @@ fn loaded(station: &Station) -> [bool; 6] {
 }
 
 /// Number of inner slots from the row level to the last one that is compliant in this block; 0 if none is. `first` is
-/// the slot of the row level, and `links_yield` tells whether some option of the row's link is compliant.
-fn last_yielding<const N: usize>(block: &Block<N>, first: usize, links_yield: bool) -> usize {
+/// the slot of the row level, and `links_are_compliant` tells whether some option of the row's link is compliant.
+fn last_compliant<const N: usize>(block: &Block<N>, first: usize, links_are_compliant: bool) -> usize {
     let is_compliant = |slot: &BlockSlot<N>| match slot {
         BlockSlot::Joint { twist, .. } => twist.amax() > 0.0,
         BlockSlot::Links(options) => options[0].is_compliant(),
@@ -290,7 +290,7 @@ fn last_yielding<const N: usize>(block: &Block<N>, first: usize, links_yield: bo
     // the first slot may be the link of the row, of which some options may be compliant
     let inner = block.slots[first + 1..].iter().rposition(is_compliant).map(|last| last + 2);
     let of_row = match &block.slots[first] {
-        BlockSlot::Links(_) => links_yield,
+        BlockSlot::Links(_) => links_are_compliant,
         slot => is_compliant(slot),
     };
     inner.unwrap_or(usize::from(of_row))

@@ -435,7 +435,7 @@ impl RowChunk<'_, '_> {
             let lanes = &mut arms.cases[c];
             for b in 0..2 {
                 let mut sum = V::splat(self.from.stations[c].trace_s2[b]);
-                if let Some(chunk) = self.row.chunks.get(self.chunk).filter(|_| case.links_yield) {
+                if let Some(chunk) = self.row.chunks.get(self.chunk).filter(|_| case.links_are_compliant) {
                     let own = &chunk.cases[c];
                     sum = sum + V::load(&own.trace_s2[b]);
                     for e in case.spread_of[b].clone() {

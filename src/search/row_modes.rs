@@ -282,7 +282,7 @@ impl<V: Lanes, const N: usize> Inner<V, N> for Pieces<'_, N> {
                 // arms
                 BlockSlot::Links(options) if k > 0 => walk.shared_link(&options[0]),
                 BlockSlot::Links(_) => match self.link {
-                    Some(link) if self.case.links_yield => walk.link(link),
+                    Some(link) if self.case.links_are_compliant => walk.link(link),
                     Some(link) => walk.rigid(link),
                     None => {}
                 },

@@ -494,7 +494,7 @@ impl StaticPose {
     /// Adds to `out` the displacement of the tip under each load that is due to additional compliances \[mm\]. Each
     /// entry of `further` is the index of a strain coordinate and the compliance that is added to that of the
     /// coefficients.
-    pub fn add_yielding(
+    pub fn add_compliant(
         &self,
         layout: &Layout,
         coefficients: &Coefficients,

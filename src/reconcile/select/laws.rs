@@ -47,7 +47,7 @@ pub(crate) fn of_every_law<T: Send>(
         out.par_extend(group.par_iter().map(&each));
     };
     (0..forward.layout.joints.len()).for_each(|joint| ask(builder.joint_laws(joint)));
-    ask(builder.yielding_laws());
+    ask(builder.compliance_laws());
     ask(builder.link_laws());
     ask(builder.reading_laws());
     out
@@ -192,7 +192,7 @@ impl Builder<'_> {
 
     /// Laws of a base, bearings and links that are more compliant than modelled, each in one direction only or in a
     /// part of the link only.
-    fn yielding_laws(&self) -> Vec<Law> {
+    fn compliance_laws(&self) -> Vec<Law> {
         let layout = &self.forward.layout;
         let own = &self.fit.point.coefficients;
         let joints: Vec<f64> = own.laws.iter().map(|law| law.tangent_compliance_rad_per_nm(0.0)).collect();
@@ -200,7 +200,7 @@ impl Builder<'_> {
         let law = |what: String, further: &[(usize, f64)]| Law {
             what,
             effect: None,
-            columns: vec![self.yielding_column(further)],
+            columns: vec![self.compliance_column(further)],
         };
         let tilts = |what: String, first: usize, compliance: f64| {
             [first, first + 1].map(|i| law(what.clone(), &[(i, compliance)]))
@@ -271,11 +271,11 @@ impl Builder<'_> {
 
     /// The change of every reading, in its unit, by additional compliances. Each entry of `further` is a pair: index of
     /// the strain coordinate, and its additional compliance.
-    fn yielding_column(&self, further: &[(usize, f64)]) -> Vec<f64> {
+    fn compliance_column(&self, further: &[(usize, f64)]) -> Vec<f64> {
         let forward = self.forward;
         let mut truth = vec![0.0; forward.data.len()];
         for pose in &forward.statics {
-            pose.add_yielding(&forward.layout, &self.fit.point.coefficients, further, &mut truth);
+            pose.add_compliant(&forward.layout, &self.fit.point.coefficients, further, &mut truth);
         }
         self.add_modal(&mut truth, |_, y| further.iter().map(|(i, c)| y[*i].powi(2) * c).sum());
         self.read(&truth)
@@ -478,7 +478,7 @@ mod tests {
             let (forward, fit) = (builder.forward, builder.fit);
             let linear = &fit.point.coefficients.linear;
             let of_links = forward.layout.links.iter().flat_map(|l| l.first..l.first + l.strains.len());
-            let column = builder.yielding_column(&of_links.map(|i| (i, linear[i])).collect::<Vec<_>>());
+            let column = builder.compliance_column(&of_links.map(|i| (i, linear[i])).collect::<Vec<_>>());
             let is_modulus = |c: &Calibration| matches!(c, Calibration::Modulus(..));
             let p = nuisance.numbers.iter().position(|(c, _)| is_modulus(c)).expect("calibrated");
             let largest = fit.jacobian.column(p).amax() / nuisance.numbers[p].1;
