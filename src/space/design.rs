@@ -253,7 +253,7 @@ fn given_joint(joint: &SpaceJoint) -> Option<Joint> {
 /// Evaluates the design with this number by the full model. Returns `None` if there is no such design or if it breaks
 /// a limit.
 ///
-/// [`DesignSpace`](super::design_space::DesignSpace) has an example.
+/// [`DesignSpace`] has an example.
 pub fn evaluate(problem: &ArmProblem, number: u128) -> Option<Evaluated> {
     let options = options(problem.level_sizes(), number)?;
     let complete = problem.walk(&options, |_, _| {}).ok()?;
