@@ -140,7 +140,7 @@ pub fn random_study(seed: u64) -> Value {
 #[test]
 fn the_exact_front_is_the_front_of_every_design() {
     let studies: u64 =
-        std::env::var("ARMWRIGHT_EXACT_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(14);
+        std::env::var("ARMWRIGHT_EXACT_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(10);
     let (catalogs, stop) = (Catalogs::builtin(), AtomicBool::new(false));
     let (mut points, mut feasible, mut boxes) = (0, 0, [0; 2]);
     for seed in 0..studies {

@@ -150,7 +150,7 @@ fn bounds_on_mass_hold(problem: &ArmProblem, front: &[Candidate], what: &str) ->
 #[test]
 fn the_exact_front_is_whole_where_parts_must_fit() {
     let studies: u64 =
-        std::env::var("ARMWRIGHT_EXACT_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(10);
+        std::env::var("ARMWRIGHT_EXACT_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(8);
     let (mut points, mut feasible, mut decided, mut bounds) = (0, 0, 0, 0);
     for seed in 0..studies {
         let (text, catalogs) = (study_of_fits(seed), other_sizes(seed));

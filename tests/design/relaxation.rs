@@ -190,5 +190,5 @@ fn no_design_that_meets_a_target_is_lighter_than_the_bound() {
 }
 
 /// Studies drawn, and targets in each.
-const ROUNDS: usize = 28;
+const ROUNDS: usize = 20;
 const TARGETS: usize = 4;

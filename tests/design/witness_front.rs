@@ -33,7 +33,7 @@ use std::time::Instant;
 const ROUNDING: f64 = 1e-9;
 
 fn studies() -> u64 {
-    std::env::var("ARMWRIGHT_WITNESS_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(20)
+    std::env::var("ARMWRIGHT_WITNESS_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(16)
 }
 
 fn tube(dice: &mut Dice, name: &str, vector_m: [f64; 3]) -> Value {
