@@ -182,10 +182,15 @@ pub fn objectives<'a>(arm: &Value, cases: impl Iterator<Item = &'a witness::Load
     })
 }
 
-fn meets(study: &Study, design: &Design) -> bool {
+pub fn meets(study: &Study, design: &Design) -> bool {
     let below = |key: &str, value: f64| study.limit(key).is_none_or(|limit| value <= limit);
     let above = |key: &str, value: f64| study.limit(key).is_none_or(|limit| value >= limit);
-    below("tip_deflection_max_mm", design.tip_deflection_mm)
+    let mut options = design.chain.iter().filter_map(|chosen| match chosen {
+        Chosen::Link(link) => link.option.as_ref(),
+        Chosen::Joint(_) => None,
+    });
+    options.all(|option| below("wall_slenderness_max", wall_slenderness(option)))
+        && below("tip_deflection_max_mm", design.tip_deflection_mm)
         && below("mass_max_kg", design.mass_kg)
         && above("lowest_mode_min_hz", design.lowest_mode_hz)
         && design.material_cost_eur.is_none_or(|cost| below("material_cost_max_eur", cost))
