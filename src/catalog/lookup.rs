@@ -50,7 +50,7 @@ pub enum PartError {
         nearest: Vec<String>,
     },
     /// The text fits the names of several parts.
-    #[error("{kind} \"{name}\" may be any of: {}; give more of the name", some(.candidates))]
+    #[error("{kind} \"{name}\" may be any of: {}; give more of the name", first_names(.candidates, SHOWN))]
     Ambiguous {
         /// Kind of part that was asked for.
         kind: PartKind,
@@ -68,10 +68,13 @@ fn near(kind: &PartKind, nearest: &[String]) -> String {
     }
 }
 
-fn some(names: &[String]) -> String {
-    const SHOWN: usize = 6;
-    let shown = names.iter().take(SHOWN).map(String::as_str).collect::<Vec<_>>().join(", ");
-    match names.len().saturating_sub(SHOWN) {
+/// Number of names that a message about an ambiguous name shows.
+const SHOWN: usize = 6;
+
+/// The first `most` names of a list in words, with the number of the others: `A, B and 3 more`.
+pub(crate) fn first_names<S: AsRef<str>>(names: &[S], most: usize) -> String {
+    let shown = names.iter().take(most).map(S::as_ref).collect::<Vec<_>>().join(", ");
+    match names.len().saturating_sub(most) {
         0 => shown,
         more => format!("{shown} and {more} more"),
     }

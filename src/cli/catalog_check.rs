@@ -5,6 +5,7 @@ use super::catalog_table::{TextTable, cell, provenances};
 use crate::arm::bearing::BearingSource;
 use crate::catalog::gear::{GearKind, GearMass};
 use crate::catalog::load::Loaded;
+use crate::catalog::lookup::first_names;
 use crate::catalog::needs::{Lack, words};
 use crate::catalog::schema::CatalogFile;
 use crate::catalog::{Catalogs, Confidence, Provenance};
@@ -166,11 +167,8 @@ fn verbs(lacks: &[Lack]) -> String {
 }
 
 fn named(parts: &[(usize, &str)]) -> String {
-    let names: Vec<&str> = parts.iter().take(NAMED).map(|(_, id)| *id).collect();
-    match parts.len().saturating_sub(NAMED) {
-        0 => names.join(", "),
-        more => format!("{} and {more} more", names.join(", ")),
-    }
+    let names: Vec<&str> = parts.iter().map(|(_, id)| *id).collect();
+    first_names(&names, NAMED)
 }
 
 /// Housed gears and actuators whose output bearing counts as rigid because their row states no tilting stiffness. The

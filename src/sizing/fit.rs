@@ -143,7 +143,7 @@ impl FitRequirement {
 
     /// Whether the bores and the length of a gear and a motor are within the limits, whatever the link. A size that is
     /// unknown is not checked.
-    pub(super) fn allows(&self, gear: &Envelope, motor: &Envelope) -> bool {
+    pub(crate) fn allows(&self, gear: &Envelope, motor: &Envelope) -> bool {
         let bore_holds = |bore_m: Option<f64>| match (self.least_bore_m(), bore_m) {
             (Some(least_m), Some(bore_m)) => least_m <= bore_m,
             _ => true,

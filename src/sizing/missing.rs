@@ -2,6 +2,7 @@
 
 use super::select::DriveTable;
 use crate::catalog::envelope::Envelope;
+use crate::catalog::lookup::first_names;
 use crate::catalog::needs::{Lack, words};
 
 /// Number of groups of parts that a message names.
@@ -12,18 +13,10 @@ const NAMED_OF_GROUP: usize = 3;
 /// A part that lacks ratings.
 struct LackingPart<'t> {
     id: &'t str,
-    /// Whether the part is built in, and whether a known size of it does not fit.
-    order: (bool, bool),
+    is_built_in: bool,
+    /// Whether the known sizes of the part are allowed.
+    fits: bool,
     lacks: Vec<Lack>,
-}
-
-/// The first names of a list, and the number of the others.
-fn first_of(names: &[&str]) -> String {
-    let named = names[..names.len().min(NAMED_OF_GROUP)].join(", ");
-    match names.len().saturating_sub(NAMED_OF_GROUP) {
-        0 => named,
-        more => format!("{named} and {more} more"),
-    }
 }
 
 impl DriveTable<'_> {
@@ -41,7 +34,10 @@ impl DriveTable<'_> {
                 None => groups.push((lacks, vec![part.id])),
             }
         }
-        let named = groups.iter().take(NAMED).map(|(lacks, names)| format!("{}: {lacks}", first_of(names)));
+        let named = groups
+            .iter()
+            .take(NAMED)
+            .map(|(lacks, names)| format!("{}: {lacks}", first_names(names, NAMED_OF_GROUP)));
         let more: usize = groups.iter().skip(NAMED).map(|(_, names)| names.len()).sum();
         let more = (more > 0).then(|| format!("and {more} more parts"));
         (!groups.is_empty()).then(|| named.chain(more).collect::<Vec<_>>().join("; "))
@@ -51,17 +47,16 @@ impl DriveTable<'_> {
     fn lacking_parts(&self) -> Vec<LackingPart<'_>> {
         let fit = &self.motion().fit;
         let no_size = Envelope::default();
-        let gears = self.gears().iter().map(|g| {
-            let fits = fit.allows(&g.envelope_as(self.gear_mass()), &no_size);
-            LackingPart {
-                id: &g.id,
-                order: (g.provenance.is_built_in(), !fits),
-                lacks: g.lacks(self.gear_mass()),
-            }
+        let gears = self.gears().iter().map(|g| LackingPart {
+            id: &g.id,
+            is_built_in: g.provenance.is_built_in(),
+            fits: fit.allows(&g.envelope_as(self.gear_mass()), &no_size),
+            lacks: g.lacks(self.gear_mass()),
         });
         let motors = self.motors().iter().map(|m| LackingPart {
             id: &m.id,
-            order: (m.provenance.is_built_in(), !fit.allows(&no_size, &m.envelope)),
+            is_built_in: m.provenance.is_built_in(),
+            fits: fit.allows(&no_size, &m.envelope),
             lacks: m.lacks(),
         });
         let mut lacking: Vec<LackingPart> = Vec::new();
@@ -73,10 +68,10 @@ impl DriveTable<'_> {
             }
         }
         // what does not fit cannot be chosen, whatever figures it has
-        if lacking.iter().any(|part| !part.order.1) {
-            lacking.retain(|part| !part.order.1 || !part.order.0);
+        if lacking.iter().any(|part| part.fits) {
+            lacking.retain(|part| part.fits || !part.is_built_in);
         }
-        lacking.sort_by_key(|part| part.order);
+        lacking.sort_by_key(|part| (part.is_built_in, !part.fits));
         lacking
     }
 

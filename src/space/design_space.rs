@@ -462,12 +462,6 @@ pub(crate) struct SpaceLinkage {
     pub factor: f64,
 }
 
-/// Joins the texts in `list` that are present by "and". `None` if there is none.
-fn in_words(list: [Option<String>; 2]) -> Option<String> {
-    let words: Vec<String> = list.into_iter().flatten().collect();
-    (!words.is_empty()).then(|| words.join(" and "))
-}
-
 impl DesignSpace {
     /// Whether some joint turns along with others: a linkage turns it, or its motor sits inboard of other joints.
     pub fn has_linkages(&self) -> bool {
@@ -478,31 +472,6 @@ impl DesignSpace {
     /// always does: it stays where the joint begins.
     pub fn has_motors_elsewhere(&self) -> bool {
         self.pieces.iter().any(|piece| piece.motor_place(0).is_some())
-    }
-
-    /// Whether the drive of a prismatic joint is sized.
-    fn sizes_rails(&self) -> bool {
-        self.pieces.iter().any(|piece| matches!(piece, SpacePiece::Prismatic(slide) if slide.drive.is_some()))
-    }
-
-    /// Describes in words what of this space the bounds of the exact search do not cover; `None` if they
-    /// cover all of it.
-    pub(crate) fn beyond_exact(&self) -> Option<String> {
-        let is_known =
-            |effect: &&Effect| effect.is_of_test() || effect.kind().is_none_or(|kind| kind.traits.in_bounds);
-        let law = self.effects.iter().find(|effect| !is_known(effect)).map(Effect::label);
-        let motors = match (self.sizes_rails(), self.has_motors_elsewhere()) {
-            (true, _) => Some("rails whose drive is sized".to_string()),
-            (false, elsewhere) => elsewhere.then(|| "motors that sit elsewhere than their joints".into()),
-        };
-        let turns = self.has_linkages().then(|| "joints that turn with others".to_string());
-        in_words([in_words([turns, motors]), law])
-    }
-
-    /// Describes in words what of this space the bounds of the verifier and of the linear program
-    /// (relaxation) do not cover; `None` if they cover all of it.
-    pub fn beyond_bounds(&self) -> Option<String> {
-        in_words([self.beyond_exact(), (!self.springs.is_empty()).then(|| "springs".into())])
     }
 
     /// Whether a piece is a tube, or a link whose tube is chosen.

@@ -12,6 +12,7 @@
 pub(crate) mod attributes;
 pub(crate) mod bearing_demand;
 pub(crate) mod bearing_loads;
+pub(crate) mod beyond_bounds;
 pub mod constraint;
 pub mod design;
 pub mod design_space;

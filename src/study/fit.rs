@@ -130,10 +130,7 @@ fn phrases(asking: &[&SpaceJoint]) -> Vec<String> {
 
 /// Whether something holds for the sizes and the drives that some of the joints ask.
 fn by_any(asking: &[&SpaceJoint], holds: &dyn Fn(&FitRequirement, &DriveFilter) -> bool) -> bool {
-    asking.iter().any(|joint| match &joint.drive {
-        DriveChoice::FirstFit(filter) | DriveChoice::AllFits(filter) => holds(&joint.fit, filter),
-        DriveChoice::Given { .. } => false,
-    })
+    asking.iter().any(|joint| joint.drive.filter().is_some_and(|filter| holds(&joint.fit, filter)))
 }
 
 /// Number of allowed gears whose limited sizes are in the catalogs, but were not seen in a document, in words; `None` if

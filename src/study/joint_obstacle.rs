@@ -228,14 +228,17 @@ const OWN_CATALOG: &str = " (state what you know of them in a catalog of your ow
 /// a sentence. Empty if the study asks no passage.
 fn passage_advice(table: &DriveTable, catalogs: &Catalogs) -> String {
     let fit = &table.motion().fit;
-    let Some(least_m) = fit.cable_bore_min_m else { return String::new() };
+    if fit.cable_bore_min_m.is_none() {
+        return String::new();
+    }
     let is_offered = |gear: &Gear| table.gears().iter().any(|offered| offered.id == gear.id);
     let passes = |gear: &&Gear| {
         let own = catalogs.motors.iter().find(|motor| gear.goes_with(motor));
         gear.kind == GearKind::Actuator
-            && gear.envelope.hollow_bore_m.is_some_and(|bore_m| bore_m >= least_m)
+            && gear.envelope.hollow_bore_m.is_some()
             && gear.lacks(GearMass::HousedUnit).is_empty()
-            && own.is_some_and(|motor| motor.lacks().is_empty())
+            && own
+                .is_some_and(|motor| motor.lacks().is_empty() && fit.allows(&gear.envelope, &motor.envelope))
             && !is_offered(gear)
     };
     let names: Vec<String> = catalogs.gears.iter().filter(passes).map(|gear| gear.id.clone()).collect();

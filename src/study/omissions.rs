@@ -6,6 +6,9 @@ use super::harness::has_harness;
 use crate::arm::bearing::BearingSource;
 use crate::arm::extras::ExtrasSource;
 use crate::arm::transmission::Stages;
+use crate::catalog::Catalogs;
+use crate::catalog::gear::{Gear, GearKind};
+use crate::catalog::lookup::first_names;
 use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiece};
 
 /// Sentences on the physics and the checks that the results of a study do not include; empty if no joint has a gear
@@ -42,6 +45,33 @@ pub(super) fn omissions(space: &DesignSpace) -> Vec<String> {
             "Motor heat not checked: the study turns it off (check_motor_heat in its motion).".to_string()
         });
     [rigid, bare, bare_given, heat, Some(left_out_everywhere(space))].into_iter().flatten().collect()
+}
+
+/// Ratings of actuators that decide whether they hold and how far the arm deflects.
+const OF_ACTUATORS: [&str; 2] = ["rated_torque_nm", "tilting_stiffness_nm_per_rad"];
+/// Number of actuators that the remark on their ratings names.
+const NAMED: usize = 3;
+
+/// A sentence on the actuators that the joints may have and of which a rating was not seen as it is used; `None` if there
+/// are none.
+pub(super) fn actuators_remark(space: &DesignSpace, catalogs: &Catalogs) -> Option<String> {
+    let may_have = |gear: &Gear| {
+        joints(space).any(|joint| match &joint.drive {
+            DriveChoice::Given { gear: name, .. } => name.as_ref() == Some(&gear.id),
+            open => open.filter().is_some_and(|filter| filter.allows_gear(gear)),
+        })
+    };
+    let is_unseen = |gear: &Gear| OF_ACTUATORS.iter().any(|column| gear.provenance.is_unverified(column));
+    let actuators = catalogs.gears.iter().filter(|gear| gear.kind == GearKind::Actuator);
+    let names: Vec<&str> =
+        actuators.filter(|gear| may_have(gear) && is_unseen(gear)).map(|gear| gear.id.as_str()).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "The rated torque or the tilting stiffness of {} is not the vendor's figure for this use: motor heat and \
+             deflection may be worse. Their notes say why (armwright catalog show --part NAME).",
+            first_names(&names, NAMED)
+        )
+    })
 }
 
 /// Physics that no number of this study includes, such as temperature, as a sentence.

@@ -4,7 +4,6 @@
 use crate::running::armwright;
 use serde_json::{Value, json};
 
-/// Exit code and everything that was said.
 /// Two links of two tubes each on two joints that are sized: few designs, all kinds of limits.
 fn study() -> Value {
     let link = |name: &str| {
@@ -161,6 +160,10 @@ fn a_passage_that_no_gear_has_is_refused_with_what_is_missing_and_actuators_let_
     std::fs::write(here.path().join("study.json"), study.to_string()).expect("written");
     let (code, said) = armwright(here.path(), &["run", "study.json", "--out", "x"]);
     assert_eq!(code, 0, "{said}");
+    // their rated torque holds at standstill, and their tilting stiffness is that of a gear unit
+    let unseen =
+        "The rated torque or the tilting stiffness of CHA-20A-30, CHA-20A-50, CHA-20A-80 and 30 more is not";
+    assert!(said.split_whitespace().collect::<Vec<_>>().join(" ").contains(unseen), "{said}");
     let front = std::fs::read_to_string(here.path().join("x/front.csv")).expect("a front");
     let column =
         front.lines().next().expect("a header").split(',').position(|c| c == "j1_gear").expect("a gear");
