@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
 
 fn studies() -> u64 {
-    std::env::var("ARMWRIGHT_HEAT_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(12)
+    std::env::var("ARMWRIGHT_HEAT_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(16)
 }
 
 /// A cycle with short rests, steep ramps or none, and phases at part load.
