@@ -1,5 +1,5 @@
 //! `empirical`: a law without a name, as it was found in readings. At a joint it is a further twist, a polynomial of the
-//! torque, or a compliance that changes in the course of the tests; at the base a tilt that differs about x and y; at a channel it is a reading that bends, that has a gain
+//! torque, a housing that tilts about two axes unequally, or a compliance that changes in the course of the tests; at the base a tilt that differs about x and y; at a channel it is a reading that bends, that has a gain
 //! of its own in each direction, or that shows how the base turned once.
 
 use super::channel::Channel;
@@ -30,7 +30,7 @@ pub(crate) const BEND: &str = "bend";
 pub(crate) const BEND_SCALE: &str = "bend_scale";
 /// Parameter: a factor on the reading for each direction.
 pub(crate) const GAIN: &str = "gain";
-/// Further tilt of the base per moment about world x and about y.
+/// Further tilt per moment: of the base about world x and about y, of a joint about two axes of its housing.
 pub(crate) const LEAN: &str = "tilt_rad_per_nm";
 /// Rotation by which the base turned once.
 pub(crate) const BASE_TURN: &str = "base_turn_rad";
@@ -46,6 +46,7 @@ const OF_JOINT: &[Parameter] = &[
     optional(SOFTENING[1], 1, -0.9, 10.0, 0.0),
     optional(SOFTENING_ROWS[1], 1, 0.1, 1e6, 1.0),
     optional(SOFTENING_REFERENCE, 1, 0.0, 1.0, 1.0),
+    optional(LEAN, 2, 0.0, 1.0, 0.0),
 ];
 
 const OF_CHANNEL: &[Parameter] = &[
@@ -92,10 +93,10 @@ pub(crate) const KIND: Kind = Kind {
     traits: Traits { is_sought: false, in_bounds: false, ..Traits::USUAL },
 };
 
-/// Whether a law of a joint with these parameters describes the tests alone: it has no further twist.
+/// Whether a law of a joint or the base with these parameters describes the tests alone: nothing twists or tilts further.
 pub(crate) fn is_of_tests_alone(parameters: &[(String, Vec<f64>)]) -> bool {
     let is_twist = |(name, numbers): &(String, Vec<f64>)| {
-        [ODD_TWIST, EVEN_TWIST].contains(&name.as_str()) && numbers.iter().any(|x| *x != 0.0)
+        [ODD_TWIST, EVEN_TWIST, LEAN].contains(&name.as_str()) && numbers.iter().any(|x| *x != 0.0)
     };
     !parameters.iter().any(is_twist)
 }
@@ -104,7 +105,8 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
     if let [about_x, about_y] = *numbers {
         subject.structure.base_frame.0 += Matrix3::from_diagonal(&Vector3::new(about_x, about_y, 0.0));
     } else if let Some(joint) = subject.structure.joint_mut(at) {
-        let [a, b, c, d, torque_nm, softening @ ..] = numbers else { return };
+        let [a, b, c, d, torque_nm, softening @ .., first, second] = numbers else { return };
+        joint.lean_rad_per_nm = [joint.lean_rad_per_nm[0] + first, joint.lean_rad_per_nm[1] + second];
         if [a, b, c, d] != [&0.0; 4] {
             let twist = FurtherTwist { odd_rad: [*a, *b], even_rad: [*c, *d], torque_nm: *torque_nm };
             joint.law.further = Some(added(joint.law.further, twist));
@@ -167,13 +169,36 @@ mod tests {
         let twist = |odd_rad, even_rad, torque_nm| FurtherTwist { odd_rad, even_rad, torque_nm };
         let (first, second) =
             (twist([1e-4, -2e-5], [3e-5, 1e-5], 20.0), twist([0.0, 4e-5], [0.0, 2e-5], 50.0));
-        apply(&[1e-4, -2e-5, 3e-5, 1e-5, 20.0], "j1", &mut subject);
-        apply(&[0.0, 4e-5, 0.0, 2e-5, 50.0], "j1", &mut subject);
+        apply(&[1e-4, -2e-5, 3e-5, 1e-5, 20.0, 0.0, 0.0], "j1", &mut subject);
+        apply(&[0.0, 4e-5, 0.0, 2e-5, 50.0, 0.0, 0.0], "j1", &mut subject);
         let law = subject.structure.joint_mut("j1").expect("j1").law;
         for torque_nm in [-70.0, -10.0, 5.0, 60.0] {
             let sum = first.angle_rad(torque_nm) + second.angle_rad(torque_nm);
             assert!((law.angle_rad(torque_nm) - torque_nm / 1e5 - sum).abs() < 1e-15, "{torque_nm}");
         }
+    }
+
+    #[test]
+    fn a_housing_tilts_about_axes_that_turn_with_what_carries_it() {
+        use crate::arm::LinkModel;
+        use crate::arm::load::Payload;
+        use std::f64::consts::FRAC_PI_2;
+        let share_of = |lean: [f64; 2]| {
+            let mut subject = super::super::validate::testing::two_link_subject();
+            apply(&[0.0, 0.0, 0.0, 0.0, 1.0, lean[0], lean[1]], "j2", &mut subject);
+            subject.structure.gravity_m_s2 = 0.0;
+            let chain = crate::mechanics::chain::Chain::new(&subject.structure, LinkModel::Rigid);
+            // j1 has turned the upper arm along world y, j2 hangs the forearm from it
+            let force_n = Vector3::new(10.0, 0.0, 0.0);
+            let posed = chain.pose_rad(&[FRAC_PI_2, FRAC_PI_2], &Payload::default(), force_n);
+            posed.statics().shares_m.iter().find(|(name, _)| name == "j2.bearing").expect("share").1
+        };
+        // the axes of j2, which turns about y, are -z and -x of the upper arm; x is along the upper arm, which is world y
+        // now: 10 N at the end of 0.5 m put 5 N m about it and move the tip by a lever of 0.5 m
+        let along = share_of([0.0, 1e-5]);
+        assert!((along - Vector3::new(2.5e-5, 0.0, 0.0)).norm() < 1e-15, "{along}");
+        // the forearm hangs along the other axis
+        assert!(share_of([1e-5, 0.0]).norm() < 1e-15);
     }
 
     #[test]

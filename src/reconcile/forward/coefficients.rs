@@ -290,7 +290,8 @@ impl Coefficients {
         for ((slot, joint), before) in
             layout.joints.iter().zip(structure.joints()).zip(nominal.structure.joints())
         {
-            linear[slot.twist - 2..slot.twist].fill(joint.tilt_rad_per_nm);
+            let tilts = joint.lean_rad_per_nm.map(|lean| joint.tilt_rad_per_nm + lean);
+            linear[slot.twist - 2..slot.twist].copy_from_slice(&tilts);
             laws.push(joint.law);
             torques.push(joint.torque.beyond(&before.torque));
             masses.push(joint.mass_kg - before.mass_kg);
