@@ -1,6 +1,6 @@
 //! Makes campaigns with hidden effects from the independent witness.
 //!
-//! `cargo run --release --example reconcile_generate -- OUT SEED COUNT plain|hard|static|modal|windup|varied|geared one|two|none|later|unknown [SIGMA]`
+//! `cargo run --release --example reconcile_generate -- OUT SEED COUNT plain|hard|static|modal|windup|varied|geared one|two|none|later|unknown|further [SIGMA]`
 //!
 //! `plain` and `hard` are six-axis arms, `static`, `modal` and `windup` the same with one kind of readings, `varied` is arms of four to seven joints of any size, on floor, wall or ceiling;
 //! all joints of those of `geared` have torsion curves.
@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         return Ok(());
     }
     let [out, seed, count, set, class, sigma @ ..] = arguments.as_slice() else {
-        return Err("give OUT SEED COUNT plain|hard|static|modal|windup|varied|geared one|two|none|later|unknown [SIGMA]".into());
+        return Err("give OUT SEED COUNT plain|hard|static|modal|windup|varied|geared one|two|none|later|unknown|further [SIGMA]".into());
     };
     let out = Path::new(out);
     let (seed, count) = (seed.parse::<u64>()?, count.parse::<usize>()?);
@@ -46,7 +46,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             let (name, hidden) = reconcile_generator::make(out, set, class, seed, number, eased);
             let campaign = Campaign::read(&out.join("campaigns").join(name), &Catalogs::default())?;
             let seen = detectability::detectable_sigmas(&campaign, &hidden);
-            if hidden.is_empty() || class == "unknown" || seen.unwrap_or(0.0) >= least {
+            if hidden.is_empty()
+                || ["unknown", "further"].contains(&class.as_str())
+                || seen.unwrap_or(0.0) >= least
+            {
                 break;
             }
         }

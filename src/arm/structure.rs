@@ -88,6 +88,10 @@ pub struct JointPiece {
     /// Tilting compliance about both axes perpendicular to the joint's axis \[rad/(N m)\]: the nominal bearing, in
     /// series with what effects add.
     pub tilt_rad_per_nm: f64,
+    /// Further tilting compliance about each of two axes perpendicular to the joint's axis, which stand still in the
+    /// housing \[rad/(N m)\]: the first is the cross product of the joint's axis and the coordinate axis that is least
+    /// parallel to it, the second that of the joint's axis and the first.
+    pub lean_rad_per_nm: [f64; 2],
     /// Point mass on the axis, inboard of the springs \[kg\].
     pub mass_kg: f64,
     /// Rigid bodies on the joint.
@@ -103,6 +107,11 @@ impl JointPiece {
     /// Whether the angle of the joint is an entry of the pose.
     pub fn is_driven(&self) -> bool {
         matches!(self.angle, JointAngle::Driven(_))
+    }
+
+    /// Whether the joint tilts about an axis perpendicular to its own.
+    pub fn tilts(&self) -> bool {
+        self.tilt_rad_per_nm > 0.0 || self.lean_rad_per_nm.iter().any(|c| *c > 0.0)
     }
 }
 
@@ -266,6 +275,7 @@ fn joint_piece(joint: &Joint, driven: &[&str], model: JointModel) -> JointPiece 
         law: JointLaw::from(joint.curve.reduced(model)),
         torque: JointTorque::default(),
         tilt_rad_per_nm: joint.bearing.map_or(0.0, |bearing| bearing.tilt_rad_per_nm()),
+        lean_rad_per_nm: [0.0; 2],
         mass_kg: joint.total_mass_kg(),
         bodies: joint.bodies.clone(),
         angle,

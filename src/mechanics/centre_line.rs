@@ -46,7 +46,7 @@ impl Posed<'_> {
                 Prepared::Joint(joint) => {
                     let axis = walk.rotation * joint.axis.into_inner();
                     out.push(walk.station(&joint.name, walk.at_m, Some(axis)));
-                    if joint.tilt_rad_per_nm > 0.0 {
+                    if joint.tilts() {
                         walk.deflects(elements.next());
                     }
                     walk.deflects(elements.next());

@@ -237,7 +237,10 @@ impl Chain {
             frames: Vec::with_capacity(self.pieces.len()),
         };
         if self.base_tilt_rad_per_nm > 0.0 {
-            walk.tilt("base".into(), &[Vector3::x(), Vector3::y()], self.base_tilt_rad_per_nm);
+            walk.tilt(
+                "base".into(),
+                [Vector3::x(), Vector3::y()].map(|axis| (axis, self.base_tilt_rad_per_nm)),
+            );
         }
         walk.lift(self.base_lift);
         walk.frame("base", &self.base_frame);
@@ -321,10 +324,7 @@ impl Walk {
         self.bodies(&joint.bodies.fixed);
         self.load(Side::Fixed(index));
         let axis = self.rotation * joint.axis;
-        if joint.tilt_rad_per_nm > 0.0 {
-            let across = across(&axis);
-            self.tilt(format!("{}.bearing", joint.name), &across, joint.tilt_rad_per_nm);
-        }
+        self.bearing(joint);
         self.items.push(Item::Elastic(ElasticElement {
             name: joint.name.clone(),
             at_m: self.at_m,
@@ -408,14 +408,26 @@ impl Walk {
         self.items.extend(loads.map(|load| Item::Load(wrench_of(load))).collect::<Vec<_>>());
     }
 
-    /// Adds two rotational springs with the same compliance \[rad/(N m)\] about two axes through the position that the
-    /// walk has reached.
-    fn tilt(&mut self, name: String, axes: &[Vector3<f64>; 2], compliance: f64) {
+    /// Adds the springs of a joint's bearing and housing. Their axes stand still in the housing.
+    fn bearing(&mut self, joint: &JointPiece) {
+        let axes = across(&joint.axis).map(|axis| self.rotation * axis);
+        let springs = axes.into_iter().zip(joint.lean_rad_per_nm.map(|lean| joint.tilt_rad_per_nm + lean));
+        self.tilt(format!("{}.bearing", joint.name), springs);
+    }
+
+    /// Adds rotational springs about axes through the position that the walk has reached. Each is an axis in the world
+    /// and the compliance about it \[rad/(N m)\]; those without compliance are left out.
+    fn tilt(&mut self, name: String, springs: impl IntoIterator<Item = (Vector3<f64>, f64)>) {
+        let present = springs.into_iter().filter(|(_, compliance)| *compliance > 0.0);
+        let (axes, compliances): (Vec<Vector3<f64>>, Vec<f64>) = present.unzip();
+        if axes.is_empty() {
+            return;
+        }
         self.items.push(Item::Elastic(ElasticElement {
             name,
             at_m: self.at_m,
             twists: axes.iter().map(|axis| rotation_twist(axis, &self.at_m)).collect(),
-            compliance: Compliance::Linear(vec![compliance; 2]),
+            compliance: Compliance::Linear(compliances),
             torque_nm: 0.0,
             own: None,
         }));

@@ -255,6 +255,7 @@ impl DesignSpace {
         out.extend(self.motors_on(index, true));
         let bearing = joint.bearing.stated();
         let affected = self.joint_piece(joint, Curve::Rigid, bearing);
+        out.extend(leans(&affected).map(|lean| (index, lean)));
         if joint.bearing_is_open() {
             out.push((index, Layer::Piece(piece)));
             out.extend([0, 1].map(|which| (index, Layer::Bearing(BearingSpring { joint, which }))));
@@ -462,11 +463,18 @@ fn nominal_joint(joint: &SpaceJoint, curve: Curve) -> JointPiece {
         law: JointLaw::from(curve),
         torque: JointTorque::default(),
         tilt_rad_per_nm: 0.0,
+        lean_rad_per_nm: [0.0; 2],
         mass_kg: 0.0,
         bodies: JointBodies::default(),
         angle: JointAngle::Driven(0),
         turns_with: Vec::new(),
     }
+}
+
+/// The springs of a joint's housing that tilts about axes of its own; none if it is rigid.
+fn leans<'s>(joint: &JointPiece) -> impl Iterator<Item = Layer<'s>> + use<'s> {
+    let springs = across(&joint.axis).into_iter().zip(joint.lean_rad_per_nm).filter(|(_, c)| *c > 0.0);
+    springs.map(|(axis, c)| Layer::Tilt(Tilt::linear(About::Fixed(axis), c)))
 }
 
 /// The two springs of a bearing or base that tilts; none if it is rigid. The compliance of each is `rad_per_nm`.

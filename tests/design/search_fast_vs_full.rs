@@ -129,7 +129,8 @@ fn study_with_laws(seed: u64, catalogs: &Catalogs) -> Study {
             {"stiffness_nm_per_rad": dice.within(1e5, 1e6), "preload_nm": dice.within(5.0, 300.0)}}));
     }
     list.push(json!({"effect": "empirical", "at": dice.of(&joints), "parameters": {"torque_nm": dice.within(10.0, 80.0),
-        "odd_twist_rad": [dice.within(0.0, 2e-4), dice.within(-1e-5, 1e-5)], "even_twist_rad": [2e-5, 1e-5]}}));
+        "odd_twist_rad": [dice.within(0.0, 2e-4), dice.within(-1e-5, 1e-5)], "even_twist_rad": [2e-5, 1e-5],
+        "tilt_rad_per_nm": [dice.within(0.0, 4e-6), 1e-6]}}));
     text["effects"] = effects;
     read(seed, &text, catalogs)
 }

@@ -102,7 +102,8 @@ fn laws() -> Value {
         {"effect": "joint_torque", "at": "shoulder", "parameters": {"offset_nm": 3.0, "sin_nm": 2.0, "cos_nm": -20.0}},
         {"effect": "stiffness_waves", "at": "elbow", "parameters": {"once": 0.2, "twice": 0.1, "phases_rad": [0.5, -1.0]}},
         {"effect": "base_lift", "at": "base", "parameters": {"stiffness_nm_per_rad": 5e4, "preload_nm": 8.0}},
-        {"effect": "empirical", "at": "elbow", "parameters": {"odd_twist_rad": [2e-5, 0], "torque_nm": 10}}
+        {"effect": "empirical", "at": "elbow", "parameters": {"odd_twist_rad": [2e-5, 0], "torque_nm": 10,
+            "tilt_rad_per_nm": [2e-6, 7e-6]}}
     ])
 }
 

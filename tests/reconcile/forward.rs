@@ -51,7 +51,7 @@ fn law(at: &str, parameters: &[(&str, &[f64])]) -> Effect {
 }
 
 /// A joint that softens while it is tested, a base that turns once, and one that tilts more about one axis.
-fn laws() -> [Effect; 3] {
+fn laws() -> [Effect; 4] {
     let softening: [(&str, &[f64]); 5] = [
         ("static_softening", &[0.3]),
         ("static_softening_rows", &[7.0]),
@@ -61,7 +61,8 @@ fn laws() -> [Effect; 3] {
     ];
     let turn: [(&str, &[f64]); 2] =
         [("base_turn_rad", &[1e-4, -2e-4, 3e-4]), ("base_turn_from_row", &[11.0])];
-    [law("j2", &softening), law("static", &turn), law("base", &[("tilt_rad_per_nm", &[1e-6, 4e-6])])]
+    let tilt = |at: &str| law(at, &[("tilt_rad_per_nm", &[1e-6, 4e-6])]);
+    [law("j2", &softening), law("static", &turn), tilt("base"), tilt("j3")]
 }
 
 #[test]
@@ -84,7 +85,7 @@ fn a_joint_softens_from_the_second_row_on_and_a_base_turns_from_its_row_on() {
         laws.iter().for_each(|law| subject.apply(law));
         Exact::new(&subject).statics_mm(&campaign.statics).into_iter().map(Vector3::from).collect::<Vec<_>>()
     };
-    let [soft, turned, _] = laws();
+    let [soft, turned, ..] = laws();
     let (plain, soft, turned) = (displacements(&[]), displacements(&[soft]), displacements(&[turned]));
     assert!((plain[0] - soft[0]).norm() < 1e-12, "the first row is of the joint as it was");
     assert!((plain[2] - soft[2]).norm() > 0.01 * plain[2].norm());

@@ -30,6 +30,8 @@ pub struct Joint {
     pub law: JointLaw,
     /// Stiffness of the output bearing about both axes across the joint's; none is rigid.
     pub tilt_nm_per_rad: Option<f64>,
+    /// Stiffness of the housing about one axis across the joint's that stands still in the housing; none is rigid.
+    pub lean_nm_per_rad: Option<f64>,
     pub mass_kg: f64,
     /// A torque on the joint beside weight and load: constant, with the sine and with the cosine of its angle.
     pub torque_nm: [f64; 3],
@@ -123,6 +125,7 @@ impl Joint {
             axis: vector(&joint["axis"]).normalize(),
             law,
             tilt_nm_per_rad: joint["bearing"]["tilt_stiffness_nm_per_rad"].as_f64(),
+            lean_nm_per_rad: joint["lean_nm_per_rad"].as_f64(),
             mass_kg: joint_mass_kg(joint),
             torque_nm: [0.0; 3],
         }

@@ -211,6 +211,10 @@ impl<'a> Walk<'a> {
             let name = format!("bearing_tilt:{}", joint.name);
             self.tilt(&name, axes_across(&axis), stiffness_nm_per_rad);
         }
+        if let Some(stiffness_nm_per_rad) = joint.lean_nm_per_rad {
+            let [across, _] = axes_across(&joint.axis);
+            self.tilt(&format!("lean:{}", joint.name), [self.frame * across], stiffness_nm_per_rad);
+        }
         self.frame *= Rotation3::from_axis_angle(&Unit::new_normalize(joint.axis), angle_deg.to_radians());
     }
 
@@ -318,7 +322,7 @@ impl<'a> Walk<'a> {
         unknown
     }
 
-    fn tilt(&mut self, name: &str, axes: [Vector3<f64>; 2], stiffness_nm_per_rad: f64) {
+    fn tilt<const N: usize>(&mut self, name: &str, axes: [Vector3<f64>; N], stiffness_nm_per_rad: f64) {
         if !(self.is_compliant)(name) {
             return;
         }

@@ -1,7 +1,7 @@
 //! `empirical`: a law without a name, as it was found in readings. At a joint it is a further twist, which is a
-//! polynomial of the torque, or a compliance that changes in the course of the tests. At the base it is a tilt that
-//! differs about x and y. At a channel it is a nonlinearity, a gain for each direction, or a rotation of the base
-//! between two rows.
+//! polynomial of the torque, a housing that tilts about two axes unequally, or a compliance that changes in the course of
+//! the tests. At the base it is a tilt that differs about x and y. At a channel it is a nonlinearity, a gain for each
+//! direction, or a rotation of the base between two rows.
 
 use super::channel::Channel;
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
@@ -34,7 +34,8 @@ pub(crate) const BEND: &str = "bend";
 pub(crate) const BEND_SCALE: &str = "bend_scale";
 /// Name of the parameter with a factor on the reading for each direction.
 pub(crate) const GAIN: &str = "gain";
-/// Name of the parameter with the further tilt of the base per moment, about world x and about world y.
+/// Name of the parameter with the further tilt per moment: of the base about world x and about world y, or of a joint
+/// about two axes of its housing.
 pub(crate) const LEAN: &str = "tilt_rad_per_nm";
 /// Name of the parameter with the rotation by which the base turned once between two rows.
 pub(crate) const BASE_TURN: &str = "base_turn_rad";
@@ -50,6 +51,7 @@ const OF_JOINT: &[Parameter] = &[
     optional(SOFTENING[1], 1, -0.9, 10.0, 0.0),
     optional(SOFTENING_ROWS[1], 1, 0.1, 1e6, 1.0),
     optional(SOFTENING_REFERENCE, 1, 0.0, 1.0, 1.0),
+    optional(LEAN, 2, 0.0, 1.0, 0.0),
 ];
 
 const OF_CHANNEL: &[Parameter] = &[
@@ -109,7 +111,8 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
     if let [about_x, about_y] = *numbers {
         subject.structure.base_frame.0 += Matrix3::from_diagonal(&Vector3::new(about_x, about_y, 0.0));
     } else if let Some(joint) = subject.structure.joint_mut(at) {
-        let [a, b, c, d, torque_nm, softening @ ..] = numbers else { return };
+        let [a, b, c, d, torque_nm, softening @ .., first, second] = numbers else { return };
+        joint.lean_rad_per_nm = [joint.lean_rad_per_nm[0] + first, joint.lean_rad_per_nm[1] + second];
         if [a, b, c, d] != [&0.0; 4] {
             let twist = FurtherTwist { odd_rad: [*a, *b], even_rad: [*c, *d], torque_nm: *torque_nm };
             joint.law.further = Some(added(joint.law.further, twist));
@@ -173,8 +176,8 @@ mod tests {
         let twist = |odd_rad, even_rad, torque_nm| FurtherTwist { odd_rad, even_rad, torque_nm };
         let (first, second) =
             (twist([1e-4, -2e-5], [3e-5, 1e-5], 20.0), twist([0.0, 4e-5], [0.0, 2e-5], 50.0));
-        apply(&[1e-4, -2e-5, 3e-5, 1e-5, 20.0], "j1", &mut subject);
-        apply(&[0.0, 4e-5, 0.0, 2e-5, 50.0], "j1", &mut subject);
+        apply(&[1e-4, -2e-5, 3e-5, 1e-5, 20.0, 0.0, 0.0], "j1", &mut subject);
+        apply(&[0.0, 4e-5, 0.0, 2e-5, 50.0, 0.0, 0.0], "j1", &mut subject);
         let law = subject.structure.joint_mut("j1").expect("j1").law;
         for torque_nm in [-70.0, -10.0, 5.0, 60.0] {
             let sum = first.angle_rad(torque_nm) + second.angle_rad(torque_nm);
@@ -189,6 +192,29 @@ mod tests {
         assert!(is_of_tests_alone(&with(LEAN, &[0.0, 0.0])));
         assert!(!is_of_tests_alone(&with(LEAN, &[1e-6, 0.0])));
         assert!(!is_of_tests_alone(&with(ODD_TWIST, &[0.0, 1e-5])));
+    }
+
+    #[test]
+    fn a_housing_tilts_about_axes_that_turn_with_what_carries_it() {
+        use crate::arm::LinkModel;
+        use crate::arm::load::Payload;
+        use std::f64::consts::FRAC_PI_2;
+        let share_of = |lean: [f64; 2]| {
+            let mut subject = super::super::validate::testing::two_link_subject();
+            apply(&[0.0, 0.0, 0.0, 0.0, 1.0, lean[0], lean[1]], "j2", &mut subject);
+            subject.structure.gravity_m_s2 = 0.0;
+            let chain = crate::mechanics::chain::Chain::new(&subject.structure, LinkModel::Rigid);
+            // j1 has turned the upper arm along world y, j2 hangs the forearm from it
+            let force_n = Vector3::new(10.0, 0.0, 0.0);
+            let posed = chain.pose_rad(&[FRAC_PI_2, FRAC_PI_2], &Payload::default(), force_n);
+            posed.statics().shares_m.iter().find(|(name, _)| name == "j2.bearing").expect("share").1
+        };
+        // the axes of j2, which turns about y, are -z and -x of the upper arm; x is along the upper arm, which is world y
+        // now: 10 N at the end of 0.5 m put 5 N m about it and move the tip by a lever of 0.5 m
+        let along = share_of([0.0, 1e-5]);
+        assert!((along - Vector3::new(2.5e-5, 0.0, 0.0)).norm() < 1e-15, "{along}");
+        // the forearm hangs along the other axis
+        assert!(share_of([1e-5, 0.0]).norm() < 1e-15);
     }
 
     #[test]

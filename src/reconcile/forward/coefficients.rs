@@ -233,7 +233,10 @@ fn with_everything(structure: &Structure) -> Structure {
     full.water = None;
     for piece in &mut full.pieces {
         match piece {
-            Piece::Joint(joint) => joint.tilt_rad_per_nm = 1.0,
+            Piece::Joint(joint) => {
+                joint.tilt_rad_per_nm = 1.0;
+                joint.lean_rad_per_nm = [0.0; 2];
+            }
             Piece::Prismatic(joint) => joint.guide_rad_per_nm = Vector3::from_element(1.0),
             Piece::Link(link) => {
                 if let Some(beam) = &mut link.beam {
@@ -292,7 +295,8 @@ impl Coefficients {
         for ((slot, joint), before) in
             layout.joints.iter().zip(structure.joints()).zip(nominal.structure.joints())
         {
-            linear[slot.twist - 2..slot.twist].fill(joint.tilt_rad_per_nm);
+            let tilts = joint.lean_rad_per_nm.map(|lean| joint.tilt_rad_per_nm + lean);
+            linear[slot.twist - 2..slot.twist].copy_from_slice(&tilts);
             laws.push(joint.law);
             torques.push(joint.torque.beyond(&before.torque));
             masses.push(joint.mass_kg - before.mass_kg);

@@ -343,7 +343,7 @@ impl Ready {
         }
         let structure = with_tool(&structure, point_m);
         let known = Chain::new(&structure, LinkModel::Full);
-        let unit_structure = yielding_everywhere(&structure, &known, arm.driven_joint_names().len());
+        let unit_structure = compliant_everywhere(&structure, &known, arm.driven_joint_names().len());
         let unit = Chain::new(&unit_structure, LinkModel::Full);
         Self {
             gravity_m_s2: structure.gravity_m_s2,
@@ -363,7 +363,7 @@ impl Ready {
 
 /// The structure in which every joint (about and across its axis), the base and every frame have unit compliance. The
 /// links are rigid, each with its mass at its middle. `known` is the arm as it is, from which the masses come.
-fn yielding_everywhere(structure: &Structure, known: &Chain, joints: usize) -> Structure {
+fn compliant_everywhere(structure: &Structure, known: &Chain, joints: usize) -> Structure {
     let mut unit = structure.clone();
     unit.base_tilt_rad_per_nm = 1.0;
     unit.base_frame = FrameCompliance(Matrix3::identity());
@@ -372,6 +372,7 @@ fn yielding_everywhere(structure: &Structure, known: &Chain, joints: usize) -> S
             Piece::Joint(joint) => {
                 joint.law = JointLaw::from(Curve::Linear(1.0));
                 joint.tilt_rad_per_nm = 1.0;
+                joint.lean_rad_per_nm = [0.0; 2];
             }
             // campaigns of positions refuse arms with prismatic joints
             Piece::Prismatic(_) => {}

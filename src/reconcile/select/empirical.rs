@@ -3,7 +3,7 @@
 //!
 //! [`unnamed`](super::unnamed) asks whether a law competes with named effects, with the model made linear. Here a law
 //! becomes an effect of the arm, so that a corrected arm can have it: a further twist of a joint as a polynomial of its
-//! torque, a stiffness of a joint that changes with the order of the tests, readings that bend or have a gain in each
+//! torque, a housing or base that tilts unequally about two axes, a stiffness of a joint that changes with the order of the tests, readings that bend or have a gain in each
 //! direction, or a base that turned once.
 
 use super::search::{Scored, Search};
@@ -12,6 +12,7 @@ use crate::arm::effect::empirical::{
     BASE_TURN, BEND, EVEN_TWIST, GAIN, KIND, LEAN, ODD_TWIST, SOFTENING, SOFTENING_REFERENCE, SOFTENING_ROWS,
 };
 use crate::arm::effect::kind::{Absent, Parameter, Scale};
+use crate::arm::structure::Piece;
 use crate::reconcile::fit::descent::{Effort, Fit, Weights};
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::forward::statics::StaticPose;
@@ -54,6 +55,7 @@ pub(crate) fn laws(forward: &Forward, baseline: &Fit, weights: &Weights) -> Vec<
     let largest = torques_nm.iter().copied().fold(0.0, f64::max);
     let mut out = Vec::new();
     for ((slot, law), torque_nm) in forward.layout.joints.iter().zip(&nominal.laws).zip(torques_nm) {
+        out.extend(housing(forward, &slot.name, torque_nm));
         if !law.is_rigid() && torque_nm > UNLOADED * largest {
             out.extend(twists(&slot.name, torque_nm, law.angle_rad(torque_nm).abs()));
             out.extend((0..SOFTENING_IN.len()).filter_map(|c| softening(forward, &slot.name, torque_nm, c)));
@@ -82,7 +84,7 @@ fn softening(forward: &Forward, joint: &str, torque_nm: f64, channel: usize) -> 
         FreeParameter::new(&size, 0, 1.0),
         FreeParameter::new(&pace, 0, 1.0).within(libm::log(0.1), libm::log(3.0 * rows)),
     ];
-    let mut numbers = [vec![Stated(0.0); 4], vec![Stated(torque_nm)], steady()].concat();
+    let mut numbers = [vec![Stated(0.0); 4], vec![Stated(torque_nm)], steady(), upright()].concat();
     let first = 5 + 2 * channel;
     numbers[first..first + 2].fill(Free);
     let paces = SOFTENED_AFTER.map(|part| libm::log((part * rows).max(1.0)));
@@ -105,17 +107,36 @@ fn steady() -> Vec<Number> {
     [0.0, 1.0, 0.0, 1.0, 1.0].map(Stated).to_vec()
 }
 
-/// The candidate that the base tilts about world x and about world y with a compliance of its own for each. The usual
-/// size of these compliances is the compliance of the first compliant joint. `None` if no joint is compliant, or if a
-/// piece of the arm has the name of the base.
+/// The numbers of a joint whose housing does not tilt further.
+fn upright() -> Vec<Number> {
+    vec![Stated(0.0); 2]
+}
+
+/// The candidate that the base tilts about world x and about world y with a compliance of its own for each. `None` if no
+/// joint is compliant, or if a piece of the arm has the name of the base.
 fn lean(forward: &Forward) -> Option<Candidate> {
+    let is_free = forward.nominal.structure.pieces.iter().all(|piece| piece.name() != BASE);
+    leaning(forward, BASE, vec![Free; 2]).filter(|_| is_free)
+}
+
+/// The candidate that the housing of a joint tilts about two axes with a compliance of its own for each. `None` if no
+/// joint is compliant, or if the joint is a vertical axis that stands on the base, since [`lean`] is the same then.
+fn housing(forward: &Forward, joint: &str, torque_nm: f64) -> Option<Candidate> {
+    let turns_on_the_base = forward.nominal.structure.pieces.first().is_some_and(|piece| match piece {
+        Piece::Joint(first) => first.name == joint && first.axis.z.abs() > 1.0 - 1e-12,
+        _ => false,
+    });
+    let untwisted = [vec![Stated(0.0); 4], vec![Stated(torque_nm)], steady()].concat();
+    leaning(forward, joint, [untwisted, vec![Free; 2]].concat()).filter(|_| !turns_on_the_base)
+}
+
+/// A law of two tilts at a place. The usual size of the two compliances is the compliance of the first compliant joint.
+fn leaning(forward: &Forward, at: &str, numbers: Vec<Number>) -> Option<Candidate> {
     let laws = forward.coefficients(&forward.nominal).laws;
     let size = laws.iter().map(|law| law.tangent_compliance_rad_per_nm(0.0)).find(|c| *c > 0.0)?;
-    let is_free = forward.nominal.structure.pieces.iter().all(|piece| piece.name() != BASE);
     let tilt = Parameter { count: 2, ..Parameter::number(LEAN, 0.0, SOFTEST * size, size, Scale::Linear) };
     let starts = vec![vec![0.1, 0.5], vec![0.5, 0.1]];
-    let lean = Candidate { numbers: vec![Free; 2], starts, ..law(BASE, tilt, 0.0) };
-    is_free.then_some(lean)
+    Some(Candidate { numbers, starts, ..law(at, tilt, 0.0) })
 }
 
 /// The candidate that the base turned just before the row `from_row` (counted from 0) of the displacements.
@@ -165,7 +186,12 @@ pub(crate) fn may_be(candidate: &Candidate) -> &'static str {
             "it may be a gear that warms up or a connection that works loose; from the first rows on, a servo that holds the \
              joint otherwise in these tests"
         }
-        Some(LEAN) => "it may be a foot, a plate or a wall that is more compliant one way than the other",
+        Some(LEAN) if candidate.at == BASE => {
+            "it may be a foot, a plate or a wall that is more compliant one way than the other"
+        }
+        Some(LEAN) => {
+            "it may be a housing, a flange or a bearing that is more compliant one way than the other"
+        }
         Some(BASE_TURN) => "it may be a base that slipped on its bolts, or an instrument that was touched",
         Some(BEND) => {
             "it may be an instrument that is not straight, or a displacement too large for a straight law"
@@ -186,7 +212,8 @@ pub(crate) fn in_words(candidate: &Candidate) -> String {
         Some(name) if name == SOFTENING[1] => {
             format!("a stiffness of {at} that changes with the order of the modal tests")
         }
-        Some(LEAN) => format!("a {at} that tilts about x and y unequally"),
+        Some(LEAN) if at == BASE => format!("a {at} that tilts about x and y unequally"),
+        Some(LEAN) => format!("a housing of {at} that tilts about two axes unequally"),
         Some(BASE_TURN) => match candidate.numbers.last() {
             Some(Stated(row)) => format!("a base that turned before row {row} of the {at} readings"),
             _ => format!("a base that turned in the course of the {at} readings"),
@@ -235,7 +262,7 @@ fn twists(joint: &str, torque_nm: f64, twist_rad: f64) -> [Candidate; 2] {
     let sized =
         |name| Parameter { count: 2, ..Parameter::number(name, -most, most, twist_rad, Scale::Linear) };
     // the stiffness does not change meanwhile
-    let with = |twist: [Number; 4]| [twist.as_slice(), &[Stated(torque_nm)], &steady()].concat();
+    let with = |twist: [Number; 4]| [twist.as_slice(), &[Stated(torque_nm)], &steady(), &upright()].concat();
     let odd = law(joint, sized(ODD_TWIST), 0.0);
     let even = law(joint, sized(EVEN_TWIST), 0.0);
     [

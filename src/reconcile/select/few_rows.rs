@@ -243,7 +243,9 @@ fn missing_mass(
 fn is_as_stiff(subject: &Subject, nominal: &Subject) -> bool {
     let pieces = subject.structure.pieces.iter().zip(&nominal.structure.pieces);
     let same = |(a, b): (&Piece, &Piece)| match (a, b) {
-        (Piece::Joint(a), Piece::Joint(b)) => a.law == b.law && a.tilt_rad_per_nm == b.tilt_rad_per_nm,
+        (Piece::Joint(a), Piece::Joint(b)) => {
+            a.law == b.law && a.tilt_rad_per_nm == b.tilt_rad_per_nm && a.lean_rad_per_nm == b.lean_rad_per_nm
+        }
         (Piece::Prismatic(a), Piece::Prismatic(b)) => {
             a.m_per_n == b.m_per_n && a.guide_rad_per_nm == b.guide_rad_per_nm
         }

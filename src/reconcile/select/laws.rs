@@ -60,6 +60,8 @@ struct State {
     /// Fraction of the channel's rows that were taken before this reading.
     part: f64,
     channel: Channel,
+    /// Whether this is the unloaded reference of a displacement, and not the displacement itself.
+    is_reference: bool,
 }
 
 /// A function that gives two numbers for a state of the joint: an additional torque \[N m\], and its derivative with
@@ -134,7 +136,37 @@ impl Builder<'_> {
                 out.push(Law { what, effect: None, columns: vec![order(channel, 0)] });
             }
         }
+        out.extend(self.warming_laws(joint, &column));
         out
+    }
+
+    /// Laws of a joint that warms up or works loose in the course of the tests, with references that were read before
+    /// all of them: in the static tests, and in static and modal tests together. `column` builds a column of the joint.
+    fn warming_laws(&self, joint: usize, column: &dyn Fn(Shape) -> Vec<f64>) -> Vec<Law> {
+        let name = &self.forward.layout.joints[joint].name;
+        let is_empty = |channel| self.forward.range(channel).is_empty();
+        let of = |channels: &'static [Channel], tests: &str| {
+            let order = |power: i32| {
+                column(&|s| {
+                    let changes = channels.contains(&s.channel) && !s.is_reference;
+                    let factor = if changes { s.part.powi(power) } else { 0.0 };
+                    (s.torque_nm * factor, factor)
+                })
+            };
+            let what = format!(
+                "a stiffness of {name} that changes with the order of the {tests} tests, from references read before them"
+            );
+            one_or_both(&what, [order(1), order(2)])
+        };
+        match (is_empty(Channel::Static), is_empty(Channel::Modal)) {
+            (true, _) => Vec::new(),
+            (false, true) => of(&[Channel::Static], "static"),
+            (false, false) => {
+                let mut out = of(&[Channel::Static], "static");
+                out.extend(of(&[Channel::Static, Channel::Modal], "static and modal"));
+                out
+            }
+        }
     }
 
     /// Number of channels for which the campaign has readings.
@@ -156,13 +188,14 @@ impl Builder<'_> {
             let torques = pose.torques_nm(&forward.layout, &self.fit.point.coefficients);
             let loads = torques.len() - 1;
             for load in 0..loads {
-                let state = |torque_nm: f64| State {
-                    torque_nm,
+                let state = |load: usize| State {
+                    torque_nm: torques[load][joint],
                     angle_deg: angle_deg(&self.campaign.statics[row].pose_deg),
                     part: row as f64 / self.campaign.statics.len() as f64,
                     channel: Channel::Static,
+                    is_reference: load == 0,
                 };
-                let twist = shape(&state(torques[load + 1][joint])).0 - shape(&state(torques[0][joint])).0;
+                let twist = shape(&state(load + 1)).0 - shape(&state(0)).0;
                 for (c, datum) in pose.measured(load) {
                     truth[datum] = 1e3 * pose.geometry.joints[joint].tip[c] * compliance * twist;
                 }
@@ -177,13 +210,19 @@ impl Builder<'_> {
                 angle_deg: angle_deg(&self.campaign.modal[row].pose_deg),
                 part: row as f64 / self.campaign.modal.len() as f64,
                 channel: Channel::Modal,
+                is_reference: false,
             };
             y[slot.twist].powi(2) * compliance * shape(&state).1
         });
         for (row, datum) in self.campaign.windup.iter().zip(forward.range(Channel::Windup)) {
             if row.joint == slot.name {
-                let state =
-                    State { torque_nm: row.torque_nm, angle_deg: 0.0, part: 0.0, channel: Channel::Windup };
+                let state = State {
+                    torque_nm: row.torque_nm,
+                    angle_deg: 0.0,
+                    part: 0.0,
+                    channel: Channel::Windup,
+                    is_reference: false,
+                };
                 truth[datum] = ARCMIN_PER_RAD * compliance * shape(&state).0;
             }
         }

@@ -102,7 +102,7 @@ impl Plan {
 
 /// Makes one campaign below `out`: `set` is `plain` or `hard`, of six-axis arms, `static`, `modal` or `windup`, the same with
 /// one kind of readings, `varied`, of all kinds, or `geared`, of all kinds with torsion curves; `class` is `one`, `two`, `none`,
-/// `unknown`, or `later` for one of the effects that came later; numbers go through all effects in turn. `eased` makes an effect that nobody could see
+/// `unknown`, or `later` or `further` for one of the effects, or of the unknown physics, that came later; numbers go through all effects in turn. `eased` makes an effect that nobody could see
 /// larger, by 40 % a step, and from the third step on leaves no file out. Returns the campaign's name
 /// and what is hidden in it.
 pub fn make(
@@ -115,7 +115,7 @@ pub fn make(
 ) -> (String, Vec<Value>) {
     let mut dice = Dice(seed.wrapping_mul(1000).wrapping_add(number as u64));
     let specimen = match set {
-        "varied" if class == "unknown" => Specimen::varied(&mut dice, 0.0),
+        "varied" if ["unknown", "further"].contains(&class) => Specimen::varied(&mut dice, 0.0),
         "varied" => Specimen::varied(&mut dice, 0.3),
         "geared" => Specimen::varied(&mut dice, 1.0),
         _ => Specimen::six_axis(&mut dice),
@@ -144,11 +144,12 @@ pub fn make(
         "later" => vec![hidden::later(&mut dice, &specimen, number, plan.size)],
         "one" => vec![draw(0)],
         "two" => vec![draw(0), draw(1)],
+        "further" => vec![unknown::further(&mut dice, &specimen, number, plan.size)],
         "unknown" => {
             let (name, at) = strange[number % strange.len()];
             vec![unknown::effect(&mut dice, name, at, plan.size)]
         }
-        other => panic!("{other} is none of one, two, none, later, unknown"),
+        other => panic!("{other} is none of one, two, none, later, unknown, further"),
     };
     let name = format!("{set}-{class}-{seed}-{number:03}");
     std::fs::create_dir_all(out.join("keys")).expect("folder");
@@ -213,6 +214,7 @@ pub fn write(dice: &mut Dice, folder: &Path, key: &Path, specimen: &Specimen, hi
     let rig = specimen.rig.clone();
     let mut built =
         Built { arm: scattered(dice, specimen), effects: Effects::from_json(&effects), beyond, rig };
+    built.beyond.unknown.build(&mut built.arm);
     if plan.lengths_m > 0.0 {
         positions::with_lengths_off(dice, &mut built.arm, plan.lengths_m);
     }
@@ -413,7 +415,7 @@ impl Built {
                     if *kg > 0.0 {
                         case.with_payload(Payload::point(*kg, cg))
                     } else {
-                        case.with_tip_force(force)
+                        case.with_tip_force(force.map(|f| f * self.beyond.unknown.force_factor()))
                     }
                 })
                 .collect();
@@ -459,21 +461,23 @@ impl Built {
         // friction follows the reference before the first load
         let reference = unloaded(&self.arm_during("static", pose, 0.0, first));
         let (tip_m, levers) = self.levers(pose);
-        let mut play: Vec<(usize, f64, f64, f64)> = Vec::new();
+        let mut play: Vec<(usize, f64, f64)> = Vec::new();
         for (j, (name, _, k)) in self.joints().iter().enumerate() {
-            if let Some(h) = self.beyond.play.get(name) {
-                let t0 = torque(&reference, name);
+            let t0 = torque(&reference, name);
+            let width_nm = self.width_nm(name, *k, t0);
+            if width_nm > 0.0 || self.beyond.unknown.friction(name) > 0.0 {
                 // what rounding leaves of a vertical joint's torque has no sense
                 let sense = if t0.abs() < 1e-6 { 0.0 } else { t0.signum() };
-                play.push((j, *k, *h, t0 - sense * k * h));
+                play.push((j, *k, t0 - sense * width_nm));
             }
         }
         let names: Vec<String> = self.joints().into_iter().map(|j| j.0).collect();
-        let lag = |play: &mut Vec<(usize, f64, f64, f64)>, answer: &witness::Answer| -> Vector3<f64> {
+        let lag = |play: &mut Vec<(usize, f64, f64)>, answer: &witness::Answer| -> Vector3<f64> {
             play.iter_mut()
-                .map(|(j, k, h, s)| {
+                .map(|(j, k, s)| {
                     let t = torque(answer, &names[*j]);
-                    *s = s.max(t - *k * *h).min(t + *k * *h);
+                    let width_nm = self.width_nm(&names[*j], *k, t);
+                    *s = s.max(t - width_nm).min(t + width_nm);
                     levers[*j] * ((*s - t) / *k)
                 })
                 .sum()
@@ -492,9 +496,15 @@ impl Built {
                 let arm = self.arm_during("static", pose, part, first + row);
                 let answer = witness::analyze(&arm, case, &options);
                 let moved = answer.tip_displacement_m + lag(&mut play, &answer) + further(&answer);
-                unknown.reading_mm(1e3 * (moved - zero), tip_m, part)
+                unknown.reading_mm(1e3 * (moved - zero), tip_m, row, part)
             })
             .collect()
+    }
+
+    /// Half width of a joint's friction at a torque.
+    fn width_nm(&self, joint: &str, k: f64, torque_nm: f64) -> f64 {
+        let play = self.beyond.play.get(joint).copied().unwrap_or(0.0);
+        k * play + self.beyond.unknown.friction(joint) * torque_nm.abs()
     }
 
     fn modal(&self, dice: &mut Dice, plan: &Plan) -> String {
@@ -541,13 +551,14 @@ impl Built {
             };
             let up: Vec<f64> = (-8..=8).map(|i| largest * i as f64 / 8.0).collect();
             let down: Vec<f64> = up.iter().rev().copied().collect();
-            let (h, law) = (self.beyond.play.get(&name).copied().unwrap_or(0.0), self.law(&name, k));
+            let law = self.law(&name, k);
             let mut s = 0.0f64;
             for recorded in [false, true] {
                 for (branch, torques) in [("loading", &up), ("unloading", &down)] {
                     for &t in torques {
-                        s = s.max(t - k * h).min(t + k * h);
-                        let angle = law(t) + (s - t) / k * f64::from(h > 0.0);
+                        let width_nm = self.width_nm(&name, k, t);
+                        s = s.max(t - width_nm).min(t + width_nm);
+                        let angle = law(t) + (s - t) / k;
                         if recorded {
                             test += 1;
                             let read = angle * ARCMIN_PER_RAD + sigma * plan.noise * dice.normal();
