@@ -4,7 +4,7 @@ use super::bound::{BoxBound, DesignBox, Verdict};
 use super::budget::Budget;
 use super::gap::gap;
 use super::live::Live;
-use super::local_upper_bounds::LocalUpperBound;
+use super::local_upper_bounds::LocalUpperBounds;
 use super::problem::Problem;
 use super::rounds::{Done, in_rounds};
 use super::search_state::{Findings, SearchState};
@@ -148,8 +148,8 @@ pub(super) struct Search<'s, 'p> {
     /// The slack of the pass (relative; 0 for none). A box is pruned if an incumbent dominates its bound after the
     /// bound was made worse by the factor `1 + slack`.
     pub slack: f64,
-    /// The local upper bound below which the search looks for designs; `None` for the whole space.
-    pub below: Option<LocalUpperBound>,
+    /// The local upper bounds below which the search looks for designs; `None` for the whole space.
+    pub below: Option<&'s LocalUpperBounds>,
 }
 
 impl Search<'_, '_> {
@@ -163,8 +163,7 @@ impl Search<'_, '_> {
             &mut here.shapes,
             work,
             |box_bound| {
-                self.below.is_some_and(|upper| !upper.admits(box_bound))
-                    || self.dominates(box_bound, findings)
+                self.below.is_some_and(|below| !below.admit(box_bound)) || self.dominates(box_bound, findings)
             },
             |box_bound| {
                 self.below.is_some()

@@ -4,7 +4,7 @@
 //! over mixtures of parts, can be solved with them alone.
 
 use super::kinds::Ties;
-use super::local_upper_bounds::LocalUpperBound;
+use super::local_upper_bounds::{LocalUpperBound, LocalUpperBounds};
 use super::problem::Problem;
 use super::region_bound::Survivors;
 use super::regions::Subproblem;
@@ -79,8 +79,9 @@ impl<'p> Reduced<'p> {
     /// Excludes the options of a subproblem that no design below the local upper bound `upper` can have. `None` if no
     /// design lies below it.
     fn new(mut subproblem: Subproblem<'p>, upper: &LocalUpperBound, work: &mut Work) -> Option<Self> {
+        let mut below = LocalUpperBounds::single(*upper);
         loop {
-            let (survivors, reduced) = subproblem.reduce(upper, work, |_| false)?;
+            let (survivors, reduced) = subproblem.reduce(&mut below, work, |_| false)?;
             if !reduced {
                 let designs = subproblem.designs_of(&survivors);
                 return Some(Self { subproblem, survivors, designs });

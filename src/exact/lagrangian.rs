@@ -54,7 +54,7 @@ impl Rows<'_> {
         /// If the value of a scaled row is further below its limit than this, this number is used for the difference. A
         /// row so far below its limit has no influence on the game.
         const NO_SAY: f64 = -10.0;
-        let row_limits: Vec<f64> = self.row_limits(upper).collect();
+        let row_limits: Vec<f64> = self.row_limits_now(upper).collect();
         let mut above = Vec::with_capacity(members.len() * row_limits.len());
         for member in members {
             above.extend(member.values.iter().zip(&row_limits).map(|(v, a)| (v - a).max(NO_SAY)));
@@ -100,6 +100,7 @@ impl Rows<'_> {
                 let row = member.values.len();
                 let value = self.mode_value(mode, member) / self.scale[row] + self.fixed[row];
                 member.values.push(value);
+                member.kinetic.push(mode.shape.kinetic_energy(&member.inertia));
             }
         }
         self.modes.len() > before
@@ -126,7 +127,7 @@ impl Rows<'_> {
         let mut member = self.empty_design(design_box);
         for (piece, part) in self.problem.parts.iter().enumerate() {
             let level = levels.len();
-            let price = || self.price(piece, &multipliers);
+            let price = || self.price(piece, &multipliers, self.lambda);
             // The amount that the piece adds to each row is needed for the choice of a branching.
             let before = member.adds.len();
             member.adds.extend_from_slice(&member.values[..self.first_mode]);
@@ -177,7 +178,7 @@ impl Rows<'_> {
             adds.for_each(|(before, value)| *before = value - *before);
         }
         self.complete(&mut member);
-        (DualPoint { multipliers, least: total, levels }, member)
+        (DualPoint { multipliers, lambda: self.lambda, least: total, levels }, member)
     }
 
     /// Completes a relaxed design to which all pieces were added: computes the values of its mode rows and divides the
@@ -185,6 +186,7 @@ impl Rows<'_> {
     fn complete(&self, member: &mut RelaxedDesign) {
         for (m, mode) in self.modes.iter().enumerate() {
             member.values[self.first_mode + m] = self.mode_value(mode, member);
+            member.kinetic.push(mode.shape.kinetic_energy(&member.inertia));
         }
         for ((value, scale), fixed) in member.values.iter_mut().zip(&self.scale).zip(&self.fixed) {
             *value = *value / scale + fixed;
@@ -201,6 +203,7 @@ impl Rows<'_> {
             values: vec![0.0; self.scale.len()],
             inertia: vec![[0.0; INERTIAS]; pieces],
             stiffness: vec![[0.0; STIFFNESSES]; pieces * self.tips.len()],
+            kinetic: Vec::with_capacity(self.modes.len()),
         }
     }
 
@@ -264,8 +267,8 @@ impl Rows<'_> {
     }
 
     /// The dual prices of a piece: for each of its numbers, the amount per unit that the piece adds to the weighted sum
-    /// of rows under `multipliers`.
-    pub(super) fn price(&self, piece: usize, multipliers: &[f64]) -> DualPrice {
+    /// of rows under `multipliers`. `lambda` is the eigenvalue for which the mode rows are made \[1/s²\].
+    pub(super) fn price(&self, piece: usize, multipliers: &[f64], lambda: f64) -> DualPrice {
         let multiplier = |row: usize| multipliers[row] / self.scale[row];
         let (length_m, is_joint) = (self.problem.length_m(piece), self.problem.parts[piece].is_joint());
         let mut price = DualPrice::default();
@@ -306,7 +309,7 @@ impl Rows<'_> {
                 continue;
             }
             for (p, kinetic) in price.inertia.iter_mut().zip(&mode.shape.kinetic[piece]) {
-                *p += w * self.lambda * kinetic;
+                *p += w * lambda * kinetic;
             }
             // The slope of a gear depends on its state, so the amount by which it lowers the sum is in `JointPrice`.
             let first = if is_joint { TILT } else { 0 };

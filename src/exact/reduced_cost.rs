@@ -32,14 +32,14 @@ impl Rows<'_> {
         points: &[DualPoint],
         upper: &LocalUpperBound,
     ) -> Option<Vec<Vec<u32>>> {
-        let mut strict: Vec<(f64, Vec<f64>, &[f64])> = points
+        let mut strict: Vec<(f64, Vec<f64>, &DualPoint)> = points
             .iter()
             .map(|point| {
-                let room = self.allowed_sum(&point.multipliers, upper) - point.least + ROUNDING;
+                let room = self.allowed_sum(point, upper) - point.least + ROUNDING;
                 // The dual points have no multipliers for mode rows that were added after them.
                 let mut multipliers = point.multipliers.clone();
                 multipliers.resize(self.scale.len(), 0.0);
-                (room, multipliers, &point.levels[..])
+                (room, multipliers, point)
             })
             .collect();
         // The dual points that allow the lowest prices exclude most options. After some dozens of dual points, a
@@ -51,7 +51,9 @@ impl Rows<'_> {
             .map(|(level, &piece)| {
                 let afforded: Vec<PricedLimit> = strict
                     .iter()
-                    .map(|(room, multipliers, levels)| (self.price(piece, multipliers), levels[level] + room))
+                    .map(|(room, multipliers, point)| {
+                        (self.price(piece, multipliers, point.lambda), point.levels[level] + room)
+                    })
                     .collect();
                 let kept = self.affordable(piece, design_box[level], &afforded);
                 (!kept.is_empty()).then_some(kept)

@@ -3,7 +3,8 @@
 
 use super::bound::{BoxBound, DesignBox};
 use super::branching::Branching;
-use super::local_upper_bounds::LocalUpperBound;
+use super::local_upper_bounds::{LocalUpperBound, LocalUpperBounds};
+use super::matrix_game::Game;
 use super::problem::Problem;
 use super::rows::{DualPoint, ROUNDING, RelaxedDesign, Rows, WarmStart};
 use super::work::Work;
@@ -32,63 +33,176 @@ pub(super) struct Survivors {
     pub candidates: Vec<DesignBox>,
 }
 
+/// What the multipliers tried so far prove about a box.
+#[derive(Default)]
+struct Proofs {
+    points: Vec<DualPoint>,
+    members: Vec<RelaxedDesign>,
+}
+
+impl Proofs {
+    /// Minimizes the weighted sum of the rows under `multipliers` and keeps the result. Returns the dual
+    /// point.
+    fn add(&mut self, rows: &Rows, design_box: &[u32], multipliers: Vec<f64>) -> &DualPoint {
+        let (point, member) = rows.minimize(design_box, multipliers);
+        self.members.push(member);
+        self.points.push(point);
+        &self.points[self.points.len() - 1]
+    }
+}
+
 impl Problem<'_> {
-    /// Tests whether a box has designs below the local upper bound `upper`. The intervals of the box are in `work`, and
-    /// the multipliers of the parent box are in `warm_start`. `None` if the bound proves that there are none; otherwise
-    /// the options and designs that remain possible.
+    /// Tests whether a box has designs below the local upper bounds of a group. The intervals of the box are in `work`,
+    /// and the multipliers of the parent box are in `warm_start`. Bounds below which the box is proved to have no design
+    /// are removed from `below`. `None` if none is left; otherwise the options and designs that remain possible.
     pub(super) fn bound_below(
         &self,
         design_box: &[u32],
         box_bound: &BoxBound,
         warm_start: &mut WarmStart,
         work: &Work,
-        upper: &LocalUpperBound,
+        below: &mut LocalUpperBounds,
     ) -> Option<Survivors> {
-        let mut rows = Rows::new(self, design_box, box_bound, upper, warm_start, work);
-        let (mut points, mut members) = (Vec::<DualPoint>::new(), Vec::<RelaxedDesign>::new());
-        let mut starts = rows.single_row_multipliers(upper);
+        let joined = below.join()?;
+        let mut rows = Rows::new(self, design_box, box_bound, &joined, warm_start, work);
+        let mut proofs = Proofs::default();
+        let game = rows.refute(design_box, &joined, warm_start, &mut proofs)?;
+        rows.refute_one_by_one(design_box, below, &mut proofs);
+        let joined = below.join()?;
+        let Proofs { points, members } = proofs;
+        let mixed: Vec<(&RelaxedDesign, f64)> =
+            members.iter().zip(game.mix.iter().copied()).filter(|(_, share)| *share > SHARE).collect();
+        let survivors = Survivors {
+            options: rows.affordable_options(design_box, &points, &joined)?,
+            branchings: rows.branchings(&mixed, &game.weights),
+            candidates: mixed.iter().map(|(member, _)| member.design_box.clone()).collect(),
+        };
+        rows.save_warm_start(&game.weights, warm_start);
+        Some(survivors)
+    }
+}
+
+impl Rows<'_> {
+    /// Looks for multipliers that prove a box to have no design below the local upper bound `upper`. `None` if there are
+    /// some; otherwise the game between the rows and the relaxed designs at which the attempt ended.
+    fn refute(
+        &mut self,
+        design_box: &[u32],
+        upper: &LocalUpperBound,
+        warm_start: &WarmStart,
+        proofs: &mut Proofs,
+    ) -> Option<Game> {
+        let mut starts = self.single_row_multipliers(upper);
         let most = starts.len() + MOST_POINTS;
-        starts.push(rows.starting_multipliers(&warm_start.multipliers));
+        starts.push(self.starting_multipliers(&warm_start.multipliers));
         let (mut new_shapes, mut to_reduce, mut nearest) = (0, 0, f64::NEG_INFINITY);
-        let game = loop {
+        loop {
             let multipliers = match starts.pop() {
                 Some(multipliers) => multipliers,
                 None => {
-                    let game = rows.best_multipliers(&members, upper);
+                    let game = self.best_multipliers(&proofs.members, upper);
                     // The present rows cannot prove the region empty. New trial shapes may.
                     if game.value <= ROUNDING && new_shapes < MOST_SHAPES {
                         new_shapes += 1;
-                        if rows.add_violated_modes(&mut members, &game.mix, upper) {
+                        if self.add_violated_modes(&mut proofs.members, &game.mix, upper) {
                             continue;
                         }
                     }
                     // From here on the multipliers serve only to exclude options.
                     to_reduce += usize::from(game.value <= ROUNDING);
-                    if points.len() >= most || to_reduce > MOST_TO_REDUCE || game.value <= nearest + SETTLED {
-                        break game;
+                    if proofs.points.len() >= most
+                        || to_reduce > MOST_TO_REDUCE
+                        || game.value <= nearest + SETTLED
+                    {
+                        return Some(game);
                     }
                     game.weights
                 }
             };
-            let (point, member) = rows.minimize(design_box, multipliers);
-            let above = point.least - rows.allowed_sum(&point.multipliers, upper);
+            let point = proofs.add(self, design_box, multipliers);
+            let above = point.least - self.allowed_sum(point, upper);
             // The value of the dual function exceeds the limits. The multipliers are a certificate that the region is
             // empty.
             if above > ROUNDING {
                 return None;
             }
             nearest = nearest.max(above);
-            points.push(point);
-            members.push(member);
-        };
-        let mixed: Vec<(&RelaxedDesign, f64)> =
-            members.iter().zip(game.mix.iter().copied()).filter(|(_, share)| *share > SHARE).collect();
-        let survivors = Survivors {
-            options: rows.affordable_options(design_box, &points, upper)?,
-            branchings: rows.branchings(&mixed, &game.weights),
-            candidates: mixed.iter().map(|(member, _)| member.design_box.clone()).collect(),
-        };
-        rows.save_warm_start(&game.weights, warm_start);
-        Some(survivors)
+        }
+    }
+
+    /// Removes the local upper bounds from a group below which a box is proved to have no design. Every set of multipliers
+    /// is tried on all of them. Then new ones are looked for, for the bound that is nearest to a refutation, until that
+    /// fails: a search of the halves of the group, with fewer options, is the better way for those that are left.
+    fn refute_one_by_one(&mut self, design_box: &[u32], below: &mut LocalUpperBounds, proofs: &mut Proofs) {
+        let mut open: Vec<(f64, LocalUpperBound)> = Vec::new();
+        let first: Vec<Plane> = proofs.points.iter().map(|point| self.plane(point)).collect();
+        for upper in below.all() {
+            let above = first.iter().map(|plane| plane.above(upper)).fold(f64::NEG_INFINITY, f64::max);
+            if above <= ROUNDING {
+                open.push((above, *upper));
+            }
+        }
+        let alone = below.all().len() == 1;
+        let joined_lambda = self.lambda;
+        while !alone && let Some(&(nearest, next)) = open.iter().max_by(|a, b| a.0.total_cmp(&b.0)) {
+            self.set_lambda(next.lambda().max(joined_lambda), &mut proofs.members);
+            let game = self.best_multipliers(&proofs.members, &next);
+            if game.value <= nearest + SETTLED || game.value <= ROUNDING {
+                break;
+            }
+            let point = proofs.add(self, design_box, game.weights);
+            let plane = self.plane(point);
+            let before = open.len();
+            open.retain_mut(|(nearest, upper)| {
+                *nearest = nearest.max(plane.above(upper));
+                *nearest <= ROUNDING
+            });
+            // The point was made for one of the bounds and refutes none.
+            if open.len() == before {
+                break;
+            }
+        }
+        *below = open.into_iter().map(|(_, upper)| upper).collect();
+    }
+
+    /// What a dual point says about any local upper bound.
+    fn plane(&self, point: &DualPoint) -> Plane {
+        let weights: Vec<f64> =
+            point.multipliers.iter().zip(&self.scale).map(|(w, scale)| w / scale).collect();
+        let mut moves = [0.0; 2];
+        for (w, mode) in weights[self.first_mode..].iter().zip(&self.modes) {
+            moves.iter_mut().zip(mode.kinetic).for_each(|(sum, kinetic)| *sum += w * kinetic);
+        }
+        Plane {
+            least: point.least,
+            mass: weights[0],
+            tip: weights[1..=self.tips.len()].iter().sum(),
+            moves,
+            lambda: point.lambda,
+        }
+    }
+}
+
+/// A half space of objectives in which a box has no design.
+struct Plane {
+    /// The least weighted sum of the rows.
+    least: f64,
+    /// Weights of the mass and of the deflection of a local upper bound.
+    mass: f64,
+    tip: f64,
+    /// Weight of the difference between `lambda` and the eigenvalue of a local upper bound, with the lightest and with the
+    /// heaviest parts of the box.
+    moves: [f64; 2],
+    lambda: f64,
+}
+
+impl Plane {
+    /// By how much the least weighted sum of the rows exceeds the sum that the local upper bound `upper` allows.
+    fn above(&self, upper: &LocalUpperBound) -> f64 {
+        // A limit may be infinite, and its weight zero.
+        let term = |weight: f64, limit: f64| if weight > 0.0 { weight * limit } else { 0.0 };
+        let below = self.lambda - upper.lambda();
+        let moves = self.moves[usize::from(below > 0.0)];
+        self.least - term(self.mass, upper.mass_kg) - term(self.tip, upper.tip_m) - below * moves
     }
 }

@@ -14,7 +14,7 @@ use super::boxes::{OpenBox, Search, open_boxes};
 use super::budget::Budget;
 use super::grid::thinned;
 use super::live::Live;
-use super::local_upper_bounds::{LocalUpperBound, LocalUpperBounds};
+use super::local_upper_bounds::LocalUpperBounds;
 use super::problem::Problem;
 use super::region_bound::Survivors;
 use super::rounds::{Done, in_rounds};
@@ -47,10 +47,10 @@ pub(super) struct Subproblem<'p> {
 
 /// A task of the search.
 enum Task<'p> {
-    /// The region below the local upper bounds under node `at` of their tree.
-    Region { upper_bounds: Arc<LocalUpperBounds>, at: usize, subproblem: Subproblem<'p> },
+    /// The region below a group of local upper bounds.
+    Region { below: LocalUpperBounds, subproblem: Subproblem<'p> },
     /// The designs of a region with few designs. They are searched box by box.
-    Boxes { problem: Arc<Problem<'p>>, upper: LocalUpperBound, first: OpenBox },
+    Boxes { problem: Arc<Problem<'p>>, below: Arc<LocalUpperBounds>, first: OpenBox },
 }
 
 /// One pass with the slack `slack` over the whole search region, for the designs of the boxes `boxes`. A region of at
@@ -69,23 +69,27 @@ pub(super) fn pass_by_regions<'p>(
     // Fewer incumbents leave a larger region open, so nothing is missed. The cells are narrower than the slack, so the
     // gap is still proved.
     found = thinned(found, THINNED * slack, |o| o);
-    let upper_bounds = Arc::new(LocalUpperBounds::new(&mut found, problem.limits()));
+    let below = LocalUpperBounds::new(&mut found, problem.limits());
     let (seen_to, mut work) = (state.incumbents.all().len(), Work::default());
     let subproblems = boxes.iter().filter_map(|of| Subproblem::of_box(problem, of, seen_to, &mut work));
-    let region = |subproblem| Task::Region { upper_bounds: Arc::clone(&upper_bounds), at: 0, subproblem };
+    let region = |subproblem| Task::Region { below: below.clone(), subproblem };
     let first: Vec<Task<'p>> = subproblems.map(region).collect();
     let task = |state: &SearchState, task: Task<'p>| match task {
-        Task::Region { upper_bounds, at, subproblem } => {
+        Task::Region { below, subproblem } => {
             let mut findings = Findings::default();
             let search = Search { budget, problem, state, slack, below: None };
-            let tasks = search.region(upper_bounds, at, subproblem, regions_to, &mut findings);
+            let tasks = search.region(below, subproblem, regions_to, &mut findings);
             Done { tasks, findings }
         }
-        Task::Boxes { problem, upper, first } => {
-            let search = Search { budget, problem: &problem, state, slack, below: Some(upper) };
+        Task::Boxes { problem, below, first } => {
+            let search = Search { budget, problem: &problem, state, slack, below: Some(&below) };
             let Done { tasks, findings } =
                 open_boxes(budget, first, |next, work, findings| search.open(next, work, findings));
-            let boxes = |first: OpenBox| Task::Boxes { problem: Arc::clone(&problem), upper, first };
+            let boxes = |first: OpenBox| Task::Boxes {
+                problem: Arc::clone(&problem),
+                below: Arc::clone(&below),
+                first,
+            };
             Done { tasks: tasks.into_iter().map(boxes).collect(), findings }
         }
     };
@@ -100,62 +104,67 @@ pub(super) fn pass_by_regions<'p>(
 }
 
 impl<'p> Search<'_, 'p> {
-    /// Searches the region below the local upper bounds under node `at` of their tree. If it has at most `regions_to`
-    /// designs, it is searched box by box. Returns the tasks that remain.
+    /// Searches the region below a group of local upper bounds. If it has at most `regions_to` designs, it is searched box
+    /// by box. Returns the tasks that remain.
     fn region(
         &self,
-        upper_bounds: Arc<LocalUpperBounds>,
-        at: usize,
+        mut below: LocalUpperBounds,
         mut subproblem: Subproblem<'p>,
         regions_to: f64,
         findings: &mut Findings,
     ) -> Vec<Task<'p>> {
-        let Some((upper, halves)) = upper_bounds.node(at) else { return Vec::new() };
-        // A single local upper bound may be out of date, because incumbents were found since it was made.
-        if halves.is_none()
-            && let Some(clipped) = self.clipped(&upper, &mut subproblem.incumbents_seen)
-        {
-            return self.region(Arc::new(clipped), 0, subproblem, regions_to, findings);
-        }
-        let mut work = Work::default();
-        let Some(survivors) = self.reduce(&mut subproblem, &upper, &mut work, findings) else {
+        // Incumbents that were found since the bounds were made cut them.
+        let all = self.state.incumbents.all();
+        let since = all[subproblem.incumbents_seen..].iter().map(|o| improved_by_slack(o, self.slack));
+        below.cut_by(&since.collect::<Vec<_>>());
+        subproblem.incumbents_seen = all.len();
+        let (was_single, mut work) = (below.all().len() == 1, Work::default());
+        let Some(survivors) = self.reduce(&mut subproblem, &mut below, &mut work, findings) else {
             return Vec::new();
         };
         // A box takes microseconds and a region milliseconds, so few designs are searched faster box by box.
-        if subproblem.designs_of(&survivors) <= regions_to {
-            return vec![subproblem.in_boxes(upper)];
+        if subproblem.designs_among(survivors.as_ref()) <= regions_to {
+            return vec![subproblem.in_boxes(below)];
         }
-        let subproblems = match halves {
-            Some(_) => Some([subproblem.clone(), subproblem.clone()]),
-            None => subproblem.branch(&survivors, &mut work),
+        if let Some(halves) = below.clone().halves() {
+            // Tasks are taken from the end, so the first half is searched first.
+            let [first, second] = halves.map(|below| Task::Region { below, subproblem: subproblem.clone() });
+            return vec![second, first];
+        }
+        // What was learned about a group does not tell how to divide the options below its last bound.
+        let Some(survivors) = survivors.filter(|_| was_single) else {
+            return vec![Task::Region { below, subproblem }];
         };
-        let Some([a, b]) = subproblems else { return vec![subproblem.in_boxes(upper)] };
-        let [first, second] = halves.unwrap_or([at; 2]);
-        // Tasks are taken from the end, so the first half is searched first.
-        [(second, b), (first, a)]
-            .map(|(at, subproblem)| Task::Region { upper_bounds: Arc::clone(&upper_bounds), at, subproblem })
-            .into()
+        let Some(halves) = subproblem.branch(&survivors, &mut work) else {
+            return vec![subproblem.in_boxes(below)];
+        };
+        let [first, second] = halves.map(|subproblem| Task::Region { below: below.clone(), subproblem });
+        vec![second, first]
     }
 
-    /// Excludes options of a subproblem below `upper` as long as that is worth the time, and evaluates promising
-    /// designs. Returns what remains. `None` if the region is empty.
+    /// Excludes options of a subproblem and local upper bounds as long as that is worth the time, and evaluates promising
+    /// designs. Returns what remains of the options, or `None` in its place if the subproblem was restricted to it: then
+    /// a smaller group of bounds excludes more than another attempt would. `None` if the region is empty.
     fn reduce(
         &self,
         subproblem: &mut Subproblem<'p>,
-        upper: &LocalUpperBound,
+        below: &mut LocalUpperBounds,
         work: &mut Work,
         findings: &mut Findings,
-    ) -> Option<Survivors> {
+    ) -> Option<Option<Survivors>> {
         loop {
             self.budget.count_box();
             let (survivors, reduced) =
-                subproblem.reduce(upper, work, |box_bound| self.dominates(box_bound, findings))?;
+                subproblem.reduce(below, work, |box_bound| self.dominates(box_bound, findings))?;
             if !reduced {
                 survivors
                     .candidates
                     .iter()
                     .for_each(|design_box| self.try_design(subproblem, design_box.clone(), findings));
-                return Some(survivors);
+                return Some(Some(survivors));
+            }
+            if below.all().len() > 1 {
+                return Some(None);
             }
         }
     }
@@ -180,20 +189,6 @@ impl<'p> Search<'_, 'p> {
         {
             problem.judge(&design_box, &box_bound, &work, findings);
         }
-    }
-
-    /// The local upper bounds of what later incumbents leave undominated of the region below `upper`. Later incumbents
-    /// are those found since `upper` was made. `incumbents_seen` is the number of incumbents that were known when it
-    /// was made, and is brought up to date. `None` if no later incumbent lies in the region.
-    fn clipped(&self, upper: &LocalUpperBound, incumbents_seen: &mut usize) -> Option<LocalUpperBounds> {
-        let is_inside = |o: &Objectives| {
-            o.mass_kg < upper.mass_kg && o.tip_deflection_m < upper.tip_m && o.lowest_mode_hz > upper.hz
-        };
-        let all = self.state.incumbents.all();
-        let since = all[*incumbents_seen..].iter().map(|o| improved_by_slack(o, self.slack));
-        let mut inside: Vec<Objectives> = since.filter(is_inside).collect();
-        *incumbents_seen = all.len();
-        (!inside.is_empty()).then(|| LocalUpperBounds::new(&mut inside, *upper))
     }
 }
 
@@ -231,12 +226,12 @@ impl<'p> Subproblem<'p> {
         Self::whole(&problem.restricted_to(&nodes)?, incumbents_seen, work)
     }
 
-    /// Bounds a subproblem below a local upper bound. Returns the survivors, and whether the subproblem was restricted
-    /// to them. It is restricted if enough designs were excluded. `is_beaten` tells whether a known design dominates
-    /// every design with a given bound. `None` if the region is empty.
+    /// Bounds a subproblem below a group of local upper bounds and removes the bounds that are refuted. Returns the
+    /// survivors, and whether the subproblem was restricted to them. It is restricted if enough designs were excluded.
+    /// `is_beaten` tells whether a known design dominates every design with a given bound. `None` if the region is empty.
     pub(super) fn reduce(
         &mut self,
-        upper: &LocalUpperBound,
+        below: &mut LocalUpperBounds,
         work: &mut Work,
         is_beaten: impl Fn(&BoxBound) -> bool,
     ) -> Option<(Survivors, bool)> {
@@ -245,12 +240,13 @@ impl<'p> Subproblem<'p> {
             &mut self.design_box,
             &mut self.shapes,
             work,
-            |box_bound| !upper.admits(box_bound) || is_beaten(box_bound),
+            |box_bound| !below.admit(box_bound) || is_beaten(box_bound),
             |_| true,
         );
         let Verdict::Open(box_bound) = verdict else { return None };
+        below.retain(|upper| upper.admits(&box_bound));
         let warm_start = Arc::make_mut(&mut self.warm_start);
-        let survivors = self.problem.bound_below(&self.design_box, &box_bound, warm_start, work, upper)?;
+        let survivors = self.problem.bound_below(&self.design_box, &box_bound, warm_start, work, below)?;
         let reduced = self.designs_of(&survivors) <= (1.0 - WORTH_IT) * before;
         if reduced {
             self.problem = Arc::new(self.problem.restricted_to(&survivors.options)?);
@@ -261,11 +257,11 @@ impl<'p> Subproblem<'p> {
 
     /// A task that searches the designs of the subproblem box by box. Force bounds are dropped, because they take time
     /// and help little where designs are few.
-    fn in_boxes(self, upper: LocalUpperBound) -> Task<'p> {
+    fn in_boxes(self, below: LocalUpperBounds) -> Task<'p> {
         let problem = Arc::new(self.problem.without_force_bounds());
         Task::Boxes {
             problem,
-            upper,
+            below: Arc::new(below),
             first: OpenBox { design_box: self.design_box, shapes: self.shapes, box_bound: BoxBound::OPEN },
         }
     }
@@ -273,6 +269,11 @@ impl<'p> Subproblem<'p> {
     /// Number of designs that the options in `survivors` make.
     pub(super) fn designs_of(&self, survivors: &Survivors) -> f64 {
         self.problem.designs_below(&survivors.options)
+    }
+
+    /// Number of designs that the options in `survivors` make; of all designs if there is nothing in its place.
+    fn designs_among(&self, survivors: Option<&Survivors>) -> f64 {
+        survivors.map_or_else(|| self.problem.members(&self.design_box), |left| self.designs_of(left))
     }
 
     /// Divides the subproblem into two. The first branching of `survivors` that separates its options is taken; if

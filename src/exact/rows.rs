@@ -121,6 +121,8 @@ pub(super) struct RelaxedDesign {
     pub weights_n: Vec<f64>,
     /// Stiffnesses of each piece in each judged case, at the index [`place`](Self::place).
     pub stiffness: Vec<[f64; STIFFNESSES]>,
+    /// `xᵀMx` of each trial shape, including the payload and the bodies that the study gives.
+    pub kinetic: Vec<f64>,
 }
 
 impl RelaxedDesign {
@@ -144,6 +146,8 @@ impl RelaxedDesign {
 /// each level adds to this sum.
 pub(super) struct DualPoint {
     pub multipliers: Vec<f64>,
+    /// Eigenvalue for which the mode rows were made \[1/s²\].
+    pub lambda: f64,
     pub least: f64,
     pub levels: Vec<f64>,
 }
@@ -340,22 +344,43 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// The upper limit that each scaled row has for every member below the local upper bound `upper`.
-    pub(super) fn row_limits<'b>(&'b self, upper: &'b LocalUpperBound) -> impl Iterator<Item = f64> + 'b {
-        // The mode rows use the eigenvalue `lambda`, but the bound may ask for another one. The difference times `xᵀMx`
-        // is bounded with the lightest or the heaviest parts, depending on its sign.
-        let below = self.lambda - upper.lambda();
+    /// Makes the mode rows for another eigenvalue `lambda` \[1/s²\], with their values for the relaxed designs `members`.
+    pub(super) fn set_lambda(&mut self, lambda: f64, members: &mut [RelaxedDesign]) {
+        let more = lambda - self.lambda;
+        for (m, mode) in self.modes.iter().enumerate() {
+            let row = self.first_mode + m;
+            self.fixed[row] += more * mode.shape.kinetic_fixed / self.scale[row];
+            members
+                .iter_mut()
+                .for_each(|member| member.values[row] += more * member.kinetic[m] / self.scale[row]);
+        }
+        self.lambda = lambda;
+    }
+
+    /// The upper limit that each scaled row has for every member below the local upper bound `upper`. `lambda` is the
+    /// eigenvalue for which the mode rows are made \[1/s²\].
+    fn row_limits<'b>(&'b self, lambda: f64, upper: &'b LocalUpperBound) -> impl Iterator<Item = f64> + 'b {
+        // The bound may ask for another eigenvalue. The difference times `xᵀMx` is bounded with the lightest or the
+        // heaviest parts, depending on its sign.
+        let below = lambda - upper.lambda();
         let objectives = std::iter::once(upper.mass_kg).chain(self.tips.iter().map(|_| upper.tip_m));
         let torques = (1 + self.tips.len()..self.first_mode).map(|_| 0.0);
         let modes = self.modes.iter().map(move |mode| below * mode.kinetic[usize::from(below > 0.0)]);
         objectives.chain(torques).chain(modes).zip(&self.scale).map(|(row, scale)| row / scale)
     }
 
+    /// The upper limit that each scaled row has for every member below the local upper bound `upper`, with the mode rows
+    /// as they are made now.
+    pub(super) fn row_limits_now<'b>(&'b self, upper: &'b LocalUpperBound) -> impl Iterator<Item = f64> + 'b {
+        self.row_limits(self.lambda, upper)
+    }
+
     /// Sets of multipliers that use a single row. There is one for each row that has a finite limit for members below
     /// `upper`, except for torque rows.
     pub(super) fn single_row_multipliers(&self, upper: &LocalUpperBound) -> Vec<Vec<f64>> {
         let is_torque = |row: usize| (1 + self.tips.len()..self.first_mode).contains(&row);
-        let rows = self.row_limits(upper).enumerate().filter(|(row, a)| a.is_finite() && !is_torque(*row));
+        let rows =
+            self.row_limits_now(upper).enumerate().filter(|(row, a)| a.is_finite() && !is_torque(*row));
         let single = |(row, _)| {
             let mut multipliers = vec![0.0; self.scale.len()];
             multipliers[row] = 1.0;
@@ -365,8 +390,8 @@ impl<'a> Rows<'a> {
     }
 
     /// The upper limit that the weighted sum of the rows has for every member below the local upper bound `upper`.
-    pub(super) fn allowed_sum(&self, multipliers: &[f64], upper: &LocalUpperBound) -> f64 {
-        let pairs = multipliers.iter().zip(self.row_limits(upper));
+    pub(super) fn allowed_sum(&self, point: &DualPoint, upper: &LocalUpperBound) -> f64 {
+        let pairs = point.multipliers.iter().zip(self.row_limits(point.lambda, upper));
         pairs.filter(|(w, _)| **w > 0.0).map(|(w, a)| w * a).sum()
     }
 }

@@ -50,12 +50,21 @@ impl Bench {
         self.torques_nm.iter().map(|t| t.abs())
     }
 
+    /// The torques on the joint \[N m\], in the order of the file.
+    pub(crate) fn torques_nm(&self) -> &[f64] {
+        &self.torques_nm
+    }
+
+    /// Writes the twist at every row of the joint \[rad\] to its place in `out` \[arcmin\].
+    pub(crate) fn write(&self, twists_rad: &[f64], out: &mut [f64]) {
+        for (&index, twist_rad) in self.rows.iter().zip(twists_rad) {
+            out[index] = twist_rad * ARCMIN_PER_RAD;
+        }
+    }
+
     /// Writes the predicted twist (torsion angle) at every row of the joint to its place in `out` \[arcmin\].
     pub(crate) fn predict(&self, law: &JointLaw, out: &mut [f64]) {
-        let twists = bench_twists_rad(law, &self.torques_nm);
-        for (&index, twist) in self.rows.iter().zip(twists) {
-            out[index] = twist * ARCMIN_PER_RAD;
-        }
+        self.write(&bench_twists_rad(law, &self.torques_nm), out);
     }
 }
 

@@ -25,7 +25,8 @@ pub struct Forward {
     pub statics: Vec<StaticPose>,
     /// The modal tests, one for each pose and payload.
     pub modal: Vec<ModalTest>,
-    bench: Vec<Bench>,
+    /// The bench rows of each joint that was on the bench.
+    pub(crate) bench: Vec<Bench>,
     /// Index in `data` at which the data of each channel begin: static, modal, bench; then the number of all data.
     pub starts: [usize; 4],
     /// Names of the poses, in the order of `Datum::group`.

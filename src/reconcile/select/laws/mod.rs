@@ -1,0 +1,118 @@
+//! Laws without a name: smooth, general functions that are not effects of the library. They reveal physics that the
+//! library lacks.
+//!
+//! A law may be a twist of a joint as a function of its torque (odd or even), of its angle, or of the order of the
+//! tests, friction in proportion to the torque, or an angle whose zero is off. It may be a compliance of a base, a bearing or a link in one direction only, or a mass or wall of a link that
+//! differs from the drawing. It may also be an error of a reading as a function of the actual value, the direction, the
+//! kind of load, or the time in a pose. A law consists of a few columns: changes of the readings, linearized about a
+//! fit.
+
+mod friction;
+mod joints;
+mod links;
+mod readings;
+mod zeros;
+
+use crate::reconcile::fit::descent::Fit;
+use crate::reconcile::forward::prepared::Forward;
+use crate::reconcile::readings::campaign::Campaign;
+use nalgebra::DVector;
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+
+/// A law without a name: a way in which readings can differ from the model.
+pub(crate) struct Law {
+    /// Description of the law in words.
+    pub what: String,
+    /// Name of the effect of the library that is the same as this law; `None` if there is none.
+    pub effect: Option<&'static str>,
+    /// The law's columns: for each of its parameters, the change of each predicted reading per unit of the parameter,
+    /// in the unit of the file.
+    pub columns: Vec<Vec<f64>>,
+}
+
+/// Calls `each` for every law at every place, and returns the results. The columns of a law are linearized about
+/// `fit`. Laws are built in groups, because the columns of all laws together would need much memory.
+pub(crate) fn of_every_law<T: Send>(
+    campaign: &Campaign,
+    forward: &Forward,
+    fit: &Fit,
+    each: impl Fn(&Law) -> T + Sync,
+) -> Vec<T> {
+    let builder = Builder { campaign, forward, fit, torques_nm: forward.torques_nm(&fit.point.coefficients) };
+    let mut out = Vec::new();
+    let mut ask = |mut group: Vec<Law>| {
+        // a law that changes no reading cannot be tested
+        group.retain(|law| law.columns.iter().all(|c| c.iter().any(|x| *x != 0.0)));
+        out.par_extend(group.par_iter().map(&each));
+    };
+    (0..forward.layout.joints.len()).for_each(|joint| ask(builder.joint_laws(joint)));
+    ask(builder.friction_laws());
+    ask(builder.zero_laws());
+    ask(builder.compliance_laws());
+    ask(builder.link_laws());
+    ask(builder.reading_laws());
+    out
+}
+
+struct Builder<'a> {
+    campaign: &'a Campaign,
+    forward: &'a Forward,
+    fit: &'a Fit<'a>,
+    torques_nm: Vec<Vec<f64>>,
+}
+
+impl Builder<'_> {
+    /// Sets the entries of `truth` that belong to frequencies: the first-order change of each frequency \[Hz\] when
+    /// the compliance matrix changes by `dC`. `energy` receives the index of a datum and the inertia forces `y` of its
+    /// mode, and returns `yᵀ dC y`.
+    fn add_modal(&self, truth: &mut [f64], energy: impl Fn(usize, &DVector<f64>) -> f64) {
+        for (test, solved) in self.forward.modal.iter().zip(&self.fit.point.solved) {
+            for &(datum, mode) in &test.modes {
+                let Some(s) = solved.get(mode) else { continue };
+                let d_mu = energy(datum, &s.y) / s.mu;
+                truth[datum] = -0.5 * d_mu / s.mu / (TAU * s.mu.sqrt());
+            }
+        }
+    }
+
+    /// Converts changes of actual values into changes of the readings that the measuring channels show. `truth` has
+    /// one entry per datum, in its unit.
+    fn read(&self, truth: &[f64]) -> Vec<f64> {
+        let channels = &self.fit.point.coefficients.channels;
+        truth.iter().zip(&self.forward.data).map(|(t, d)| t * channels[d.channel as usize].factor).collect()
+    }
+}
+
+/// Three laws with the description `what`: one with the first column, one with the second, and one with both.
+fn one_or_both(what: &str, columns: [Vec<f64>; 2]) -> Vec<Law> {
+    let [a, b] = columns;
+    let law = |columns| Law { what: what.to_string(), effect: None, columns };
+    vec![law(vec![a.clone()]), law(vec![b.clone()]), law(vec![a, b])]
+}
+
+#[cfg(test)]
+mod testing {
+    use super::*;
+    use crate::catalog::Catalogs;
+    use crate::reconcile::fit::descent::{Effort, fit};
+    use crate::reconcile::fit::noise::Noise;
+    use crate::reconcile::model::calibration::Nuisance;
+    use crate::reconcile::model::parameters::Model;
+    use std::path::Path;
+
+    /// Calls `check` with a builder of laws for a test campaign, linearized about the nominal arm, and with the
+    /// calibrated parameters.
+    pub(super) fn about_the_nominal_arm(check: impl FnOnce(&Builder, &Nuisance)) {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/campaigns/plain-0251e");
+        let campaign = Campaign::read(&folder, &Catalogs::default()).expect("sound");
+        let forward = Forward::new(&campaign);
+        let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
+        let baseline = Model::baseline(&nuisance);
+        let weights = Noise::default().weights(&forward);
+        let effort = Effort { steps: 0, tolerance: 0.0 };
+        let fit = fit(&forward, &baseline, &vec![0.0; baseline.len()], &weights, effort);
+        let torques_nm = forward.torques_nm(&fit.point.coefficients);
+        check(&Builder { campaign: &campaign, forward: &forward, fit: &fit, torques_nm }, &nuisance);
+    }
+}

@@ -1,0 +1,150 @@
+//! Laws of readings: an instrument that is not straight, that has a gain of its own for a direction or a kind of load, or
+//! that is turned.
+
+use super::{Builder, Law, one_or_both};
+use crate::arm::effect::channel::Channel;
+
+/// A function that builds a column of a channel's readings. Its argument is a function that gives the entry of a datum
+/// from the index and the predicted reading of this datum.
+type ColumnOf<'a> = &'a dyn Fn(&dyn Fn(usize, f64) -> f64) -> Vec<f64>;
+
+impl Builder<'_> {
+    /// Laws of every channel that has readings.
+    pub(super) fn reading_laws(&self) -> Vec<Law> {
+        let mut out = Vec::new();
+        for channel in [Channel::Static, Channel::Modal, Channel::Windup] {
+            let range = self.forward.range(channel);
+            let reading = |i: usize| self.fit.point.predicted[i];
+            let largest = range.clone().map(|i| reading(i).abs()).fold(0.0, f64::max);
+            if largest == 0.0 {
+                continue;
+            }
+            let column = |of: &dyn Fn(usize, f64) -> f64| -> Vec<f64> {
+                let inside = |i: usize| if range.contains(&i) { of(i, reading(i)) } else { 0.0 };
+                (0..self.forward.data.len()).map(inside).collect()
+            };
+            let bent = [column(&|_, d| d * d.abs() / largest), column(&|_, d| d * (d / largest).powi(2))];
+            out.extend(one_or_both(
+                &format!("{} readings that are not straight in the true value", channel.word()),
+                bent,
+            ));
+            if channel == Channel::Static {
+                out.extend(self.direction_laws(&column));
+                out.extend(self.load_laws(&column));
+            }
+        }
+        out
+    }
+
+    /// Laws of static readings that follow the load in a way that the model lacks: loads other than stated, a support
+    /// that deflects in the direction of the load, and readings that grow while the arm stays in one pose. `column`
+    /// builds a column.
+    fn load_laws(&self, column: ColumnOf) -> Vec<Law> {
+        let rows = &self.campaign.statics;
+        let gravity = self.forward.layout.gravity_m_s2;
+        let load_n = |r: usize| {
+            let mut load = rows[r].force_n;
+            load.z -= rows[r].payload.mass_kg * gravity;
+            load
+        };
+        let largest_n = (0..rows.len()).map(|r| load_n(r).amax()).fold(1e-9, f64::max);
+        let readings = rows.iter().flat_map(|r| r.measured).flatten();
+        let largest_mm = readings.fold(0.0f64, |m, d| m.max(d.value_mm.abs()));
+        let row = |i: usize| self.forward.data[i].index;
+        let along = |vertical: bool| {
+            column(&|i, _| {
+                let component = self.forward.data[i].component;
+                if (component == 2) == vertical {
+                    largest_mm * load_n(row(i))[component] / largest_n
+                } else {
+                    0.0
+                }
+            })
+        };
+        let kept = rows_in_pose(rows.iter().map(|r| r.pose_deg.as_slice()));
+        let longest = kept.iter().copied().max().unwrap_or(0).max(1) as f64;
+        let is_carrying = |r: usize| rows[r].payload.mass_kg > 0.0;
+        let gain = |carrying: bool| column(&|i, d| if is_carrying(row(i)) == carrying { d } else { 0.0 });
+        let law = |what: &str, columns| Law { what: what.into(), effect: None, columns };
+        let mut out = vec![
+            law("static readings under payloads with a gain of their own", vec![gain(true)]),
+            law("payloads that weigh a factor of what is stated", vec![self.heavier_payloads(gain(true))]),
+            law("static readings under tip forces alone with a gain of their own", vec![gain(false)]),
+            law(
+                "static readings that grow while a pose is kept",
+                vec![column(&|i, d| d * kept[row(i)] as f64 / longest)],
+            ),
+        ];
+        out.extend(one_or_both(
+            "static readings that follow the load wherever the tip is",
+            [along(false), along(true)],
+        ));
+        out
+    }
+
+    /// Adds to `column`, a column of the static readings under payloads, the change of the frequencies if all
+    /// payloads are heavier in the same proportion.
+    fn heavier_payloads(&self, mut column: Vec<f64>) -> Vec<f64> {
+        const PART: f64 = 1e-4;
+        let forward = self.forward;
+        let from = &self.fit.point.coefficients;
+        let mut truth = vec![0.0; forward.data.len()];
+        for (test, solved) in forward.modal.iter().zip(&self.fit.point.solved) {
+            let Some((datum, _)) = test.modes.first() else { continue };
+            let payload_kg = self.campaign.modal[datum - forward.starts[1]].payload.mass_kg;
+            let mut to = from.clone();
+            to.payload_delta_kg += PART * payload_kg;
+            test.change(&forward.layout, solved, from, &to, &mut truth);
+        }
+        let modal = self.read(&truth);
+        column.iter_mut().zip(modal).for_each(|(own, change)| *own += change / PART);
+        column
+    }
+
+    /// Laws of an instrument of displacements: a gain of its own for each direction (x, y, z), and a frame that is
+    /// rotated. `column` builds a column.
+    fn direction_laws(&self, column: ColumnOf) -> Vec<Law> {
+        let data = &self.forward.data;
+        let gain = |c: usize| column(&|i, d| if data[i].component == c { d } else { 0.0 });
+        // a rotation mixes in components that were not measured, so the predicted displacements are needed in full
+        let readings = self.forward.displacements_mm(&self.fit.point.coefficients);
+        let turned = |axis: usize| {
+            column(&|i, _| {
+                let c = data[i].component;
+                let d = |k: usize| readings[data[i].index][k];
+                match (3 + c - axis) % 3 {
+                    1 => -d((axis + 2) % 3),
+                    2 => d((axis + 1) % 3),
+                    _ => 0.0,
+                }
+            })
+        };
+        let mut turns: Vec<Vec<f64>> = (0..3).map(turned).collect();
+        let range = self.forward.range(Channel::Static);
+        // a gauge in one direction reacts to at most two of the three rotations
+        if !(0..3).all(|c| data[range.clone()].iter().any(|d| d.component == c)) {
+            turns.retain(|column| column.iter().any(|x| *x != 0.0));
+        }
+        let law = |what: &str, columns: Vec<Vec<f64>>| Law { what: what.into(), effect: None, columns };
+        let mut out = vec![law(
+            "static readings with a gain of their own in each direction",
+            (0..3).map(gain).collect(),
+        )];
+        if !turns.is_empty() {
+            out.push(law("static readings in a frame that is turned", turns));
+        }
+        out
+    }
+}
+
+/// For each row, how many rows with the same pose stand directly before it.
+fn rows_in_pose<'a>(poses: impl Iterator<Item = &'a [f64]>) -> Vec<usize> {
+    let mut last: Option<(&[f64], usize)> = None;
+    poses
+        .map(|pose| {
+            let count = last.filter(|(before, _)| *before == pose).map_or(0, |(_, count)| count + 1);
+            last = Some((pose, count));
+            count
+        })
+        .collect()
+}
