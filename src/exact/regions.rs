@@ -123,7 +123,7 @@ impl<'p> Search<'_, 'p> {
             return Vec::new();
         };
         // A box takes microseconds and a region milliseconds, so few designs are searched faster box by box.
-        if subproblem.designs_among(survivors.as_ref()) <= regions_to {
+        if subproblem.designs_of(&survivors) <= regions_to {
             return vec![subproblem.in_boxes(below)];
         }
         if let Some(halves) = below.clone().halves() {
@@ -132,9 +132,9 @@ impl<'p> Search<'_, 'p> {
             return vec![second, first];
         }
         // What was learned about a group does not tell how to divide the options below its last bound.
-        let Some(survivors) = survivors.filter(|_| was_single) else {
+        if !was_single {
             return vec![Task::Region { below, subproblem }];
-        };
+        }
         let Some(halves) = subproblem.branch(&survivors, &mut work) else {
             return vec![subproblem.in_boxes(below)];
         };
@@ -143,15 +143,14 @@ impl<'p> Search<'_, 'p> {
     }
 
     /// Excludes options of a subproblem and local upper bounds as long as that is worth the time, and evaluates promising
-    /// designs. Returns what remains of the options, or `None` in its place if the subproblem was restricted to it: then
-    /// a smaller group of bounds excludes more than another attempt would. `None` if the region is empty.
+    /// designs. Returns what remains. `None` if the region is empty.
     fn reduce(
         &self,
         subproblem: &mut Subproblem<'p>,
         below: &mut LocalUpperBounds,
         work: &mut Work,
         findings: &mut Findings,
-    ) -> Option<Option<Survivors>> {
+    ) -> Option<Survivors> {
         loop {
             self.budget.count_box();
             let (survivors, reduced) =
@@ -161,10 +160,7 @@ impl<'p> Search<'_, 'p> {
                     .candidates
                     .iter()
                     .for_each(|design_box| self.try_design(subproblem, design_box.clone(), findings));
-                return Some(Some(survivors));
-            }
-            if below.all().len() > 1 {
-                return Some(None);
+                return Some(survivors);
             }
         }
     }
@@ -269,11 +265,6 @@ impl<'p> Subproblem<'p> {
     /// Number of designs that the options in `survivors` make.
     pub(super) fn designs_of(&self, survivors: &Survivors) -> f64 {
         self.problem.designs_below(&survivors.options)
-    }
-
-    /// Number of designs that the options in `survivors` make; of all designs if there is nothing in its place.
-    fn designs_among(&self, survivors: Option<&Survivors>) -> f64 {
-        survivors.map_or_else(|| self.problem.members(&self.design_box), |left| self.designs_of(left))
     }
 
     /// Divides the subproblem into two. The first branching of `survivors` that separates its options is taken; if
