@@ -39,6 +39,8 @@ use std::cell::OnceCell;
 const WEAK: f64 = 3.0;
 /// Reason that is written for the verdict `no_gap`.
 const NOTHING_MISSING: &str = "noise and calibration within tolerance explain every reading";
+/// Reason that is written for the verdict `no_gap` if a calibrated factor is outside its tolerance.
+const BEYOND: &str = "noise and calibration explain every reading, but not within tolerance";
 
 /// Reconciles the displacements, frequencies and bench readings of a campaign with its arm. Absolute positions and
 /// records are not used here.
@@ -209,7 +211,12 @@ impl Analysis<'_> {
         }
         if matches!(verdict, Verdict::Explained | Verdict::NoGap) {
             let shown = if verdict == Verdict::NoGap { &self.baseline } else { &self.best };
-            reasons.extend(caution::beyond_tolerance(shown, &calibrated));
+            let deviations = shown.model.nuisance.numbers.iter().map(|(_, sd)| *sd);
+            if let Some(text) = caution::beyond_tolerance(deviations, &calibrated) {
+                let within = reasons.iter_mut().filter(|reason| *reason == NOTHING_MISSING);
+                within.for_each(|reason| *reason = BEYOND.into());
+                reasons.push(text);
+            }
         }
         Outcome {
             campaign: self.campaign.statement.name.clone(),
@@ -272,7 +279,10 @@ impl Analysis<'_> {
             return (Verdict::Unexplained, self.left_over());
         }
         if self.best.model.effects.is_empty() {
-            return (Verdict::NoGap, vec![NOTHING_MISSING.to_string()]);
+            return match caution::impossible_calibration(self.campaign, &self.best) {
+                Some(text) => (Verdict::Unexplained, vec![text]),
+                None => (Verdict::NoGap, vec![NOTHING_MISSING.to_string()]),
+            };
         }
         if let Some(better) = &self.unnamed {
             return (Verdict::Unexplained, vec![self.beaten(better)]);
@@ -349,7 +359,15 @@ impl Analysis<'_> {
     /// Sentences on the structure that the best model leaves in the residuals. They name no effect of the library.
     fn left_over(&self) -> Vec<String> {
         let mut out = units::other_signs(self.forward);
-        out.extend(self.lack_of_fit.sentences());
+        let sentences = self.lack_of_fit.sentences_beyond_scatter();
+        if sentences.is_empty() && self.lack_of_fit.chi2_per_dof > 1.0 {
+            out.push(format!(
+                "the readings scatter {:.1} times as much as declared, and this scatter follows nothing that was asked: is \
+                 their standard deviation in the files right?",
+                self.lack_of_fit.chi2_per_dof.sqrt()
+            ));
+        }
+        out.extend(sentences);
         out.push(format!(
             "the best model leaves {:.2} times the declared variance; no effect of the library explains the rest",
             self.lack_of_fit.chi2_per_dof

@@ -97,7 +97,8 @@ impl Nuisance {
         libm::exp(u * self.numbers[index].1)
     }
 
-    pub(super) fn apply(&self, u: &[f64], subject: &mut Subject) {
+    /// Changes an arm by the parameters `u`, in standard deviations of the tolerance.
+    pub(in crate::reconcile) fn apply(&self, u: &[f64], subject: &mut Subject) {
         let structure = &mut subject.structure;
         for (index, (calibration, _)) in self.numbers.iter().enumerate() {
             let factor = self.factor(index, u[index]);

@@ -7,6 +7,7 @@ use super::fitted::{Fitted, Sample};
 use super::kinematics::{Geometry, Number, Pose, number_groups};
 use super::loads::{CompliantPlace, Loads, candidates};
 use super::moved::{Boundary, Kind};
+use super::nominal::Dependence;
 use super::play;
 use super::points::{Point, points};
 use super::tree::Tree;
@@ -57,6 +58,10 @@ pub(crate) struct Positions {
     pub(super) numbers: Vec<Number>,
     /// Indices of the driven joints for which a transmission error was found, counted as in a pose.
     pub(super) transmissions: Vec<usize>,
+    /// What the nominal deflection depends on; empty if the arm is rigid in its file.
+    pub(super) dependences: Vec<Dependence>,
+    /// Indices of the dependences that are effects of the model.
+    pub(super) named_dependences: Vec<usize>,
     pub(super) tree: Tree,
     /// The points on the tools. A point that was moved on the tool between two sessions is listed as two points.
     pub(super) points: Vec<Point>,
@@ -150,6 +155,8 @@ impl Positions {
             samples,
             numbers: Vec::new(),
             transmissions: Vec::new(),
+            dependences: Vec::new(),
+            named_dependences: Vec::new(),
             tree,
             points,
             sessions: Vec::new(),
@@ -240,6 +247,7 @@ impl Positions {
             }
             self.stage(name.into(), Vec::new());
         }
+        self.free_tolerances(campaign);
     }
 
     /// Fits the current model again to all samples (measured positions), starting from its present values.
@@ -350,6 +358,7 @@ pub(super) fn samples(
                     / 1e3,
                 precision: precision(&row.measured),
                 deflection: Arc::new(loads.deflection(row, point)),
+                nominal_m: Vec::new(),
             }
         })
         .collect()

@@ -30,6 +30,8 @@ pub(crate) struct Sample {
     pub precision: Vector3<f64>,
     /// How this position deflects under gravity: the known deflection, and what each candidate would add.
     pub deflection: Arc<Deflection>,
+    /// Change of the known deflection per unit of each dependence of it, in the level frame \[m\].
+    pub nominal_m: Vec<Vector3<f64>>,
 }
 
 impl Sample {
@@ -131,7 +133,9 @@ impl Fitted {
     pub(crate) fn displacement(&self, sample: &Sample) -> Vector3<f64> {
         let gravity = &self.geometry.gravity;
         let [by_x, by_y] = &sample.deflection.known_slopes_m;
-        sample.deflection.known_m + by_x * gravity.x + by_y * gravity.y + self.displaced_m(sample, gravity)
+        let dependent = self.geometry.dependences.iter().zip(&sample.nominal_m);
+        let known_m = dependent.fold(sample.deflection.known_m, |sum, (x, by)| sum + by * *x);
+        known_m + by_x * gravity.x + by_y * gravity.y + self.displaced_m(sample, gravity)
     }
 
     /// How far the effects of the model let the measured point of a sample move under gravity along the direction

@@ -38,6 +38,10 @@ pub(crate) enum Number {
     /// Factor by which the angle of a passive joint follows that of a driven joint: index of the piece, index of the
     /// term among those of the joint's coupling.
     Ratio(usize, usize),
+    /// Factor within tolerance on a stiffness, modulus or mass \[standard deviations\]: index of the dependence.
+    Tolerance(usize),
+    /// Effect on the nominal deflection, in the unit of its parameter: index of the dependence.
+    Effect(usize),
     /// Horizontal component of the unit vector of gravity \[-\]: index of the axis, x or y, of the level frame.
     Gravity(usize),
     /// Rotation of all points of a later session relative to the first session, about the base's origin \[rad\]:
@@ -55,7 +59,9 @@ impl Number {
         match self {
             Number::BaseRotation(_) | Number::Mount(..) => 10.0,
             Number::BasePosition(_) => 100.0,
-            Number::Tool(..) | Number::MountVector(..) => 1.0,
+            Number::Tool(..) | Number::MountVector(..) | Number::Tolerance(_) => 1.0,
+            // wide: the range of the effect's parameter is checked after the fit
+            Number::Effect(_) => 100.0,
             Number::Zero(_) => 0.03,
             Number::Axis(..) | Number::Vector(..) | Number::Ratio(..) => 0.01,
             Number::Transmission(..) => 0.002,
@@ -167,6 +173,9 @@ pub(crate) struct Geometry {
     vectors_m: Vec<Vector3<f64>>,
     mounts: Vec<Rotation3<f64>>,
     angles: Vec<Option<JointAngle>>,
+    /// The number of each dependence of the nominal deflection ([`Dependence`](super::nominal::Dependence)); 0 for the
+    /// nominal arm.
+    pub dependences: Vec<f64>,
     arms: Vec<Vec<usize>>,
 }
 
@@ -236,6 +245,7 @@ impl Geometry {
             vectors_m: tree.pieces.iter().map(vector).collect(),
             mounts: vec![Rotation3::identity(); tree.pieces.len()],
             angles: tree.pieces.iter().map(angle).collect(),
+            dependences: Vec::new(),
             arms: tree.arms.clone(),
         }
     }
@@ -270,6 +280,7 @@ impl Geometry {
                     self.axes[i] = Unit::new_normalize(turn * self.axes[i].into_inner());
                 }
                 Number::Vector(i, c) | Number::MountVector(i, c) => self.vectors_m[i][c] += by,
+                Number::Tolerance(k) | Number::Effect(k) => self.dependences[k] += by,
                 Number::Gravity(c) => {
                     self.gravity[c] += by;
                     self.gravity.normalize_mut();
@@ -441,7 +452,7 @@ impl Placer<'_> {
             Number::SessionPosition(s, c) if s == asked.station => Vector3::ith(c, 1.0),
             Number::SessionRotation(..) | Number::SessionPosition(..) => zero,
             Number::Tool(p, c) if p == asked.point => last() * Vector3::ith(c, 1.0),
-            Number::Tool(..) | Number::Gravity(_) => zero,
+            Number::Tool(..) | Number::Gravity(_) | Number::Tolerance(_) | Number::Effect(_) => zero,
             Number::Zero(j) => self.turning(j, along),
             Number::Transmission(j, k) => {
                 self.turning(j, along) * transmission_waves(asked.pose.angles_rad[j])[k]

@@ -9,6 +9,7 @@ use super::kinematics::Geometry;
 use super::tree::Tree;
 use crate::arm::body::total_kg;
 use crate::arm::effect::kind::{ElasticRotation, Kind};
+use crate::arm::effect::subject::Subject;
 use crate::arm::effect::{
     base_compliance, bearing_tilt, connection_compliance, frame_compliance, joint_compliance,
 };
@@ -270,6 +271,17 @@ impl<'a> Loads<'a> {
         geometry: &Geometry,
         candidates: &[CompliantPlace],
     ) -> Self {
+        Self::changed(campaign, tree, geometry, candidates, &|_| {})
+    }
+
+    /// The same for arms that differ from those of the campaign by `change`.
+    pub(crate) fn changed(
+        campaign: &Campaign,
+        tree: &'a Tree,
+        geometry: &Geometry,
+        candidates: &[CompliantPlace],
+        change: &dyn Fn(&mut Subject),
+    ) -> Self {
         let ready: Vec<Vec<Ready>> = campaign
             .arms()
             .iter()
@@ -277,7 +289,7 @@ impl<'a> Loads<'a> {
             .map(|(i, arm)| {
                 let mut calibrated = (*arm).clone();
                 let turned = geometry.write_into(i, &mut calibrated);
-                let point = |t| Ready::new(campaign, &calibrated, turned * t, candidates);
+                let point = |t| Ready::new(campaign, &calibrated, turned * t, candidates, change);
                 geometry.tools_m.iter().map(point).collect()
             })
             .collect();
@@ -331,8 +343,16 @@ impl<'a> Loads<'a> {
 }
 
 impl Ready {
-    fn new(campaign: &Campaign, arm: &Arm, point_m: Vector3<f64>, candidates: &[CompliantPlace]) -> Self {
-        let mut structure = arm.structure(JointModel::ThreeSegment);
+    fn new(
+        campaign: &Campaign,
+        arm: &Arm,
+        point_m: Vector3<f64>,
+        candidates: &[CompliantPlace],
+        change: &dyn Fn(&mut Subject),
+    ) -> Self {
+        let mut subject = arm.subject(JointModel::ThreeSegment);
+        change(&mut subject);
+        let mut structure = subject.structure;
         for piece in &mut structure.pieces {
             if let Piece::Link(link) = piece
                 && let Some(beam) = &mut link.beam

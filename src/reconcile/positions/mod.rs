@@ -6,12 +6,13 @@
 //! - `align` finds a first placement of the arm. [`fit`](mod@fit) fits a model (`fitted`). `rows` sums up its normal
 //!   equations (`normal`), and `springs` keeps the compliances physically possible.
 //! - [`analysis`] is the whole analysis. `sessions` finds sessions, `boundary` judges each boundary between two of them
-//!   (`moved`), and `standing` finds where the arm stands in each session. `search` finds compliances, and
-//!   `transmission` finds joints with a transmission error.
+//!   (`moved`), and `standing` finds where the arm stands in each session. `search` finds compliances,
+//!   `nominal` stiffnesses, moduli and masses other than stated, and `transmission` joints with a transmission error.
 //! - `conventions` asks whether the file was written by another convention, `structure` tests the errors that are left,
 //!   `next_test` proposes what to measure, and [`outcome`] reaches the verdict.
 //! - [`predict`] predicts positions of several arms whose weights load each other's trunk.
 
+pub(crate) mod adjusted;
 pub(crate) mod align;
 pub(crate) mod analysis;
 pub(crate) mod boundary;
@@ -22,6 +23,7 @@ pub(crate) mod kinematics;
 pub(crate) mod loads;
 pub(crate) mod moved;
 pub(crate) mod next_test;
+pub(crate) mod nominal;
 pub(crate) mod normal;
 pub(crate) mod outcome;
 pub(crate) mod play;

@@ -19,11 +19,11 @@ use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::components::POSITION;
 use crate::reconcile::readings::rows::PositionRow;
 use crate::reconcile::select::lack_of_fit::LackOfFit;
-use crate::reconcile::verdict::correct;
 use crate::reconcile::verdict::files::CORRECTED_FILE;
 use crate::reconcile::verdict::judgement::{does_not_predict, too_many_alternatives};
 use crate::reconcile::verdict::outcome::{Evidence, Located, Outcome, ReadingResidual, Verdict};
 use crate::reconcile::verdict::stage::Stage;
+use crate::reconcile::verdict::{caution, correct};
 use serde_json::{Value, json};
 use std::collections::{HashMap, HashSet};
 
@@ -52,9 +52,14 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let compliant = (0..found.fitted.effects.len())
         .map(|i| found.with_session_instead(campaign, i, found.finding(i, &competitors[i])));
     let uneven = found.transmissions.iter().map(|&joint| found.transmission_finding(joint));
-    let findings: Vec<Finding> = compliant.chain(uneven).collect();
+    let dependent = found.named_dependences.iter().map(|&k| found.dependence_finding(k));
+    let findings: Vec<Finding> = compliant.chain(dependent).chain(uneven).collect();
     let (verdict, mut reasons) = found.verdict(campaign, &lack_of_fit, &findings);
     reasons.extend(found.session_sentences(campaign));
+    let adjusted = found.adjusted(&found.fitted);
+    reasons.extend(caution::beyond_tolerance(found.tolerances(), &adjusted));
+    reasons.extend(found.moved_zeros());
+    reasons.extend(found.still_joints());
     reasons.extend(found.other_convention(campaign));
     let next_tests = found.next_tests(campaign, verdict, &lack_of_fit, &competitors);
     // a model that predicts held-out poses far better is useful even if something else is missing
@@ -72,7 +77,11 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     };
     let mut provenance = correct::provenance(campaign, verdict, found.calibrated(shown));
     let corrected: Vec<Arm> = (0..campaign.arms().len())
-        .map(|i| found.corrected(campaign, i, shown, in_arm, &mut provenance))
+        .map(|i| {
+            let mut arm = found.corrected(campaign, i, shown, in_arm, &mut provenance);
+            found.adjust(shown, &mut arm);
+            arm
+        })
         .collect();
     let (effects, suspects) = verdict.named_and_suspected(findings, Vec::new());
     let scale_mm = 1e3 * found.fitted.scale_m;
@@ -91,7 +100,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
             outliers: found.gross.iter().map(|(row, mm)| (Channel::Positions, *row, mm / scale_mm)).collect(),
         },
         lack_of_fit: Some(lack_of_fit),
-        calibrated: Vec::new(),
+        calibrated: adjusted,
         evidence: found.evidence(),
         residuals,
         provenance,
@@ -220,11 +229,12 @@ impl Positions {
             }
         };
         let names = competitors.iter().map(|(r, _)| &self.candidates[*r]);
+        let springs = names.map(|r| (r.effect.to_string(), r.at.clone()));
         Finding {
             effect: candidate.effect.into(),
             at: candidate.at.clone(),
             parameters,
-            indistinguishable_from: names.map(|r| (r.effect.to_string(), r.at.clone())).collect(),
+            indistinguishable_from: springs.chain(self.dependences_instead(i)).collect(),
         }
     }
 
@@ -283,9 +293,16 @@ impl Positions {
                     | Number::Gravity(_)
             )
         });
-        inside
-            .map(|(n, moved)| json!({"value": self.name(n), "moved": moved, "source": "calibrated geometry"}))
-            .collect()
+        let geometry = inside.map(
+            |(n, moved)| json!({"value": self.name(n), "moved": moved, "source": "calibrated geometry"}),
+        );
+        let parts = self.adjusted(shown).into_iter().map(|c| {
+            json!({
+                "value": c.name, "factor": c.factor.value, "low": c.factor.low, "high": c.factor.high,
+                "source": "calibrated within tolerance",
+            })
+        });
+        geometry.chain(parts).collect()
     }
 
     fn name(&self, number: &Number) -> String {
@@ -298,6 +315,7 @@ impl Positions {
             Number::Vector(i, c) | Number::MountVector(i, c) => format!("{}.vector_m[{c}]", piece(*i)),
             Number::Mount(i, c) => format!("{}.attitude_rad[{c}]", piece(*i)),
             Number::Gravity(c) => format!("gravity_direction[{c}]"),
+            Number::Tolerance(k) | Number::Effect(k) => self.dependences[*k].name(),
             Number::SessionRotation(s, c) => format!("session_{s}.rotation_rad[{c}]"),
             Number::SessionPosition(s, c) => format!("session_{s}.position_m[{c}]"),
             Number::BaseRotation(c) => format!("base_rotation_rad[{c}]"),

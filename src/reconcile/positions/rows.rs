@@ -50,9 +50,13 @@ impl<'a> Linearized<'a> {
         self.columns.clear();
         self.placer.slopes(sample.placing(), self.numbers, &mut self.columns);
         for (column, number) in self.columns.iter_mut().zip(self.numbers) {
-            if let Number::Gravity(c) = number {
-                let pulled = here.leaning(sample, *c);
-                *column = self.from_level * (pulled + sample.deflection.known_slopes_m[*c]);
+            match *number {
+                Number::Gravity(c) => {
+                    let pulled = here.leaning(sample, c);
+                    *column = self.from_level * (pulled + sample.deflection.known_slopes_m[c]);
+                }
+                Number::Tolerance(k) | Number::Effect(k) => *column = self.from_level * sample.nominal_m[k],
+                _ => {}
             }
         }
         for &effect in &here.effects {

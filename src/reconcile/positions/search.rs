@@ -18,20 +18,40 @@ pub(crate) const FULL_FITS: usize = 4;
 /// Models whose logarithms of the likelihood differ by less than this cannot be told apart.
 pub(crate) const TIE: f64 = 3.0;
 
+/// What may be added to the model: a candidate, or an effect on the nominal deflection, by its index.
+enum Added {
+    Spring(usize),
+    Dependence(usize),
+}
+
 impl Positions {
     /// Adds the effect of the class `class` (kind of compliance) that raises the likelihood most, if the rise is
     /// worth the effect's price and held-out poses confirm it. Effects that become unnecessary are dropped. Returns
     /// whether an effect was added.
     pub(crate) fn add(&mut self, campaign: &Campaign, class: ElasticRotation) -> bool {
         let base = &self.fitted;
-        let tried = self.best_additions(base, |c| self.candidates[c].rotation == class);
-        let gain = |(_, f): &(usize, Fitted)| {
-            f.ln_likelihood - self.prices(&f.effects) - (base.ln_likelihood - self.prices(&base.effects))
+        let springs = self.best_additions(base, |c| self.candidates[c].rotation == class).into_iter();
+        let springs = springs.map(|(c, f)| {
+            let gain =
+                f.ln_likelihood - self.prices(&f.effects) - (base.ln_likelihood - self.prices(&base.effects));
+            (gain, Added::Spring(c), f)
+        });
+        // a mass or a modulus deflects the arm as springs do, so it competes with the first of them
+        let others = match class {
+            ElasticRotation::AboutAxis => self.best_dependences(),
+            _ => Vec::new(),
         };
-        let worth = tried.into_iter().filter(|t| gain(t) > 0.0);
-        let Some((added, fitted)) = worth.max_by(|a, b| gain(a).total_cmp(&gain(b))) else { return false };
-        let next = Self { fitted, ..self.clone() };
-        self.take_if_confirmed(campaign, next, self.label(added))
+        let price = self.dependence_price();
+        let others = others
+            .into_iter()
+            .map(|(k, f)| (f.ln_likelihood - price - base.ln_likelihood, Added::Dependence(k), f));
+        let worth = springs.chain(others).filter(|(gain, ..)| *gain > 0.0);
+        let Some((_, added, fitted)) = worth.max_by(|a, b| a.0.total_cmp(&b.0)) else { return false };
+        let (next, label) = match added {
+            Added::Spring(c) => (Self { fitted, ..self.clone() }, self.label(c)),
+            Added::Dependence(k) => (self.with_dependence(k, fitted), self.dependence_label(k)),
+        };
+        self.take_if_confirmed(campaign, next, label)
     }
 
     /// Replaces the current model of the positions by `next` if `next` has the higher score (ln of the likelihood, less
@@ -44,8 +64,10 @@ impl Positions {
             return false;
         }
         let dropped = |e: &&usize| !next.fitted.effects.contains(e);
-        let dropped: Vec<String> =
+        let mut dropped: Vec<String> =
             self.fitted.effects.iter().filter(dropped).map(|e| self.label(*e)).collect();
+        let gone = self.named_dependences.iter().filter(|k| !next.named_dependences.contains(k));
+        dropped.extend(gone.map(|k| self.dependence_label(*k)));
         next.stage(added, dropped);
         let confirmed = next.held_out_ln_likelihood() > self.held_out_ln_likelihood();
         if confirmed {
@@ -68,7 +90,7 @@ impl Positions {
             self.refit();
             let before = self.fitted.effects.len();
             self.drop_needless();
-            if self.fitted.effects.len() == before {
+            if self.fitted.effects.len() == before && !self.drop_needless_dependence() {
                 return;
             }
         }
@@ -107,6 +129,10 @@ impl Positions {
         is_held || numbers.into_iter().all(is_small)
     }
 
+    fn dependence_label(&self, k: usize) -> String {
+        self.dependences[k].effect().map_or_else(String::new, |(kind, at)| format!("{}@{at}", kind.name))
+    }
+
     pub(crate) fn label(&self, candidate: usize) -> String {
         format!("{}@{}", self.candidates[candidate].effect, self.candidates[candidate].at)
     }
@@ -115,7 +141,12 @@ impl Positions {
     /// undeclared sessions.
     pub(super) fn score(&self) -> f64 {
         let uneven = self.transmissions.len() as f64 * self.transmission_price();
-        self.fitted.ln_likelihood - self.prices(&self.fitted.effects) - uneven - self.sessions_price()
+        let dependent = self.named_dependences.len() as f64 * self.dependence_price();
+        self.fitted.ln_likelihood
+            - self.prices(&self.fitted.effects)
+            - dependent
+            - uneven
+            - self.sessions_price()
     }
 
     /// Sum of the prices of several candidates \[ln of the likelihood\].
@@ -126,12 +157,16 @@ impl Positions {
     /// Price of one candidate \[ln of the likelihood\]: the rise of the logarithm of the likelihood that it must
     /// bring to stay in the model.
     fn price_of(&self, candidate: usize) -> f64 {
-        let springs = self.candidates.iter().zip(&self.considered);
-        let places = springs.filter(|(c, considered)| **considered && c.play_nm.is_none()).count();
         let candidate = &self.candidates[candidate];
         // the torque scale of play was chosen too
         let numbers = candidate.count() + usize::from(candidate.play_nm.is_some());
-        self.price(numbers, places.max(1))
+        self.price(numbers, self.springs().max(1))
+    }
+
+    /// Number of places where a spring may be named.
+    pub(super) fn springs(&self) -> usize {
+        let springs = self.candidates.iter().zip(&self.considered);
+        springs.filter(|(c, considered)| **considered && c.play_nm.is_none()).count()
     }
 
     /// Whether the candidates with the indices `a` and `b` are the same effect at the same place. They then differ in
@@ -151,7 +186,11 @@ impl Positions {
     /// Fits of the model `base` with one more effect each, for candidates for which `allowed` is true. All of these
     /// are screened with the linearized model, and the [`FULL_FITS`] most promising are fitted in full. Each fit
     /// comes with the index of the candidate that was added.
-    fn best_additions(&self, base: &Fitted, allowed: impl Fn(usize) -> bool) -> Vec<(usize, Fitted)> {
+    pub(super) fn best_additions(
+        &self,
+        base: &Fitted,
+        allowed: impl Fn(usize) -> bool,
+    ) -> Vec<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let mut gains = self.gains(base);
         let is_in = |c: usize| base.effects.iter().any(|e| self.is_same(*e, c));
@@ -187,7 +226,7 @@ impl Positions {
     fn gains(&self, base: &Fitted) -> Vec<(usize, f64)> {
         let from_level = base.geometry.level_to_instrument();
         let counts: Vec<usize> = self.candidates.iter().map(|c| c.count()).collect();
-        let gains = self.linear_gains(base, &counts, &mut |sample, _, columns| {
+        let gains = self.linear_gains(base, &counts, false, &mut |sample, _, columns| {
             for candidate in 0..self.candidates.len() {
                 sample.deflection.per_compliance(candidate, &base.geometry.gravity, |by| {
                     columns.push(from_level * by);
@@ -199,8 +238,15 @@ impl Positions {
 
     /// Rise of the logarithm of the likelihood for each block of columns that is added to the linearized model `base`.
     /// `columns` computes the columns of all blocks, and `counts` gives the number of columns of each block. A block of
-    /// a single column is a compliance, and its rise is 0 if the compliance would be negative.
-    pub(crate) fn linear_gains(&self, base: &Fitted, counts: &[usize], columns: Further) -> Vec<f64> {
+    /// a single column is a compliance, and its rise is 0 if the compliance would be negative, unless the numbers have
+    /// `either_sign`.
+    pub(crate) fn linear_gains(
+        &self,
+        base: &Fitted,
+        counts: &[usize],
+        either_sign: bool,
+        columns: Further,
+    ) -> Vec<f64> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let normal = normal(&all, &self.numbers, base, columns);
         let own: Vec<usize> = (0..normal.own).collect();
@@ -216,7 +262,7 @@ impl Positions {
             let left = &whole - cross.transpose() * DMatrix::from_columns(&answered);
             let gradient = normal.gradient.rows(at, count) - cross.transpose() * &answer;
             let is_seen = left.diagonal().max() > 1e-9 * whole.diagonal().max();
-            if !is_seen || (count == 1 && gradient[0] <= 0.0) {
+            if !is_seen || (count == 1 && !either_sign && gradient[0] <= 0.0) {
                 0.0
             } else {
                 0.5 * squares(&left, &gradient).0

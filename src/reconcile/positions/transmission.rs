@@ -51,7 +51,7 @@ impl Positions {
             (0..self.tree.driven.len()).filter(|j| !self.transmissions.contains(j)).collect();
         let further: Vec<Number> = open.iter().flat_map(|&j| numbers(j)).collect();
         let counts = vec![numbers(0).count(); open.len()];
-        let gains = self.linear_gains(&self.fitted, &counts, &mut |sample, placer, columns| {
+        let gains = self.linear_gains(&self.fitted, &counts, true, &mut |sample, placer, columns| {
             placer.slopes(sample.placing(), &further, columns);
         });
         let mut order: Vec<(usize, f64)> = open.into_iter().zip(gains).collect();

@@ -50,8 +50,23 @@ impl LackOfFit {
     /// Sentences on up to three structures that are no chance result, the most improbable first. No quantity of a
     /// channel is mentioned twice.
     pub fn sentences(&self) -> Vec<String> {
+        self.sentences_on(|s| s.ln_p < libm::log(CHANCE))
+    }
+
+    /// The same for structures that are no chance result even if all readings scatter as much as the residuals do, and
+    /// not only as much as declared.
+    pub(crate) fn sentences_beyond_scatter(&self) -> Vec<String> {
+        let scatter = self.chi2_per_dof.max(1.0);
+        self.sentences_on(|s| {
+            let [declared, scattered] =
+                [1.0, scatter].map(|variance| ln_chi_squared_tail(s.statistic / variance, s.dof));
+            s.ln_p - declared + scattered < libm::log(CHANCE)
+        })
+    }
+
+    fn sentences_on(&self, is_no_chance: impl Fn(&Structure) -> bool) -> Vec<String> {
         let mut told: Vec<&Structure> = Vec::new();
-        for structure in self.structures.iter().filter(|s| s.ln_p < libm::log(CHANCE)) {
+        for structure in self.structures.iter().filter(|s| is_no_chance(s)) {
             if !told.iter().any(|t| t.channel == structure.channel && t.follows == structure.follows) {
                 told.push(structure);
             }

@@ -2,12 +2,14 @@
 //! whose calibrated values are outside their tolerance.
 
 use super::outcome::Calibrated;
+use crate::arm::effect::entry::Effect;
 use crate::arm::effect::kind::Place;
 use crate::arm::structure::Piece;
 use crate::reconcile::fit::descent::Fit;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::estimate::Interval;
 use crate::reconcile::model::parameters::{Candidate, FreeParameter};
+use crate::reconcile::readings::campaign::Campaign;
 
 /// Two places are neighbours if they are at most this many elements of the chain apart, such as two joints with a link
 /// between them.
@@ -16,6 +18,8 @@ const NEAR: usize = 2;
 const TOLERANCE: f64 = 2.0;
 /// A calibrated factor is called improbable if fewer than one in this many faultless parts deviate so far.
 const RARE: f64 = 200.0;
+/// A calibrated factor that at most one in this many faultless parts has is no matter of tolerance.
+const IMPOSSIBLE: f64 = 1e6;
 
 /// Sentence that two effects of the model have opposite signs at neighbouring places; `None` if no two have. The two
 /// effects are of the same kind, or both are masses. Each then cancels a part of the other. Together they describe one
@@ -93,10 +97,13 @@ pub(crate) fn unbounded(fit: &Fit, ends: &[Interval]) -> Option<String> {
     })
 }
 
-/// Sentence on the calibrated factors that are outside their tolerance; `None` if there are none.
-pub(crate) fn beyond_tolerance(fit: &Fit, calibrated: &[Calibrated]) -> Option<String> {
-    let numbers = fit.model.nuisance.numbers.iter().zip(calibrated);
-    let beyond = numbers.filter_map(|((_, sd), calibrated)| {
+/// Sentence on the calibrated factors that are outside their tolerance; `None` if there are none. `deviations` are the
+/// standard deviations of the logarithms of the factors by their tolerances.
+pub(crate) fn beyond_tolerance(
+    deviations: impl Iterator<Item = f64>,
+    calibrated: &[Calibrated],
+) -> Option<String> {
+    let beyond = deviations.zip(calibrated).filter_map(|(sd, calibrated)| {
         let (part, tolerance) = (calibrated.factor.value - 1.0, TOLERANCE * sd);
         let one_in = honest_parts_for_one(libm::log(calibrated.factor.value) / sd);
         let words = format!(
@@ -117,6 +124,36 @@ pub(crate) fn beyond_tolerance(fit: &Fit, calibrated: &[Calibrated]) -> Option<S
         false => "",
     };
     (!beyond.is_empty()).then(|| format!("calibration leaves the tolerance: {}{doubt}", beyond.join(", ")))
+}
+
+/// Sentence that calibration explains the readings only with a factor that no faultless part has; `None` if there is no
+/// such factor.
+pub(crate) fn impossible_calibration(campaign: &Campaign, fit: &Fit) -> Option<String> {
+    let numbers = fit.model.nuisance.numbers.iter().zip(&fit.point.u).enumerate();
+    let impossible = numbers.filter(|(_, (_, u))| honest_parts_for_one(**u) > IMPOSSIBLE);
+    let words = impossible.map(|(i, ((calibration, sd), u))| {
+        let part = fit.model.nuisance.factor(i, *u) - 1.0;
+        format!(
+            "{} by {:+.1} % (tolerance {:.1} %)",
+            calibration.name(),
+            100.0 * part,
+            100.0 * TOLERANCE * sd
+        )
+    });
+    let words: Vec<String> = words.collect();
+    if words.is_empty() {
+        return None;
+    }
+    let stated: Vec<String> = campaign.arm.effects.iter().map(Effect::label).collect();
+    let stated = match stated.is_empty() {
+        true => String::new(),
+        false => format!(", or the arm lacks an effect that its file states ({})", stated.join(", ")),
+    };
+    Some(format!(
+        "calibration explains the readings, but only with factors that less than one honest part in a million has: {}. The \
+         part is another than the arm file says, something else deflects or has mass there{stated}",
+        words.join(", ")
+    ))
 }
 
 /// The number n such that one in n faultless parts deviates from nominal by at least `deviations` standard

@@ -68,7 +68,8 @@ fn add_effects(campaign: &Campaign, forward: &Forward, fit: &Fit, findings: &[Fi
     }
 }
 
-fn calibrate(arm: &mut Arm, calibration: &Calibration, factor: f64) {
+/// Multiplies a property of an arm by `factor`.
+pub(crate) fn calibrate(arm: &mut Arm, calibration: &Calibration, factor: f64) {
     for element in &mut arm.chain {
         match (calibration, element) {
             (Calibration::Stiffness(name), Element::Joint(joint)) if joint.name == *name => {

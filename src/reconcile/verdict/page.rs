@@ -63,7 +63,7 @@ fn sentence(outcome: &Outcome) -> String {
     };
     match outcome.verdict {
         Verdict::NoGap => {
-            "There is no gap: noise and the tolerance of the parts explain every reading.".into()
+            "There is no gap: noise and the calibration of the parts explain every reading.".into()
         }
         Verdict::Explained => {
             let names: Vec<String> = outcome.effects.iter().map(place).collect();

@@ -1,0 +1,263 @@
+//! What the deflection of the nominal arm depends on: stiffnesses, moduli and masses.
+//!
+//! An arm whose file has compliances deflects under gravity in the nominal model too. A stiffness within its tolerance
+//! changes this deflection, which is calibration. A mass at a joint, cables along a link or a link with another modulus
+//! change it further. If the model had none of them, such a change would look like compliances elsewhere. All changes
+//! are small, so the deflection is linear in them: it is computed once with each of them, and compared.
+
+use super::analysis::Positions;
+use super::fit::fit;
+use super::fitted::{Fitted, Sample};
+use super::kinematics::Number;
+use super::loads::{CompliantPlace, Loads};
+use super::search::{FULL_FITS, TIE};
+use crate::arm::effect::kind::{Kind, Parameter, Scale};
+use crate::arm::effect::subject::Subject;
+use crate::arm::effect::{extra_mass, harness_mass, modulus_error};
+use crate::arm::{Arm, JointModel};
+use crate::reconcile::model::calibration::{Calibration, Nuisance};
+use crate::reconcile::readings::campaign::Campaign;
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+/// The effects that change the nominal deflection.
+const EFFECTS: [&Kind; 3] = [&extra_mass::KIND, &harness_mass::KIND, &modulus_error::KIND];
+/// Change of a number over which the nominal deflection is compared.
+const STEP: f64 = 0.05;
+/// A change of the nominal deflection below this size is rounding \[m\].
+const NOTHING_M: f64 = 1e-12;
+
+/// Something on which the nominal deflection depends, described by one number that is 0 for the nominal arm.
+#[derive(Clone)]
+pub(crate) enum Dependence {
+    /// A factor on a property of the arm, and the standard deviation of its logarithm by the tolerance. The number is
+    /// the logarithm in these standard deviations.
+    Tolerance(Calibration, f64),
+    /// An effect of one parameter at a place. The number is the parameter, or its reciprocal less 1 if the parameter is
+    /// a factor.
+    Effect(&'static Kind, String),
+}
+
+impl Dependence {
+    /// Changes an arm by the number `x`.
+    fn change(&self, x: f64, subject: &mut Subject) {
+        match self {
+            Self::Tolerance(calibration, sd) => {
+                Nuisance { numbers: vec![(calibration.clone(), *sd)] }.apply(&[x], subject);
+            }
+            Self::Effect(kind, at) => (kind.apply)(&[self.value(x)], at, subject),
+        }
+    }
+
+    /// The factor, or the parameter of the effect, for the number `x`.
+    pub(crate) fn value(&self, x: f64) -> f64 {
+        match self {
+            Self::Tolerance(_, sd) => libm::exp(sd * x),
+            Self::Effect(kind, _) if parameter(kind).scale == Scale::Reciprocal => 1.0 / (1.0 + x),
+            Self::Effect(..) => x,
+        }
+    }
+
+    /// Whether the parameter of the effect can have the value for the number `x`.
+    fn is_possible(&self, x: f64) -> bool {
+        match self {
+            Self::Tolerance(..) => true,
+            Self::Effect(kind, _) => (parameter(kind).low..=parameter(kind).high).contains(&self.value(x)),
+        }
+    }
+
+    /// Name of the factor or effect in result files.
+    pub(crate) fn name(&self) -> String {
+        match self {
+            Self::Tolerance(calibration, _) => calibration.name(),
+            Self::Effect(kind, at) => format!("{}@{at}", kind.name),
+        }
+    }
+
+    /// Name of the effect and its place; `None` for a factor within tolerance.
+    pub(crate) fn effect(&self) -> Option<(&'static Kind, &str)> {
+        match self {
+            Self::Tolerance(..) => None,
+            Self::Effect(kind, at) => Some((kind, at)),
+        }
+    }
+}
+
+/// The only parameter of an effect.
+pub(crate) fn parameter(kind: &Kind) -> &'static Parameter {
+    &(kind.parameters)(kind.places[0])[0]
+}
+
+/// Everything on which the nominal deflection of the campaign's arms may depend.
+fn dependences(campaign: &Campaign) -> Vec<Dependence> {
+    let mut out: Vec<Dependence> = Vec::new();
+    for arm in campaign.arms() {
+        for (calibration, sd) in Nuisance::new(arm, &campaign.statement.tolerance).numbers {
+            add_tolerance(&mut out, calibration, sd);
+        }
+        for kind in EFFECTS.iter().filter(|kind| campaign.statement.considers(kind.name)) {
+            for at in places(arm, kind) {
+                // the trunk belongs to every arm
+                let is_known =
+                    out.iter().filter_map(Dependence::effect).any(|(k, a)| k.name == kind.name && a == at);
+                if !is_known {
+                    out.push(Dependence::Effect(kind, at));
+                }
+            }
+        }
+    }
+    out
+}
+
+/// Adds a factor within tolerance to the list. If the list has it, because arms share a part or a material, the links of
+/// the material are united.
+fn add_tolerance(list: &mut Vec<Dependence>, calibration: Calibration, sd: f64) {
+    let known = list.iter_mut().find_map(|one| match one {
+        Dependence::Tolerance(known, _) if known.name() == calibration.name() => Some(known),
+        _ => None,
+    });
+    match (known, calibration) {
+        (Some(Calibration::Modulus(_, links)), Calibration::Modulus(_, more)) => links.extend(more),
+        (Some(_), _) => {}
+        (None, calibration) => list.push(Dependence::Tolerance(calibration, sd)),
+    }
+}
+
+fn places(arm: &Arm, kind: &Kind) -> Vec<String> {
+    let structure = arm.structure(JointModel::ThreeSegment);
+    kind.places.iter().flat_map(|place| structure.places(*place)).collect()
+}
+
+impl Positions {
+    /// Computes how the nominal deflection depends on stiffnesses, moduli and masses, and frees those that calibration
+    /// adjusts within tolerance. An arm that is rigid in its file does not deflect, so that nothing changes.
+    pub(super) fn free_tolerances(&mut self, campaign: &Campaign) {
+        let all = dependences(campaign);
+        let columns: Vec<Vec<Vector3<f64>>> =
+            all.iter().map(|dependence| self.changes_m(campaign, dependence)).collect();
+        let is_seen = |column: &[Vector3<f64>]| column.iter().any(|by| by.norm() > NOTHING_M);
+        let (dependences, columns): (Vec<Dependence>, Vec<Vec<Vector3<f64>>>) =
+            all.into_iter().zip(columns).filter(|(_, column)| is_seen(column)).unzip();
+        for (i, sample) in self.samples.iter_mut().enumerate() {
+            sample.nominal_m = columns.iter().map(|column| column[i]).collect();
+        }
+        self.fitted.geometry.dependences = vec![0.0; dependences.len()];
+        let is_free = |k: &usize| matches!(dependences[*k], Dependence::Tolerance(..));
+        let numbers: Vec<Number> = (0..dependences.len()).filter(is_free).map(Number::Tolerance).collect();
+        self.dependences = dependences;
+        if !numbers.is_empty() {
+            self.numbers.extend(numbers);
+            self.refit();
+            self.stage("parts within tolerance".into(), Vec::new());
+        }
+    }
+
+    /// For each sample, the change of its nominal deflection per unit of the number of a dependence, in the level frame
+    /// \[m\].
+    fn changes_m(&self, campaign: &Campaign, dependence: &Dependence) -> Vec<Vector3<f64>> {
+        let geometry = &self.fitted.geometry;
+        let of = |x: f64| {
+            Loads::changed(campaign, &self.tree, geometry, &[], &|subject| dependence.change(x, subject))
+        };
+        let [more, less] = [of(STEP), of(0.0)];
+        let rows = self.samples.par_iter().zip(&campaign.positions);
+        let change =
+            |(s, row): (&Sample, _)| (more.known_m(row, s.point) - less.known_m(row, s.point)) / STEP;
+        rows.map(change).collect()
+    }
+
+    /// Price of an effect on the nominal deflection \[ln of the likelihood\]: the rise of the logarithm of the
+    /// likelihood that it must bring to stay in the model.
+    pub(super) fn dependence_price(&self) -> f64 {
+        let effects = self.dependences.iter().filter(|d| d.effect().is_some()).count();
+        self.price(1, effects + self.springs())
+    }
+
+    /// Fits with one more effect on the nominal deflection each, with the index of the effect. All are screened with the
+    /// linearized model, and the most promising are fitted in full.
+    pub(super) fn best_dependences(&self) -> Vec<(usize, Fitted)> {
+        let all: Vec<&Sample> = self.samples.iter().collect();
+        let is_open =
+            |k: &usize| self.dependences[*k].effect().is_some() && !self.named_dependences.contains(k);
+        let open: Vec<usize> = (0..self.dependences.len()).filter(is_open).collect();
+        if open.is_empty() {
+            return Vec::new();
+        }
+        let from_level = self.fitted.geometry.level_to_instrument();
+        let gains = self.linear_gains(&self.fitted, &vec![1; open.len()], true, &mut |sample, _, columns| {
+            columns.extend(open.iter().map(|k| from_level * sample.nominal_m[*k]));
+        });
+        let mut order: Vec<(usize, f64)> =
+            open.into_iter().zip(gains).filter(|(_, gain)| *gain > 0.0).collect();
+        order.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        order.truncate(FULL_FITS);
+        let with = |(k, _): (usize, f64)| {
+            let numbers: Vec<Number> = self.numbers.iter().cloned().chain([Number::Effect(k)]).collect();
+            (k, fit(&all, &numbers, &self.fitted.effects, &self.fitted))
+        };
+        let tried: Vec<(usize, Fitted)> = order.into_par_iter().map(with).collect();
+        let is_possible =
+            |(k, f): &(usize, Fitted)| self.dependences[*k].is_possible(f.geometry.dependences[*k]);
+        tried.into_iter().filter(is_possible).collect()
+    }
+
+    /// The model with the effect number `k` on the nominal deflection, as it was fitted.
+    pub(super) fn with_dependence(&self, k: usize, fitted: Fitted) -> Self {
+        let mut next = Self { fitted, ..self.clone() };
+        next.numbers.push(Number::Effect(k));
+        next.named_dependences.push(k);
+        next
+    }
+
+    /// The model without the effect number `k` on the nominal deflection, fitted again.
+    fn without_dependence(&self, k: usize) -> Self {
+        let mut out = self.clone();
+        let kept = |n: &Number| *n != Number::Effect(k);
+        let moved = self.numbers.iter().zip(&self.fitted.moved).filter(|(n, _)| kept(n));
+        out.fitted.moved = moved.map(|(_, moved)| *moved).collect();
+        out.fitted.geometry.dependences[k] = 0.0;
+        out.numbers.retain(kept);
+        out.named_dependences.retain(|named| *named != k);
+        out.refit();
+        out
+    }
+
+    /// Drops the effect on the nominal deflection that is least worth its price, if there is one that is not. Returns
+    /// whether one was dropped.
+    pub(super) fn drop_needless_dependence(&mut self) -> bool {
+        let without = self.named_dependences.iter().map(|k| self.without_dependence(*k));
+        let gain = |next: &Self| next.score() - self.score();
+        let needless = without.filter(|next| gain(next) > 0.0);
+        let Some(next) = needless.max_by(|a, b| gain(a).total_cmp(&gain(b))) else { return false };
+        *self = next;
+        true
+    }
+
+    /// Names and places of effects on the nominal deflection that would fit as well in the place of effect number
+    /// `position` of the model.
+    pub(super) fn dependences_instead(&self, position: usize) -> Vec<(String, String)> {
+        let mut without = self.clone();
+        without.fitted.effects.remove(position);
+        without.fitted.compliances.remove(position);
+        without.fitted.deviations.remove(position);
+        without.refit();
+        self.as_good(without.best_dependences())
+    }
+
+    /// Effects that would fit as well in the place of the effect number `k` on the nominal deflection.
+    pub(super) fn instead_of_dependence(&self, k: usize) -> Vec<(String, String)> {
+        let without = self.without_dependence(k);
+        let springs = without.best_additions(&without.fitted, |c| self.candidates[c].count() == 1);
+        let as_good = springs.into_iter().filter(|(_, f)| f.ln_likelihood > self.fitted.ln_likelihood - TIE);
+        let name = |c: &CompliantPlace| (c.effect.to_string(), c.at.clone());
+        let springs: Vec<(String, String)> = as_good.map(|(c, _)| name(&self.candidates[c])).collect();
+        let others = without.best_dependences().into_iter().filter(|(other, _)| *other != k).collect();
+        [self.as_good(others), springs].concat()
+    }
+
+    fn as_good(&self, tried: Vec<(usize, Fitted)>) -> Vec<(String, String)> {
+        let good = tried.into_iter().filter(|(_, f)| f.ln_likelihood > self.fitted.ln_likelihood - TIE);
+        let named = good.filter_map(|(k, _)| self.dependences[k].effect());
+        named.map(|(kind, at)| (kind.name.to_string(), at.to_string())).collect()
+    }
+}
