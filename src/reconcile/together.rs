@@ -11,6 +11,7 @@ use super::model::estimate::Finding;
 use super::positions;
 use super::positions::analysis::Calibrated;
 use super::positions::outcome::FEWEST;
+use super::positions::setups;
 use super::predict::subject;
 use super::readings::campaign::Campaign;
 use super::records;
@@ -19,6 +20,7 @@ use super::select::lack_of_fit::LackOfFit;
 use super::verdict::outcome::{Outcome, Verdict};
 use super::verdict::stage::Stage;
 use super::verdict::too_little::rows;
+use crate::arm::effect::entry::Effect;
 use crate::arm::{Arm, Element};
 use serde_json::{Value, json};
 
@@ -38,9 +40,26 @@ use serde_json::{Value, json};
 /// assert!(outcome.effects.is_empty());
 /// ```
 pub fn reconcile(campaign: &Campaign) -> Outcome {
+    let in_one_frame = setups::in_one_frame(campaign);
+    let campaign = in_one_frame.as_ref().unwrap_or(campaign);
     let mut outcome = of_all(campaign);
+    outcome.reasons.extend(beyond_the_file(campaign, &outcome));
     outcome.reasons.extend(campaign.remarks.iter().cloned());
     outcome
+}
+
+/// Sentence that effects which were found add to effects of the same name that the arm file states; `None` if no effect
+/// does.
+fn beyond_the_file(campaign: &Campaign, outcome: &Outcome) -> Option<String> {
+    let stated: Vec<String> = campaign.arm.effects.iter().map(Effect::label).collect();
+    let found = outcome.effects.iter().map(Finding::label).filter(|label| stated.contains(label));
+    let found: Vec<String> = found.collect();
+    (!found.is_empty()).then(|| {
+        format!(
+            "found in addition to what the arm file states under the same name: {}; the corrected arm has both",
+            found.join(", ")
+        )
+    })
 }
 
 /// Reconciles the records against time and all other readings, whichever of these the campaign has, and joins the two

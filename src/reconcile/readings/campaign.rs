@@ -108,6 +108,8 @@ pub struct Campaign {
     /// Sentences on readings that were not taken as they are written, such as a constant column that is taken as not
     /// measured.
     pub remarks: Vec<String>,
+    /// Indices of the positions with which the rows of a further campaign begin, if several were joined.
+    pub(crate) joined_at: Vec<usize>,
     /// Records against time.
     pub records: Vec<Record>,
     /// blake3 hash of all files of the campaign.
@@ -257,6 +259,7 @@ impl Campaign {
             windup: Vec::new(),
             positions: Vec::new(),
             remarks: Vec::new(),
+            joined_at: Vec::new(),
             records: Vec::new(),
             hash: String::new(),
         };
@@ -338,6 +341,7 @@ impl Campaign {
             windup: Vec::new(),
             positions: rows,
             remarks: Vec::new(),
+            joined_at: Vec::new(),
             records: Vec::new(),
             hash: String::new(),
         };
@@ -460,6 +464,9 @@ impl Campaign {
             let rows = self.positions.len();
             let later = other.statement.positions.sessions.into_iter().map(|session| session.after(rows));
             self.statement.positions.sessions.extend(later);
+            if rows > 0 && !other.positions.is_empty() {
+                self.joined_at.push(rows);
+            }
             self.positions.extend(other.positions);
             self.remarks.extend(other.remarks);
             self.records.extend(other.records);

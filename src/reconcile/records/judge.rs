@@ -495,10 +495,15 @@ fn law_stated(curve: &Curve, law: Law, model: &TwistModel) -> Stated {
         .collect();
     // an effect whose interval of size contains zero is not found
     let is_bounded = match law {
-        Law::Segments(..) => true,
+        // a stiffness whose interval reaches below zero is that of no spring
+        Law::Segments(..) => parameters.iter().flat_map(|(_, list)| list).all(is_positive),
         _ => parameters.first().and_then(|(_, list)| list.first()).is_some_and(is_positive),
     };
     let state = if is_bounded { State::Found } else { State::NotIdentified };
-    let words = if is_bounded { "" } else { "the interval of its size contains zero" };
+    let words = match (is_bounded, law) {
+        (true, _) => "",
+        (false, Law::Segments(..)) => "the interval of a stiffness or of a torque of the curve contains zero",
+        (false, _) => "the interval of its size contains zero",
+    };
     Stated { what: law.what(), state, parameters, words: words.into() }
 }

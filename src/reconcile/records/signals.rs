@@ -2,7 +2,7 @@
 
 use super::blocks::Blocks;
 use super::reading::{JointSignals, Record};
-use super::smooth::{Smooth, half_width, noise, slope_noise, smooth, usual_step_s};
+use super::smooth::{Smooth, half_width, noise, slope_noise, smooth, usual_step_s, value_noise};
 use super::wave::Wave;
 
 /// Fraction of the largest speed below which the sign of the speed changes smoothly, because real friction does not
@@ -67,6 +67,8 @@ pub(crate) struct JointRows {
     /// Root mean squares, over all rows, of the accelerations of motor (first) and link (second) \[rad/s²\].
     accelerations_rad_s2: [f64; 2],
     records: Vec<Signals>,
+    /// For each record, the standard deviation of the noise that smoothing leaves in the torque \[N m\].
+    torque_noise_nm: Vec<f64>,
 }
 
 /// Twist at a row if the link's signal is late by some time, and the derivative of the twist with respect to this
@@ -100,6 +102,7 @@ impl JointRows {
             step_s: usual_step_s(&own[0].0.t_s),
             accelerations_rad_s2: [0.0; 2],
             records: Vec::new(),
+            torque_noise_nm: Vec::new(),
         };
         for (record, signals) in own {
             let share = (blocks * record.t_s.len()) as f64 / total as f64;
@@ -153,6 +156,7 @@ impl JointRows {
         };
         // at a reversal friction jumps and so does the torque: both are smoothed with the same window
         let torque = smooth(t_s, torque_nm, torque_half);
+        self.torque_noise_nm.push(noise(torque_nm) * value_noise(torque_half));
         let sense = smooth(t_s, &sign, torque_half).value;
         let loaded: Vec<f64> = sign.iter().zip(torque_nm).map(|(s, t)| s * t.abs()).collect();
         let load_sense_nm = smooth(t_s, &loaded, torque_half).value;
@@ -222,6 +226,12 @@ impl JointRows {
         let squares: f64 =
             self.records.iter().map(|r| noise(&r.motor_rad).powi(2) + noise(&r.link_rad).powi(2)).sum();
         (squares / self.records.len() as f64).sqrt()
+    }
+
+    /// Standard deviation of the noise of the smoothed torque \[N m\].
+    pub(crate) fn torque_noise_nm(&self) -> f64 {
+        let squares: f64 = self.torque_noise_nm.iter().map(|nm| nm * nm).sum();
+        (squares / self.torque_noise_nm.len() as f64).sqrt()
     }
 
     /// Smallest and largest angle of the motor at the output \[rad\].

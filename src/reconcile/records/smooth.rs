@@ -47,6 +47,11 @@ pub(crate) fn slope_noise(x: &[f64], half: usize, step_s: f64) -> f64 {
     2.5 * noise(x) * (12.0 / ((2 * half + 1) as f64).powi(3)).sqrt() / step_s
 }
 
+/// Standard deviation of the value that [`smooth`] finds in the middle of its window, as a part of the noise of the rows.
+pub(crate) fn value_noise(half: usize) -> f64 {
+    (9.0 / (4.0 * (2 * half + 1) as f64)).sqrt()
+}
+
 /// Half width of the widest window whose misfit is still the signal's own noise \[rows\].
 pub(crate) fn half_width(t_s: &[f64], x: &[f64]) -> usize {
     let noise = noise(x);
@@ -55,7 +60,7 @@ pub(crate) fn half_width(t_s: &[f64], x: &[f64]) -> usize {
         let left = x.iter().zip(&smooth.value).filter(|(_, v)| !v.is_nan());
         let (sum, count) = left.fold((0.0, 0usize), |(s, n), (x, v)| (s + (x - v).powi(2), n + 1));
         // a cubic removes this fraction of the noise's variance from the residuals in the middle of its window
-        let taken = 9.0 / (4.0 * (2 * **half + 1) as f64);
+        let taken = value_noise(**half).powi(2);
         count > x.len() / 2 && (sum / count as f64).sqrt() <= STILL_NOISE * noise * (1.0 - taken).sqrt()
     };
     HALF_WIDTHS

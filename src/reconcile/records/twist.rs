@@ -37,6 +37,8 @@ const CLEARLY_MANY: f64 = 2.5;
 /// A transmission error of the output is named only if it lowers the root mean square error on held-out blocks to
 /// less than this fraction.
 const MATERIAL: f64 = 0.8;
+/// Errors up to this multiple of the noise of the sensors are noise.
+const STILL_NOISE: f64 = 1.15;
 /// Largest number of iterations by which the time shift is found.
 const ROUNDS: usize = 12;
 
@@ -313,7 +315,7 @@ impl<'a> TwistModel<'a> {
         loop {
             let left = self.candidates().into_iter().filter(|g| !groups.contains(g));
             let tried = left.filter_map(|g| Some((g, self.fit(&[groups.as_slice(), &[g]].concat())?)));
-            let better = tried.filter(|(g, fit)| g.pays(fit, &best));
+            let better = tried.filter(|(g, fit)| self.pays(*g, fit, &best));
             // a transmission error and gravity both vary with the joint's angle; compliance goes first where it is
             // enough
             let order = |(group, fit): &(Group, Fitted)| (group.is_of_gear(), fit.held_out_rms());
@@ -337,6 +339,19 @@ impl<'a> TwistModel<'a> {
         Some(())
     }
 
+    /// Whether the group is to be named. A transmission error is not where the fit without it leaves no more than the
+    /// noise of the sensors: the waves are known without noise, so they would take the place of a noisy torque that
+    /// varies with the angle, as that of gravity does.
+    fn pays(&self, group: Group, with: &Fitted, without: &Fitted) -> bool {
+        group.pays(with, without) && !(group.is_of_gear() && self.leaves_noise_only(without))
+    }
+
+    /// Whether the errors of a fit on held-out blocks are the noise of the angles and of the torque.
+    fn leaves_noise_only(&self, fitted: &Fitted) -> bool {
+        let by_torque_rad = fitted.value(self.places.torque()) * self.rows.torque_noise_nm();
+        fitted.held_out_rms() < STILL_NOISE * libm::hypot(self.rows.noise_rad(), by_torque_rad)
+    }
+
     /// Removes those of the `groups` without which the model predicts held-out blocks about as well, and returns the
     /// rest. `best` becomes the fit with the rest.
     fn thinned(&mut self, mut groups: Vec<Group>, best: &mut Fitted) -> Vec<Group> {
@@ -345,7 +360,7 @@ impl<'a> TwistModel<'a> {
             if without.len() == groups.len() {
                 continue;
             }
-            if let Some(fit) = self.fit(&without).filter(|fit| !group.pays(best, fit)) {
+            if let Some(fit) = self.fit(&without).filter(|fit| !self.pays(group, best, fit)) {
                 self.steps.push((format!("without {}", group.step()), fit.held_out_rms()));
                 (groups, *best) = (without, fit);
             }
