@@ -55,8 +55,8 @@ fn masses_moduli_and_springs_are_told_apart_or_not_named() {
     let kinds = [
         effect("extra_mass", "j5", "delta_kg", 3.0),
         effect("extra_mass", "j3", "delta_kg", 6.0),
-        effect("harness_mass", "link3", "kg_per_m", 8.0),
-        effect("modulus_error", "link2", "factor", 0.5),
+        effect("harness_mass", "forearm", "kg_per_m", 8.0),
+        effect("modulus_error", "upper_arm", "factor", 0.5),
         effect("connection_compliance", "j3", "stiffness_nm_per_rad", 1.5e5),
         effect("bearing_tilt", "j2", "stiffness_nm_per_rad", 3e5),
     ];

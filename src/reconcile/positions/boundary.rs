@@ -60,7 +60,7 @@ impl Positions {
             _ => format!("something jumps before row {row}"),
         };
         match (boundary.declared, self.changes_at(campaign, boundary)) {
-            (true, _) => format!("{what} (declared in campaign.json)"),
+            (true, _) => format!("{what} (as declared)"),
             (false, None) => format!("{what}: a session of its own"),
             (false, Some(change)) => format!(
                 "{what}, or something depends on {change}: these readings cannot tell a session from that, because both \
