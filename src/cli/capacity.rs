@@ -138,7 +138,8 @@ fn failing(limit: &Limit) -> String {
 fn headline(name: &str, found: &Capacity) -> String {
     let Window { least, most } = &found.window;
     let (least_kg, most_kg) = (least.payload_kg, most.payload_kg);
-    let first = |pose: &str| if pose.is_empty() { String::new() } else { format!(", first in the pose {pose}") };
+    let first =
+        |pose: &str| if pose.is_empty() { String::new() } else { format!(", first in the pose {pose}") };
     if !found.window.holds() {
         let words = if least_kg.is_finite() {
             format!(
@@ -151,7 +152,11 @@ fn headline(name: &str, found: &Capacity) -> String {
                 first(&found.pose)
             )
         } else {
-            format!("without payload {} fails{}, and no payload helps", failing(least), first(&found.least_pose))
+            format!(
+                "without payload {} fails{}, and no payload helps",
+                failing(least),
+                first(&found.least_pose)
+            )
         };
         return format!("{name} holds no payload in all of its poses: {words}\n");
     }
@@ -163,7 +168,11 @@ fn headline(name: &str, found: &Capacity) -> String {
         }
         (true, is_limited) => {
             let range = match is_limited {
-                true => format!("from {} to {} kg in all of its poses; {too_much}", fixed(least_kg, 3), fixed(most_kg, 3)),
+                true => format!(
+                    "from {} to {} kg in all of its poses; {too_much}",
+                    fixed(least_kg, 3),
+                    fixed(most_kg, 3)
+                ),
                 false => format!("{} kg and any larger payload in all of its poses", fixed(least_kg, 3)),
             };
             format!(
@@ -194,7 +203,11 @@ fn to_text(name: &str, found: &Capacity) -> String {
     }
     let needy: Vec<_> = found.table.iter().filter(|at| at.window.least.payload_kg > 0.0).collect();
     if !needy.is_empty() {
-        let _ = writeln!(out, "\n{:>8}  {:>10}  {:<14}  {:<22}  pose", "reach m", "least kg", "begins at", "check");
+        let _ = writeln!(
+            out,
+            "\n{:>8}  {:>10}  {:<14}  {:<22}  pose",
+            "reach m", "least kg", "begins at", "check"
+        );
     }
     for at in needy {
         let least = &at.window.least;

@@ -37,8 +37,9 @@ pub(crate) fn arm_capacity(arm: &Arm, cases: &[LoadCase], limits: &[LoadLimit]) 
         .into_iter()
         .filter(|name| limits.iter().all(|limit| limit.joint != *name))
         .collect();
-    let remark = (!unjudged.is_empty())
-        .then(|| format!("No limit is known of these joints, which are not judged: {}.", unjudged.join(", ")));
+    let remark = (!unjudged.is_empty()).then(|| {
+        format!("No limit is known of these joints, which are not judged: {}.", unjudged.join(", "))
+    });
     Capacity::new(all, table, remark.into_iter().collect())
 }
 
@@ -196,7 +197,9 @@ mod tests {
         assert!((half_kg - (100.0 / 9.81 - 1.0)).abs() < 1e-9, "{found:?}");
         let most = &found.window.most;
         assert_eq!((most.piece.as_str(), most.check.as_str()), ("j", "torque limit"));
-        assert!(found.window.least.payload_kg == 0.0 && found.least_pose.is_empty() && found.remarks.is_empty());
+        assert!(
+            found.window.least.payload_kg == 0.0 && found.least_pose.is_empty() && found.remarks.is_empty()
+        );
     }
 
     #[test]

@@ -50,8 +50,7 @@ pub struct Capacity {
 impl Capacity {
     /// The capacity of an arm with the payloads `window` in all poses together, and those of each pose in `table`.
     pub(crate) fn new(window: Window, mut table: Vec<AtPose>, remarks: Vec<String>) -> Self {
-        let most =
-            table.iter().min_by(|a, b| a.window.most.payload_kg.total_cmp(&b.window.most.payload_kg));
+        let most = table.iter().min_by(|a, b| a.window.most.payload_kg.total_cmp(&b.window.most.payload_kg));
         let least =
             table.iter().max_by(|a, b| a.window.least.payload_kg.total_cmp(&b.window.least.payload_kg));
         let pose = most.map_or(String::new(), |at| at.pose.clone());
@@ -74,7 +73,8 @@ impl Capacity {
         let row = |at: &AtPose| with(&at.window, json!({"reach_m": at.reach_m, "pose": at.pose}));
         let rows: Vec<Value> = self.table.iter().map(row).collect();
         let pose = if self.window.holds() { &self.pose } else { &self.least_pose };
-        let all = json!({"pose": pose, "least_pose": self.least_pose, "table": rows, "remarks": self.remarks});
+        let all =
+            json!({"pose": pose, "least_pose": self.least_pose, "table": rows, "remarks": self.remarks});
         with(&self.window, all)
     }
 }
@@ -108,7 +108,8 @@ fn capacity(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], own: &[us
     let mut remarks = Vec::new();
     if loaded.is_empty() {
         loaded.clone_from(&space.sizing_cases);
-        remarks.push("Every pose states a payload of its own; all of them take the same payload here.".into());
+        remarks
+            .push("Every pose states a payload of its own; all of them take the same payload here.".into());
     } else if !kept.is_empty() {
         let names: Vec<String> =
             kept.iter().map(|&case| format!("\u{201c}{}\u{201d}", space.cases[case].name)).collect();

@@ -67,7 +67,8 @@ fn read_limit(joint: &Object, name: &Node, text: &str, arm: &Arm) -> Option<Opti
     let Some(motion) = motion_of(arm, text) else {
         let names: Vec<&str> = joint_names(arm).collect();
         let all = format!("joints of {}: {}", arm.name, names.join(", "));
-        let hint = closest(text, &names).map_or(all.clone(), |near| format!("did you mean \"{near}\"? {all}"));
+        let hint =
+            closest(text, &names).map_or(all.clone(), |near| format!("did you mean \"{near}\"? {all}"));
         return name.fault(format!("the arm has no joint \"{text}\""), &hint);
     };
     let (key, other, check, words) = match motion {
@@ -113,7 +114,8 @@ pub(crate) fn example(arm: &Arm) -> String {
 pub(crate) fn limits_of_parts(arm: &Arm, catalogs: &Catalogs) -> Vec<LoadLimit> {
     let of_joint = |joint: &Joint| {
         let gear = joint.gear.as_ref().and_then(|name| catalogs.gear(name).ok());
-        let actuator = joint.gear.as_ref().filter(|_| gear.is_some_and(|gear| gear.kind == GearKind::Actuator));
+        let actuator =
+            joint.gear.as_ref().filter(|_| gear.is_some_and(|gear| gear.kind == GearKind::Actuator));
         let motor = joint.motor.as_ref().or(actuator).and_then(|name| catalogs.motor(name).ok());
         let average_nm = gear.and_then(|gear| Some(gear.average_torque_limit_nm? * joint.stages.after.ratio));
         let continuous_nm = gear.zip(motor).and_then(|(gear, motor)| {
@@ -122,9 +124,8 @@ pub(crate) fn limits_of_parts(arm: &Arm, catalogs: &Catalogs) -> Vec<LoadLimit> 
                 stages.before.efficiency * gear.efficiency.unwrap_or(1.0) * stages.after.efficiency;
             Some(motor.rated_torque_nm? * stages.whole_ratio(gear.ratio) * efficiency)
         });
-        let limit = |check, most: Option<f64>| {
-            most.map(|most| LoadLimit { joint: joint.name.clone(), check, most })
-        };
+        let limit =
+            |check, most: Option<f64>| most.map(|most| LoadLimit { joint: joint.name.clone(), check, most });
         [
             limit("average torque of the gear", average_nm),
             limit("continuous torque of the motor", continuous_nm),
@@ -142,9 +143,11 @@ mod tests {
     fn every_fault_of_a_file_of_limits_is_found_with_what_exists() {
         let text = r#"{"name": "gantry", "chain": [{"type": "prismatic", "name": "z", "axis": [0, 0, 1], "stiffness_n_per_m": null},
             {"type": "joint", "name": "wrist", "axis": [0, 1, 0], "stiffness_nm_per_rad": null}]}"#;
-        let arm = read_arm_document(Document::parse("a", text).expect("JSON"), &Catalogs::default()).expect("an arm");
+        let arm = read_arm_document(Document::parse("a", text).expect("JSON"), &Catalogs::default())
+            .expect("an arm");
         let read = |text: &str| read_limits(Document::parse("l.json", text).expect("JSON"), &arm);
-        let sound = r#"{"joints": [{"name": "z", "max_force_n": 200}, {"name": "wrist", "max_torque_nm": null}]}"#;
+        let sound =
+            r#"{"joints": [{"name": "z", "max_force_n": 200}, {"name": "wrist", "max_torque_nm": null}]}"#;
         let limits = read(sound).expect("sound");
         assert_eq!(limits, [LoadLimit { joint: "z".into(), check: "force limit", most: 200.0 }]);
         let faults = read(
@@ -162,6 +165,11 @@ mod tests {
         ] {
             assert!(said.contains(words), "{words}: {said}");
         }
-        assert!(read(r#"{"joint": []}"#).expect_err("a fault").to_string().contains("\"wrist\", \"max_torque_nm\": 87"));
+        assert!(
+            read(r#"{"joint": []}"#)
+                .expect_err("a fault")
+                .to_string()
+                .contains("\"wrist\", \"max_torque_nm\": 87")
+        );
     }
 }

@@ -131,7 +131,10 @@ mod tests {
             ((kg - 10.0).abs() > 7.5).then(|| Overload { piece: piece.into(), check: "torque".into() })
         };
         let window = window_around(4.0, &overload);
-        assert!((window.least.payload_kg - 2.5).abs() < 1e-12 && window.least.piece == "spring", "{window:?}");
+        assert!(
+            (window.least.payload_kg - 2.5).abs() < 1e-12 && window.least.piece == "spring",
+            "{window:?}"
+        );
         assert!((window.most.payload_kg - 17.5).abs() < 1e-12 && window.most.piece == "motor", "{window:?}");
         let above = window_around(1e3, &|kg: f64| (kg < 20.0).then(Overload::default));
         assert!(above.most.payload_kg.is_infinite() && !window.and(above).holds());
