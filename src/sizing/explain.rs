@@ -50,7 +50,7 @@ pub struct Rejection {
     /// Every check that excludes the part, at least one. The smallest margin comes first; checks that could not be
     /// made come last.
     pub checks: Vec<Check>,
-    /// Catalog columns that the part leaves blank, besides those that the checks name. Empty if every check was made.
+    /// Further catalog columns that the part leaves blank, which no check names. Empty if every check was made.
     pub also_lacks: Vec<&'static str>,
 }
 

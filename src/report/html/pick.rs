@@ -108,6 +108,7 @@ impl PickedArm {
     /// The values for the template of the card that shows this pick. Pictures are added to `gallery`.
     pub(super) fn context(&self, gallery: &mut Gallery) -> Value {
         let (worst, slowest) = (self.worst(), self.slowest());
+        let kinds = self.checks_of_any_drive();
         let drawing = worst.as_ref().map(|s| gallery.show(&self.drawing(s)));
         let modes: Vec<Value> =
             slowest.iter().flat_map(|s| self.mode_figures(s)).map(|figure| gallery.show(&figure)).collect();
@@ -123,9 +124,18 @@ impl PickedArm {
             "modal_case": slowest.as_ref().map(|s| s.case.name.clone()),
             "parts": worst.as_ref().map(|s| table(&parts_table(&s.parts))),
             "links": self.links(),
-            "drives": self.drives.iter().rev().map(drive).collect::<Vec<_>>(),
+            "checks": kinds.iter().map(|kind| json!({"name": kind.label(), "unit": kind.unit()})).collect::<Vec<_>>(),
+            "drives": self.drives.iter().rev().map(|row| drive(row, &kinds)).collect::<Vec<_>>(),
             "row": self.row,
         })
+    }
+
+    /// The kinds of checks that the page shows and that were made for some drive, in the order of its table. Drives
+    /// differ in their checks: a screw has no bearing that tilts, and a rack does not buckle.
+    fn checks_of_any_drive(&self) -> Vec<CheckKind> {
+        let is_made =
+            |kind: &CheckKind| self.drives.iter().any(|row| row.checks.iter().any(|c| c.kind == *kind));
+        CHECKS.into_iter().filter(is_made).collect()
     }
 
     fn drawing(&self, solved: &Solved) -> Figure {
@@ -426,16 +436,18 @@ const CHECKS: [CheckKind; 22] = [
 ];
 
 /// The sizing of one joint for the template: torques, parts and the margin of every check. The columns of the page are
-/// those of joints that turn, so that the forces of a joint that slides are written with their unit.
-fn drive(row: &JointSizingRow) -> Value {
+/// those of joints that turn, so that the forces of a joint that slides are written with their unit. There is one entry
+/// for each of the checks `kinds`, null where the drive does not have this check.
+fn drive(row: &JointSizingRow, kinds: &[CheckKind]) -> Value {
     let number = |v: f64| significant(v, 4);
     let open = |v: Option<f64>| v.map_or("unknown".to_string(), number);
     let load = |v: Option<f64>| match v {
         Some(force_n) if row.slides => format!("{} N", number(force_n)),
         _ => open(v),
     };
+    let of_kind = |kind: &CheckKind| row.checks.iter().find(|c| c.kind == *kind);
     let made: Vec<Value> =
-        row.checks.iter().filter(|c| CHECKS.contains(&c.kind)).map(|c| check(c, row.binds)).collect();
+        kinds.iter().map(|kind| of_kind(kind).map_or(Value::Null, |c| check(c, row.binds))).collect();
     json!({
         "joint": row.joint,
         "gear": row.gear,
