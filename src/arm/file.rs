@@ -266,6 +266,8 @@ pub(crate) fn read_curve(object: &Object, catalogs: &Catalogs) -> Option<Curve> 
         (Some(stiffness), None, _) => stiffness.positive().map(Curve::Linear),
         (None, Some(windup), _) => read_windup(&windup).map(Curve::Windup),
         (None, None, Some(gear)) => gear_windup(find_gear(&gear, catalogs)?, &gear).map(Curve::Windup),
+        // a linkage turns a passive joint, which usually has no drive that could twist
+        (None, None, None) if object.has("coupled") => Some(Curve::Rigid),
         (None, None, None) => object.node().fault(
             "says nothing of its stiffness",
             "add \"stiffness_nm_per_rad\" (null = rigid), \"windup\" or \"gear\"",

@@ -110,7 +110,7 @@ pub(crate) static JOINT: Shape = Shape::new(
         TURNS_WITH,
     ],
     &[
-        Rule::Any(&["stiffness_nm_per_rad", "windup", "gear"]),
+        Rule::Any(&["stiffness_nm_per_rad", "windup", "gear", "coupled"]),
         Rule::Refuses("stiffness_nm_per_rad", &["windup"]),
         TRANSMISSION_RULES[0],
         TRANSMISSION_RULES[1],

@@ -343,13 +343,13 @@ pub(crate) static SPRING: Shape = Shape::new(
         SPRING_NAME,
         required("from", Kind::Object(&SPRING_END), "-", "One end."),
         required("to", Kind::Object(&SPRING_END), "-", "The other end, on another part of the arm."),
-        optional("stiffness_n_per_m", Kind::NonNegative, "N/m", "0", "Stiffness."),
+        optional("stiffness_n_per_m", Kind::NonNegative, "N/m", "none", "Stiffness, with free_length_m."),
         optional(
             "free_length_m",
             Kind::NonNegative,
             "m",
-            "0",
-            "Length at which the stiffness has no part in the force.",
+            "none",
+            "Length at which the stiffness has no part in the force, with stiffness_n_per_m; 0 is allowed.",
         ),
         optional(
             "force_n",

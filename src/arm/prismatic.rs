@@ -38,7 +38,38 @@ pub struct Prismatic {
     /// Rigid bodies on the joint. Bodies that stay are measured from where the joint begins, bodies that travel from
     /// the point to which the joint has travelled.
     pub bodies: JointBodies,
+    /// The screw or rack within `fixed_mass_kg`, for information only.
+    pub gear: Option<NamedPart>,
+    /// The motor within `fixed_mass_kg`, for information only.
+    pub motor: Option<NamedPart>,
 }
+
+/// A part with its name and its mass.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedPart {
+    /// Name of the part.
+    pub name: String,
+    /// Mass of the part \[kg\].
+    pub mass_kg: f64,
+}
+
+impl NamedPart {
+    /// Reads the name under `name_key` and the mass under `mass_key`. The inner `None` means that neither is stated.
+    fn read(object: &Object, name_key: &str, mass_key: &str) -> Option<Option<Self>> {
+        if !object.has(name_key) && !object.has(mass_key) {
+            return Some(None);
+        }
+        let name = object.required(name_key).and_then(|n| match n.string()? {
+            "" => n.fault("is empty", "name the part, or leave the key away"),
+            name => Some(name.to_string()),
+        });
+        let mass_kg = object.required(mass_key).and_then(|n| n.non_negative());
+        Some(Some(Self { name: name?, mass_kg: mass_kg? }))
+    }
+}
+
+/// Mass by which the parts of a drive may exceed what stays of the joint, because masses are rounded \[kg\].
+pub(crate) const ROUNDED_KG: f64 = 1e-8;
 
 /// What travels in a prismatic joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -138,7 +169,17 @@ impl Prismatic {
         let mass_kg = object.or("mass_kg", 0.0, Node::non_negative);
         let fixed_mass_kg = object.or("fixed_mass_kg", 0.0, Node::non_negative);
         let bodies = read_prismatic_bodies(object);
+        let gear = NamedPart::read(object, "gear", "gear_mass_kg");
+        let motor = NamedPart::read(object, "motor", "motor_mass_kg");
         let (stiffness_n_per_m, guide, moves) = springs?;
+        let (gear, motor, fixed_mass_kg) = (gear?, motor?, fixed_mass_kg?);
+        let parts_kg: f64 = gear.iter().chain(&motor).map(|part| part.mass_kg).sum();
+        if parts_kg > fixed_mass_kg + ROUNDED_KG {
+            return object.node().fault(
+                format!("has a fixed_mass_kg of {fixed_mass_kg}, less than the {parts_kg} kg of its gear and motor"),
+                "state in fixed_mass_kg everything that stays, screw or rack and motor with it",
+            );
+        }
         Some(Self {
             name: name?,
             axis: axis?,
@@ -146,8 +187,10 @@ impl Prismatic {
             guide,
             moves,
             mass_kg: mass_kg?,
-            fixed_mass_kg: fixed_mass_kg?,
+            fixed_mass_kg,
             bodies: bodies?,
+            gear,
+            motor,
         })
     }
 
@@ -189,6 +232,14 @@ impl Prismatic {
         });
         if let Some(bodies) = self.bodies.to_json_that("travels") {
             value["bodies"] = bodies;
+        }
+        for (key, mass_key, part) in
+            [("gear", "gear_mass_kg", &self.gear), ("motor", "motor_mass_kg", &self.motor)]
+        {
+            if let Some(part) = part {
+                value[key] = json!(part.name);
+                value[mass_key] = json!(part.mass_kg);
+            }
         }
         value
     }
@@ -286,6 +337,23 @@ mod tests {
         assert_eq!((rail.guide.roll_nm_per_rad, rail.guide.pitch_nm_per_rad), (Some(1e5), None));
         let driven: Vec<String> = arm.driven_joints().iter().map(|joint| joint.key()).collect();
         assert_eq!(driven, ["rail_mm", "z_mm", "j_deg"]);
+    }
+
+    #[test]
+    fn the_parts_of_a_drive_keep_their_names_within_the_mass_that_stays() {
+        let named = r#""fixed_mass_kg": 3, "gear": "16 x 5", "gear_mass_kg": 1.25, "motor": "M", "motor_mass_kg": 0.75"#;
+        let text = GANTRY.replace("\"fixed_mass_kg\": 3", named);
+        let arm = read(&text).expect("sound");
+        assert_eq!(arm.mass_kg(), 18.0);
+        let written = arm.to_json();
+        assert_eq!(
+            (&written["chain"][0]["gear"], &written["chain"][0]["motor_mass_kg"]),
+            (&"16 x 5".into(), &0.75.into())
+        );
+        let again = Document::parse("b.json", &written.to_string()).expect("JSON");
+        assert_eq!(read_arm_document(again, &Catalogs::default()).expect("sound"), arm);
+        let heavy = read(&text.replace("0.75", "1.76")).expect_err("too heavy").to_string();
+        assert!(heavy.contains("less than the 3.01 kg of its gear and motor"), "{heavy}");
     }
 
     #[test]

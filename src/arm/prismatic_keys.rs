@@ -2,7 +2,7 @@
 
 use super::keys::{BODY_INERTIA, BODY_MASS, POSITIVE_OR_NULL, VECTOR};
 use super::shared_keys::NAME;
-use crate::input::key::{Key, Kind, Shape, optional, required};
+use crate::input::key::{Key, Kind, Rule, Shape, optional, required};
 
 /// A list of bodies of a prismatic joint.
 const PRISMATIC_BODIES: Kind = Kind::List(&Kind::Object(&PRISMATIC_BODY));
@@ -40,8 +40,41 @@ pub(crate) const KEYS: [Key; 9] = [
 ];
 
 /// The keys of a prismatic joint of an arm file.
-pub(crate) static PRISMATIC: Shape =
-    Shape::new("prismatic joint", "A joint that slides everything after it along its axis.", &KEYS, &[]);
+pub(crate) static PRISMATIC: Shape = Shape::new(
+    "prismatic joint",
+    "A joint that slides everything after it along its axis.",
+    &ARM_KEYS,
+    &[
+        Rule::Needs("gear", &["gear_mass_kg"]),
+        Rule::Needs("gear_mass_kg", &["gear"]),
+        Rule::Needs("motor", &["motor_mass_kg"]),
+        Rule::Needs("motor_mass_kg", &["motor"]),
+    ],
+);
+
+const ARM_KEYS: [Key; KEYS.len() + PART_KEYS.len()] = {
+    let mut keys = [NAME; KEYS.len() + PART_KEYS.len()];
+    let mut i = 0;
+    while i < keys.len() {
+        keys[i] = if i < KEYS.len() { KEYS[i] } else { PART_KEYS[i - KEYS.len()] };
+        i += 1;
+    }
+    keys
+};
+
+/// The keys that name the parts of the drive, in an arm file. A study has lists of parts to choose from instead.
+const PART_KEYS: [Key; 4] = [
+    optional("gear", Kind::Name, "-", "none", "Name of the screw or rack, for the bill of materials."),
+    optional(
+        "gear_mass_kg",
+        Kind::NonNegative,
+        "kg",
+        "none",
+        "Mass of the screw or rack, a part of fixed_mass_kg.",
+    ),
+    optional("motor", Kind::Name, "-", "none", "Name of the motor, for the bill of materials."),
+    optional("motor_mass_kg", Kind::NonNegative, "kg", "none", "Mass of the motor, a part of fixed_mass_kg."),
+];
 
 /// The keys of the guide of a prismatic joint.
 pub(crate) static GUIDE: Shape = Shape::new(

@@ -46,7 +46,14 @@ fn read_torsion(object: &Object, elements: &[Named]) -> Option<SpringKind> {
         elements.iter().position(|(known, is_joint)| *known == name && *is_joint).or_else(|| {
             let joints = elements.iter().filter(|(_, is_joint)| *is_joint).map(|(name, _)| *name);
             let joints: Vec<&str> = joints.collect();
-            n.fault(format!("\"{name}\" is no joint"), &format!("choose one of: {}", joints.join(", ")))
+            let hint = match joints.is_empty() {
+                true => {
+                    "the chain has no joint that turns: state the spring between two points, with from and to"
+                        .into()
+                }
+                false => format!("choose one of: {}", joints.join(", ")),
+            };
+            n.fault(format!("\"{name}\" is no joint that turns"), &hint)
         })
     });
     let stiffness = object.required("stiffness_nm_per_rad").and_then(|n| n.positive());

@@ -8,9 +8,11 @@ use crate::input::json::Document;
 use crate::report::number::fixed;
 use crate::report::whole_file::folder_of;
 use crate::report::words::{TERMINAL, wrap};
-use crate::study::arm_capacity::{arm_capacity, has_rated_bearings, limits_of_parts, read_limits};
-use crate::study::capacity::{Capacity, Limit, capacity_of};
+use crate::study::arm_capacity::{arm_capacity, has_rated_bearings};
+use crate::study::capacity::{Capacity, capacity_of};
 use crate::study::load::load_study;
+use crate::study::load_limits::{example, limits_of_parts, read_limits};
+use crate::study::window::{Limit, Window};
 use clap::Args;
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -22,9 +24,14 @@ use std::path::{Path, PathBuf};
 #[command(
     after_help = "Example: armwright capacity light-arm\n         armwright capacity my-study.json --design 2f --json\n         \
                         armwright capacity ur5e/arm.json --cases poses.json\n\n\
-                        The drives are those of the design at the study's own payload; the payload keeps its centre and moments. Of an arm \
-                        file, which says nothing of motion, the static torques are judged: by the limits of --limits, or of import.json beside \
-                        it, or by the catalog's gears and motors that it names. Output bearings are judged at rest by their ratings."
+                        The drives are those of the design at the study's own payload; the payload keeps its centre and moments. Poses that \
+                        state a payload of their own keep it. Only the payload is asked for: reach and speed are those of the study. \
+                        An arm with springs or counterweights may need a smallest payload, which is then named too.\n\n\
+                        Of an arm file, which says nothing of motion, the static torques are judged, and the forces of prismatic joints: \
+                        by the limits of --limits, or of import.json in its folder, or by the catalog's gears and motors that it names. \
+                        Output bearings are judged at rest by their ratings.\n\n\
+                        The reach is the distance of the tip from the base: across gravity for an arm that stands or hangs (gravity along \
+                        its z axis), the whole distance for any other, such as an arm on a wall."
 )]
 pub(crate) struct CapacityArgs {
     /// A built-in study, a study file or an arm file
@@ -35,7 +42,8 @@ pub(crate) struct CapacityArgs {
     /// Poses of an arm file, as analyze reads them; without it all angles are zero
     #[arg(long, value_name = "FILE", conflicts_with = "design")]
     cases: Option<PathBuf>,
-    /// Largest torques of the joints of an arm file (JSON): {"joints": [{"name": "j1", "max_torque_nm": 87}]}
+    /// Largest torques of the joints of an arm file (JSON): {"joints": [{"name": "j1", "max_torque_nm": 87}]}; a
+    /// prismatic joint has max_force_n
     #[arg(long, value_name = "FILE", conflicts_with = "design")]
     limits: Option<PathBuf>,
     /// Print JSON
@@ -58,6 +66,7 @@ pub(super) fn run(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Fa
 
 /// The capacity as text or JSON, with the remarks that a reader should know.
 fn said(args: &CapacityArgs, name: &str, found: &Capacity, remarks: &[String]) -> String {
+    let remarks: Vec<&String> = found.remarks.iter().chain(remarks).collect();
     if args.json {
         let mut json = found.to_json();
         json["remarks"] = json!(remarks);
@@ -69,7 +78,7 @@ fn said(args: &CapacityArgs, name: &str, found: &Capacity, remarks: &[String]) -
 }
 
 /// The remark on the capacity of an arm file that says what is checked and what is not.
-const AT_REST: &str = "Judged are torques and output bearings at rest, as far as their ratings are known. Motion, heat and strength are not checked.";
+const AT_REST: &str = "Judged are torques, forces and output bearings at rest, as far as their limits are known. Motion, heat and strength are not checked.";
 
 /// Whether the file at `path` is an arm file. It then has a chain and, in contrast to a study file, no poses.
 fn is_arm_file(path: &str) -> bool {
@@ -87,7 +96,6 @@ fn of_arm(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     }
     let path = Path::new(&args.study);
     let arm = read_arm(path, catalogs)?;
-    let joints = arm.driven_joint_names();
     let cases = match &args.cases {
         Some(file) => read_load_cases(Document::read(file)?, &arm.driven_joints())?,
         None => {
@@ -97,46 +105,120 @@ fn of_arm(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     };
     let beside = folder_of(path).join("import.json");
     let limits = match &args.limits {
-        Some(file) => read_limits(Document::read(file)?)?,
-        None if beside.is_file() => read_limits(Document::read(&beside)?)?,
+        Some(file) => read_limits(Document::read(file)?, &arm)?,
+        None if beside.is_file() => read_limits(Document::read(&beside)?, &arm)?,
         None => limits_of_parts(&arm, catalogs),
     };
     if limits.is_empty() && !has_rated_bearings(&arm) {
         return Err(Failure::Usage(format!(
-            "nothing is known of the torques that the joints of {} may bear: give --limits FILE with {{\"joints\": [{{\"name\": \"{}\", \
-             \"max_torque_nm\": 87}}]}}, or name gears and motors of the catalogs in the arm file",
+            "nothing is known of the torques and forces that the joints of {} may bear: give --limits FILE with {}, or name gears and \
+             motors of the catalogs in the arm file",
             args.study,
-            joints.first().copied().unwrap_or("j1")
+            example(&arm)
         )));
     }
     Ok(said(args, &arm.name, &arm_capacity(&arm, &cases, &limits), &[AT_REST.to_string()]))
 }
 
-fn kilograms(limit: &Limit) -> String {
-    if limit.payload_kg.is_finite() { fixed(limit.payload_kg, 3) } else { "no limit".into() }
+/// The largest payload of a window in words.
+fn kilograms(window: &Window) -> String {
+    match (window.holds(), window.most.payload_kg) {
+        (false, _) => "none".into(),
+        (true, most_kg) if most_kg.is_finite() => fixed(most_kg, 3),
+        _ => "no limit".into(),
+    }
+}
+
+/// What fails beyond a limit, in words.
+fn failing(limit: &Limit) -> String {
+    format!("{} (check: {})", limit.piece, limit.check)
+}
+
+/// The first sentence: which payloads hold in all poses, and what fails beyond them.
+fn headline(name: &str, found: &Capacity) -> String {
+    let Window { least, most } = &found.window;
+    let (least_kg, most_kg) = (least.payload_kg, most.payload_kg);
+    let first =
+        |pose: &str| if pose.is_empty() { String::new() } else { format!(", first in the pose {pose}") };
+    if !found.window.holds() {
+        let words = if least_kg.is_finite() {
+            format!(
+                "less than {} kg is too little for {}{}; more than {} kg is too much for {}{}",
+                fixed(least_kg, 3),
+                failing(least),
+                first(&found.least_pose),
+                fixed(most_kg, 3),
+                failing(most),
+                first(&found.pose)
+            )
+        } else {
+            format!(
+                "without payload {} fails{}, and no payload helps",
+                failing(least),
+                first(&found.least_pose)
+            )
+        };
+        return format!("{name} holds no payload in all of its poses: {words}\n");
+    }
+    let too_much = format!("more is too much for {}{}", failing(most), first(&found.pose));
+    match (least_kg > 0.0, most_kg.is_finite()) {
+        (false, false) => format!("{name}: nothing limits the payload\n"),
+        (false, true) => {
+            format!("{name} holds {} kg in all of its poses; {too_much}\n", fixed(most_kg, 3))
+        }
+        (true, is_limited) => {
+            let range = match is_limited {
+                true => format!(
+                    "from {} to {} kg in all of its poses; {too_much}",
+                    fixed(least_kg, 3),
+                    fixed(most_kg, 3)
+                ),
+                false => format!("{} kg and any larger payload in all of its poses", fixed(least_kg, 3)),
+            };
+            format!(
+                "{name} holds {range}\nIt does not hold the empty arm: less than {} kg is too little for {}{}\n",
+                fixed(least_kg, 3),
+                failing(least),
+                first(&found.least_pose)
+            )
+        }
+    }
 }
 
 fn to_text(name: &str, found: &Capacity) -> String {
-    let mut out = match found.limit.payload_kg.is_finite() {
-        true => format!(
-            "{name} holds {} kg in all of its poses; more is too much for {} (check: {}), first in the pose {}\n",
-            kilograms(&found.limit),
-            found.limit.piece,
-            found.limit.check,
-            found.pose
-        ),
-        false => format!("{name}: nothing limits the payload\n"),
-    };
+    let mut out = headline(name, found);
     let _ =
         writeln!(out, "\n{:>8}  {:>10}  {:<14}  {:<22}  pose", "reach m", "payload kg", "ends at", "check");
     for at in &found.table {
+        let end = if at.window.holds() { &at.window.most } else { &at.window.least };
         let _ = writeln!(
             out,
             "{:>8}  {:>10}  {:<14}  {:<22}  {}",
             fixed(at.reach_m, 3),
-            kilograms(&at.limit),
-            at.limit.piece,
-            at.limit.check,
+            kilograms(&at.window),
+            end.piece,
+            end.check,
+            at.pose
+        );
+    }
+    let needy: Vec<_> = found.table.iter().filter(|at| at.window.least.payload_kg > 0.0).collect();
+    if !needy.is_empty() {
+        let _ = writeln!(
+            out,
+            "\n{:>8}  {:>10}  {:<14}  {:<22}  pose",
+            "reach m", "least kg", "begins at", "check"
+        );
+    }
+    for at in needy {
+        let least = &at.window.least;
+        let least_kg = if at.window.holds() { fixed(least.payload_kg, 3) } else { "none".into() };
+        let _ = writeln!(
+            out,
+            "{:>8}  {:>10}  {:<14}  {:<22}  {}",
+            fixed(at.reach_m, 3),
+            least_kg,
+            least.piece,
+            least.check,
             at.pose
         );
     }

@@ -152,14 +152,16 @@ fn all_fits(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<String,
     let mut out = format!("{}\n", demand_line(joint, &demand, table));
     let slides = table.gears().iter().any(|gear| gear.kind.slides());
     let stiffness = if slides { "N/m" } else { "K2 Nm/rad" };
+    // the straight curve of a gear of which K1 alone is known is used as it is
+    let straight = if slides { "" } else { "K1 " };
     let _ = writeln!(out, "{:>9}  {stiffness:>14}  drive", "mass kg");
     for index in table.all_fits(&demand) {
         let drive = table.drive(index);
-        let k2 = drive
-            .gear
-            .k2_nm_per_rad
-            .or(drive.gear.k1_nm_per_rad.filter(|_| slides))
-            .map_or("unknown".into(), |k| format!("{k:.0}"));
+        let k2 = match (drive.gear.k2_nm_per_rad, drive.gear.single_slope_nm_per_rad()) {
+            (Some(k2), _) => format!("{k2:.0}"),
+            (None, Some(k1)) => format!("{straight}{k1:.0}"),
+            (None, None) => "unknown".into(),
+        };
         let _ = writeln!(out, "{:>9.3}  {k2:>14}  {}", table.mass_kg(index), drive.name());
     }
     Ok(out)

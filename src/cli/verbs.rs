@@ -21,8 +21,9 @@ use std::path::PathBuf;
     after_help = Exit::help()
 )]
 pub struct Cli {
-    /// Folder with your own catalog rows (gears.csv, motors.csv, materials.csv, profiles.csv), added to the
-    /// built-in ones; a row of the same name replaces the built-in one.
+    /// Folder with your own catalog rows (gears.csv, gears_efficiency.csv, actuators.csv, motors.csv,
+    /// motor_curves.csv, materials.csv, profiles.csv), added to the built-in ones; a row of the same name
+    /// replaces the built-in one.
     #[arg(long, global = true, value_name = "DIR")]
     catalogs: Option<PathBuf>,
     /// Worker threads; the default is one per core. Results do not depend on it.

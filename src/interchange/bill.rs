@@ -4,6 +4,7 @@
 //! this mass, the bill has a row for each part.
 
 use super::csv_text::csv_text;
+use crate::arm::prismatic::ROUNDED_KG;
 use crate::arm::section::Section;
 use crate::arm::{Arm, Element, Extras, Joint, Link, LinkBody, Prismatic};
 use crate::catalog::gear::{Gear, GearKind, GearMass};
@@ -41,7 +42,7 @@ pub(crate) fn bill(arm: &Arm, catalogs: &Catalogs) -> Vec<Row> {
     for element in &arm.chain {
         let parts = match element {
             Element::Joint(joint) => joint_parts(joint, catalogs),
-            Element::Prismatic(joint) => prismatic_parts(joint),
+            Element::Prismatic(joint) => prismatic_parts(joint, catalogs),
             Element::Link(link) => link_parts(link, catalogs),
         };
         for part in parts {
@@ -142,12 +143,34 @@ fn joint_parts(joint: &Joint, catalogs: &Catalogs) -> Vec<Row> {
     out
 }
 
-fn prismatic_parts(joint: &Prismatic) -> Vec<Row> {
+/// The rows of a prismatic joint. What stays of it may have a screw or rack and a motor, which then have rows of their
+/// own.
+fn prismatic_parts(joint: &Prismatic, catalogs: &Catalogs) -> Vec<Row> {
     let at = joint.name.as_str();
-    let masses = [("what travels", joint.mass_kg), ("what stays", joint.fixed_mass_kg)];
-    let masses = masses.into_iter().filter(|(_, mass_kg)| *mass_kg > 0.0);
-    let mut out: Vec<Row> =
-        masses.map(|(what, mass_kg)| stated(at, format!("{what} of {at}"), "prismatic", mass_kg)).collect();
+    let mut out = Vec::new();
+    if joint.mass_kg > 0.0 {
+        out.push(stated(at, format!("what travels of {at}"), "prismatic", joint.mass_kg));
+    }
+    let mut stays_kg = joint.fixed_mass_kg;
+    if let Some(motor) = &joint.motor {
+        stays_kg -= motor.mass_kg;
+        out.push(match catalogs.motor(&motor.name) {
+            Ok(known) => bought(at, &motor.name, "motor", motor.mass_kg, &known.provenance),
+            Err(_) => stated(at, motor.name.clone(), "motor", motor.mass_kg),
+        });
+    }
+    if let Some(gear) = &joint.gear {
+        // the rounding of the sum goes to the screw or rack, so that the rows add up to the mass of the arm
+        let is_all = stays_kg - gear.mass_kg <= ROUNDED_KG;
+        let gear_kg = if is_all { stays_kg } else { gear.mass_kg };
+        stays_kg -= gear_kg;
+        out.push(stated(at, gear.name.clone(), "screw or rack", gear_kg));
+    }
+    // with a motor apart from it, a rest may be the rounding of a difference
+    let least_kg = if joint.motor.is_some() { ROUNDED_KG } else { 0.0 };
+    if stays_kg > least_kg {
+        out.push(stated(at, format!("what stays of {at}"), "prismatic", stays_kg));
+    }
     let bodies = joint.bodies.iter().enumerate();
     out.extend(bodies.map(|(i, body)| stated(at, format!("body {} of {at}", i + 1), "body", body.mass_kg)));
     out

@@ -326,6 +326,8 @@ fn slide(name: &str, axis: Unit<Vector3<f64>>, springs: Option<&GivenSprings>) -
         mass_kg: 0.0,
         fixed_mass_kg: 0.0,
         bodies: JointBodies::default(),
+        gear: None,
+        motor: None,
     }
 }
 

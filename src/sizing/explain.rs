@@ -50,6 +50,8 @@ pub struct Rejection {
     /// Every check that excludes the part, at least one. The smallest margin comes first; checks that could not be
     /// made come last.
     pub checks: Vec<Check>,
+    /// Further catalog columns that the part leaves blank, which no check names. Empty if every check was made.
+    pub also_lacks: Vec<&'static str>,
 }
 
 impl Rejection {
@@ -72,6 +74,9 @@ impl fmt::Display for Rejection {
         }
         let reasons: Vec<_> = self.checks.iter().map(Check::to_string).collect();
         f.write_str(&reasons.join("; "))?;
+        if !self.also_lacks.is_empty() {
+            write!(f, "; also lacks {}", self.also_lacks.join(", "))?;
+        }
         if let RejectedPart::Motor { rejected_with, fits_with, .. } = &self.part {
             let gears = rejected_with.len() + fits_with.len();
             write!(f, " (rejected with {} of {gears} gears that hold)", rejected_with.len())?;
@@ -267,7 +272,32 @@ impl<'c> DriveTable<'c> {
     }
 
     fn rejection(&self, part: RejectedPart, checks: Vec<Check>) -> Rejection {
-        Rejection { joint: self.joint().to_string(), part, checks }
+        let also_lacks = self.also_lacks(&part, &checks);
+        Rejection { joint: self.joint().to_string(), part, checks, also_lacks }
+    }
+
+    /// The columns that a rejected part leaves blank, without those that `checks` name; none if every check was made. A
+    /// check names only the first rating that it lacks.
+    fn also_lacks(&self, part: &RejectedPart, checks: &[Check]) -> Vec<&'static str> {
+        let named: Vec<&str> = checks
+            .iter()
+            .filter_map(|check| match &check.state {
+                CheckState::NotChecked(rating) => Some(rating.0),
+                _ => None,
+            })
+            .collect();
+        if named.is_empty() {
+            return Vec::new();
+        }
+        let of_gear = |id: &String| self.gears().iter().find(|gear| gear.id == *id);
+        let of_motor = |id: &String| self.motors().iter().find(|motor| motor.id == *id);
+        let lacks = match part {
+            RejectedPart::Gear { gear } => of_gear(gear).map(|gear| gear.lacks(self.gear_mass())),
+            RejectedPart::GearWithoutMotor { nearest_motor: motor, .. }
+            | RejectedPart::Motor { motor, .. } => of_motor(motor).map(|motor| motor.lacks()),
+        };
+        let figures = lacks.unwrap_or_default().into_iter().map(|lack| lack.figure);
+        figures.filter(|figure| !named.iter().any(|name| name.ends_with(figure))).collect()
     }
 
     /// The nearest drive and its check with the smallest margin. It is the drive whose smallest margin is the largest,

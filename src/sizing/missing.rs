@@ -3,6 +3,7 @@
 use super::select::DriveTable;
 use crate::catalog::envelope::Envelope;
 use crate::catalog::lookup::first_names;
+use crate::catalog::motor::Motor;
 use crate::catalog::needs::{Lack, words};
 
 /// Number of groups of parts that a message names.
@@ -53,7 +54,9 @@ impl DriveTable<'_> {
             fits: fit.allows(&g.envelope_as(self.gear_mass()), &no_size),
             lacks: g.lacks(self.gear_mass()),
         });
-        let motors = self.motors().iter().map(|m| LackingPart {
+        // a motor that goes with none of the gears, such as any motor if only actuators may be chosen, does not matter
+        let matters = |m: &&&Motor| self.gears().iter().any(|gear| gear.goes_with(m));
+        let motors = self.motors().iter().filter(matters).map(|m| LackingPart {
             id: &m.id,
             is_built_in: m.provenance.is_built_in(),
             fits: fit.allows(&no_size, &m.envelope),

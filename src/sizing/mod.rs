@@ -50,6 +50,7 @@ pub(crate) mod rail;
 pub(crate) mod requirement;
 pub(crate) mod select;
 pub(crate) mod sheet;
+mod sheet_json;
 pub(crate) mod stated;
 #[cfg(test)]
 pub(crate) mod testing;

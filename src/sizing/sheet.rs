@@ -13,6 +13,7 @@ use serde::Serialize;
 
 /// The sizing result of one joint. A number is `None` if it depends on a rating that the catalog leaves blank.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(remote = "Self")]
 pub struct JointSizingRow {
     /// Name of the joint.
     pub joint: String,
@@ -80,12 +81,12 @@ pub struct JointSizingRow {
     /// L10 life of the wave-generator bearing \[h\].
     pub life_h: Option<f64>,
     /// Whether the joint slides. Its torques are then forces \[N\], and `joint_speed_rpm` is its speed in m/s times
-    /// 30/π.
+    /// 30/π. In JSON they have keys of their own, such as `static_force_n` and `joint_speed_m_s`.
     pub slides: bool,
     /// Mass of the drive \[kg\].
     pub mass_kg: Option<f64>,
-    /// Mass that the next joint inward carries from this joint outward: everything outboard of this joint, and this
-    /// drive \[kg\].
+    /// Mass that the next joint inward carries from this joint outward: everything outboard of this joint, this drive as
+    /// far as it sits here, and what else is fixed to the joint, such as a half of a belt \[kg\].
     pub mass_passed_inward_kg: f64,
     /// Every check, including those that could not be made.
     #[serde(skip)]

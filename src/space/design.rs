@@ -9,7 +9,7 @@ use super::prismatic::SpacePrismatic;
 use super::problem::{ArmProblem, Partial};
 use crate::arm::body::RigidBody;
 use crate::arm::load::LoadCase;
-use crate::arm::prismatic::Prismatic;
+use crate::arm::prismatic::{NamedPart, Prismatic};
 use crate::arm::transmission::{Hung, HungOn};
 use crate::arm::{Arm, Element, Joint};
 use crate::pareto::objectives::Objectives;
@@ -210,7 +210,13 @@ fn stand_elsewhere(joint: &SpaceJoint, drive: &Drive, chain: &mut [Element]) {
 /// A prismatic joint with its screw or rack and its motor; `None` if the catalog leaves a mass blank.
 fn rail_with(slide: &SpacePrismatic, drive: &Drive) -> Option<Prismatic> {
     let joint = slide.driven_by(drive.gear);
-    Some(Prismatic { fixed_mass_kg: joint.fixed_mass_kg + drive.mass_kg().ok()?, ..joint })
+    let part = |name: &str, mass_kg| Some(NamedPart { name: name.to_string(), mass_kg });
+    Some(Prismatic {
+        fixed_mass_kg: joint.fixed_mass_kg + drive.mass_kg().ok()?,
+        gear: part(&drive.gear.id, drive.gear.mass_kg(drive.gear_mass)?),
+        motor: part(&drive.motor.id, drive.motor.mass_kg?),
+        ..joint
+    })
 }
 
 /// A joint with a drive of the catalogs, with its bearing and extras; `None` if the catalog leaves a mass blank.

@@ -24,6 +24,7 @@ pub(crate) mod full_model;
 pub(crate) mod group;
 pub(crate) mod joints;
 pub(crate) mod levels;
+pub(crate) mod piece_masses;
 pub(crate) mod posed;
 pub mod prismatic;
 pub(crate) mod problem;

@@ -1,145 +1,87 @@
-//! The largest payload of an arm file at rest, in each pose: with it no joint exceeds its torque limit, and no output
-//! bearing its load limits.
+//! The payloads that an arm file holds at rest, in each pose: with them no joint exceeds its torque or force limit, and
+//! no output bearing its load limits.
 //!
 //! An arm file says nothing of motion and duty, so only static loads are judged. The payload keeps the centre of
-//! gravity that the case states. Torques are affine in the mass of the payload. A file such as the `import.json` of a
-//! robot may state the torque limit of a joint. If none does, the average torque of the gear and the continuous torque
-//! of the motor are the limits, as far as the catalogs have them. An output bearing is limited by its permissible
-//! moment and by its static safety at rest, if it has these ratings.
+//! gravity that the case states. Torques and forces are affine in the mass of the payload: |a + b m| <= limit is an
+//! interval of masses. An output bearing is limited by its permissible moment and by its static safety at rest, if it
+//! has these ratings.
 
-use super::capacity::{AtPose, Capacity, Limit};
+use super::capacity::{AtPose, Capacity, reach_m};
+use super::load_limits::LoadLimit;
+use super::window::{Limit, MOST_KG, Overload, Window, window_around};
 use crate::arm::load::LoadCase;
 use crate::arm::{Arm, Bearing};
-use crate::catalog::Catalogs;
-use crate::input::json::{Document, Faults, Node};
 use crate::mechanics::chain::Chain;
 use crate::mechanics::statics::JointLoad;
 use crate::sizing::bearing::BearingLimits;
 use crate::space::bearing_loads::{at_centre, bearings_of};
 
-/// The largest torque that a joint may have at rest.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct TorqueLimit {
-    /// Name of the joint.
-    pub joint: String,
-    /// Name of the limit, such as the continuous torque of the motor.
-    pub check: &'static str,
-    /// Largest permitted torque \[N m\].
-    pub most_nm: f64,
-}
-
-/// Reads the torque limits of a file with `{"joints": [{"name": "j1", "max_torque_nm": 87}]}`, such as `import.json`.
-/// Joints without a number have no limit.
-///
-/// # Errors
-/// All faults of the file at once.
-pub(crate) fn read_limits(document: Document) -> Result<Vec<TorqueLimit>, Faults> {
-    let root = document.root();
-    let limits = match root.value().get("joints") {
-        Some(_) => joints(&root),
-        None => {
-            root.fault("has no \"joints\"", "write {\"joints\": [{\"name\": \"j1\", \"max_torque_nm\": 87}]}")
-        }
-    };
-    document.finish(limits)
-}
-
-fn joints(root: &Node) -> Option<Vec<TorqueLimit>> {
-    let (_, node) = root.entries()?.into_iter().find(|(key, _)| *key == "joints")?;
-    let read: Vec<Option<Option<TorqueLimit>>> = node
-        .array()?
-        .iter()
-        .map(|joint| {
-            let entries = joint.entries()?;
-            let of = |key: &str| entries.iter().find(|(k, _)| *k == key).map(|(_, node)| node);
-            let Some(name) = of("name") else {
-                return joint.fault("lacks \"name\"", "name the joint");
-            };
-            let joint = name.string()?.to_string();
-            match of("max_torque_nm").filter(|node| !node.is_null()) {
-                None => Some(None),
-                Some(node) => {
-                    Some(Some(TorqueLimit { joint, check: "torque limit", most_nm: node.positive()? }))
-                }
-            }
-        })
-        .collect();
-    Some(read.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect())
-}
-
-/// The torque limits of joints at rest that follow from the ratings of the gears and motors that an arm names.
-pub(crate) fn limits_of_parts(arm: &Arm, catalogs: &Catalogs) -> Vec<TorqueLimit> {
-    let of_joint = |joint: &crate::arm::Joint| {
-        let gear = joint.gear.as_ref().and_then(|name| catalogs.gear(name).ok());
-        let motor = joint.motor.as_ref().and_then(|name| catalogs.motor(name).ok());
-        let average_nm = gear.and_then(|gear| Some(gear.average_torque_limit_nm? * joint.stages.after.ratio));
-        let continuous_nm = gear.zip(motor).and_then(|(gear, motor)| {
-            let stages = &joint.stages;
-            let efficiency =
-                stages.before.efficiency * gear.efficiency.unwrap_or(1.0) * stages.after.efficiency;
-            Some(motor.rated_torque_nm? * stages.whole_ratio(gear.ratio) * efficiency)
-        });
-        let limit = |check, most_nm: Option<f64>| {
-            most_nm.map(|most_nm| TorqueLimit { joint: joint.name.clone(), check, most_nm })
-        };
-        [
-            limit("average torque of the gear", average_nm),
-            limit("continuous torque of the motor", continuous_nm),
-        ]
-    };
-    arm.joints().filter(|joint| joint.coupled.is_none()).flat_map(of_joint).flatten().collect()
-}
-
-/// The largest payload of an arm at rest, in each of its cases and in all of them, with which no joint exceeds its
+/// The payloads that an arm holds at rest, in each of its cases and in all of them, with which no joint exceeds its
 /// limit in `limits` and no output bearing exceeds its ratings.
-pub(crate) fn arm_capacity(arm: &Arm, cases: &[LoadCase], limits: &[TorqueLimit]) -> Capacity {
-    let mut table: Vec<AtPose> = cases
+pub(crate) fn arm_capacity(arm: &Arm, cases: &[LoadCase], limits: &[LoadLimit]) -> Capacity {
+    let table: Vec<AtPose> = cases
         .iter()
         .map(|case| {
             let structure = arm.structure_in(case);
             let tip_m = Chain::new(&structure, case.links).pose(case).tip_m;
             AtPose {
                 pose: case.name.clone(),
-                reach_m: (tip_m - arm.down * arm.down.dot(&tip_m)).norm(),
-                limit: limit(arm, case, limits),
+                reach_m: reach_m(&tip_m, &arm.down),
+                window: held_payloads(arm, case, limits),
             }
         })
         .collect();
-    table.sort_by(|a, b| a.reach_m.total_cmp(&b.reach_m));
-    let least = table.iter().min_by(|a, b| a.limit.payload_kg.total_cmp(&b.limit.payload_kg));
-    let (limit, pose) = match least {
-        Some(at) => (at.limit.clone(), at.pose.clone()),
-        None => {
-            (Limit { payload_kg: f64::INFINITY, piece: String::new(), check: String::new() }, String::new())
-        }
-    };
-    Capacity { limit, pose, table }
+    let all = table.iter().fold(Window::unlimited(), |all, at| all.and(at.window.clone()));
+    let unjudged: Vec<&str> = arm
+        .driven_joint_names()
+        .into_iter()
+        .filter(|name| limits.iter().all(|limit| limit.joint != *name))
+        .collect();
+    let remark = (!unjudged.is_empty()).then(|| {
+        format!("No limit is known of these joints, which are not judged: {}.", unjudged.join(", "))
+    });
+    Capacity::new(all, table, remark.into_iter().collect())
 }
 
-/// The largest payload in one case, and the joint that limits it. The torques are affine in the payload's mass, so it
-/// is enough to compute them for two masses.
-fn limit(arm: &Arm, case: &LoadCase, limits: &[TorqueLimit]) -> Limit {
+/// The payloads that hold in one case.
+fn held_payloads(arm: &Arm, case: &LoadCase, limits: &[LoadLimit]) -> Window {
     let chain = Chain::new(&arm.structure_in(case), case.links);
-    let torques_nm = |payload_kg: f64| {
+    let loads = |payload_kg: f64| {
         let mut loaded = case.clone();
         loaded.payload.mass_kg = payload_kg;
-        chain.pose(&loaded).statics().joint_torques_nm
+        let statics = chain.pose(&loaded).statics();
+        [statics.joint_torques_nm, statics.joint_forces_n].concat()
     };
-    let (empty, one_kg) = (torques_nm(0.0), torques_nm(1.0));
-    let mut least = limit_of_bearings(arm, case);
-    for limit in limits {
-        let Some(index) = empty.iter().position(|(name, _)| *name == limit.joint) else { continue };
-        let (without_nm, per_kg) = (empty[index].1, one_kg[index].1 - empty[index].1);
-        let payload_kg = match without_nm.abs() > limit.most_nm {
-            true => 0.0,
-            false if per_kg == 0.0 => f64::INFINITY,
-            false => (limit.most_nm.copysign(per_kg) - without_nm) / per_kg,
-        };
-        if payload_kg < least.payload_kg {
-            least = Limit { payload_kg, piece: limit.joint.clone(), check: limit.check.into() };
-        }
+    let (empty, one_kg) = (loads(0.0), loads(1.0));
+    let of_joints = limits.iter().fold(Window::unlimited(), |all, limit| {
+        let Some(index) = empty.iter().position(|(name, _)| *name == limit.joint) else { return all };
+        all.and(affine_window(empty[index].1, one_kg[index].1 - empty[index].1, limit))
+    });
+    if !of_joints.holds() {
+        return of_joints;
     }
-    least
+    let of_bearings = held_by_bearings(arm, case, of_joints.least.payload_kg, of_joints.most.payload_kg);
+    of_joints.and(of_bearings)
+}
+
+/// The payloads m with |`empty` + `per_kg` m| <= the limit. An end beyond [`MOST_KG`] counts as none.
+fn affine_window(empty: f64, per_kg: f64, limit: &LoadLimit) -> Window {
+    let fails = Overload { piece: limit.joint.clone(), check: limit.check.into() };
+    let within = empty.abs() <= limit.most;
+    let far_kg = (limit.most.copysign(per_kg) - empty) / per_kg;
+    let near_kg = (-limit.most.copysign(per_kg) - empty) / per_kg;
+    let mut window = Window::unlimited();
+    if !within {
+        let is_reached = per_kg != 0.0 && near_kg > 0.0 && near_kg <= MOST_KG;
+        if !is_reached {
+            return Window::empty(fails);
+        }
+        window.least = Limit::new(near_kg, fails.clone());
+    }
+    if per_kg != 0.0 && far_kg <= MOST_KG {
+        window.most = Limit::new(far_kg, fails);
+    }
+    window
 }
 
 /// Ratio of the load on a bearing at rest to the load that is allowed, for each of the two checks at rest, with the
@@ -166,10 +108,10 @@ pub(crate) fn has_rated_bearings(arm: &Arm) -> bool {
     })
 }
 
-/// The largest payload in a case with which all output bearings pass their checks at rest. The loads are norms of
-/// forces and moments that are affine in the payload's mass, so they are convex functions of this mass. If the bearings
-/// pass without payload and with some payload, they therefore pass with every payload in between.
-fn limit_of_bearings(arm: &Arm, case: &LoadCase) -> Limit {
+/// The payloads in a case with which all output bearings pass their checks at rest, if there are any from `least_kg` to
+/// `most_kg`. The loads are norms of forces and moments that are affine in the payload's mass, so they are convex
+/// functions of this mass, and their smallest value is found by narrowing an interval.
+fn held_by_bearings(arm: &Arm, case: &LoadCase, least_kg: f64, most_kg: f64) -> Window {
     let chain = Chain::new(&arm.structure_in(case), case.links);
     let bearings: Vec<(&str, Bearing)> = bearings_of(arm).collect();
     let worst = |payload_kg: f64| {
@@ -184,64 +126,131 @@ fn limit_of_bearings(arm: &Arm, case: &LoadCase) -> Limit {
             })
             .max_by(|a, b| a.0.total_cmp(&b.0))
     };
-    let none = Limit { payload_kg: f64::INFINITY, piece: String::new(), check: String::new() };
-    let fails = |payload_kg: f64| worst(payload_kg).is_some_and(|(part, ..)| part > 1.0);
-    let (mut held_kg, mut failed_kg) = (0.0, 1.0);
-    if fails(0.0) {
-        failed_kg = 0.0;
-    } else {
-        while !fails(failed_kg) {
-            (held_kg, failed_kg) = (failed_kg, 2.0 * failed_kg);
-            if failed_kg > MOST_PAYLOAD_KG {
-                return none;
-            }
-        }
-        while failed_kg - held_kg > SAME_PAYLOAD * failed_kg {
-            let middle_kg = 0.5 * (held_kg + failed_kg);
-            if fails(middle_kg) { failed_kg = middle_kg } else { held_kg = middle_kg }
-        }
-    }
-    match worst(failed_kg) {
-        Some((_, joint, check)) => Limit { payload_kg: held_kg, piece: joint.into(), check: check.into() },
-        None => none,
+    let overload = |payload_kg: f64| {
+        let failing = worst(payload_kg).filter(|(part, ..)| *part > 1.0);
+        failing.map(|(_, joint, check)| Overload { piece: joint.into(), check: check.into() })
+    };
+    let use_of = |payload_kg: f64| worst(payload_kg).map_or(0.0, |(part, ..)| part);
+    let held_kg = least_loading(least_kg, most_kg, &use_of);
+    match overload(held_kg) {
+        None => window_around(held_kg, &overload),
+        Some(_) => Window::empty(overload(least_kg).unwrap_or_default()),
     }
 }
 
-/// If the bearings still pass with about this payload \[kg\], they count as no limit on the payload.
-const MOST_PAYLOAD_KG: f64 = 1e9;
-
-/// The search for the largest payload that the bearings allow ends when its interval is this narrow, relative to the
-/// payload.
-const SAME_PAYLOAD: f64 = 1e-13;
+/// A payload from `least_kg` to `most_kg` at which the convex function `use_of` is at most 1, or its smallest value if
+/// it is nowhere so small.
+fn least_loading(least_kg: f64, most_kg: f64, use_of: &dyn Fn(f64) -> f64) -> f64 {
+    let most_kg = most_kg.min(MOST_KG);
+    let (mut low_kg, mut high_kg) = (least_kg, (2.0 * least_kg).max(1.0).min(most_kg));
+    while high_kg < most_kg && use_of((2.0 * high_kg).min(most_kg)) < use_of(high_kg) {
+        high_kg = (2.0 * high_kg).min(most_kg);
+    }
+    high_kg = (2.0 * high_kg).min(most_kg);
+    // each step leaves two thirds of the interval, 150 steps 4e-27 of it
+    for _ in 0..150 {
+        if use_of(low_kg) <= 1.0 {
+            break;
+        }
+        let third_kg = (high_kg - low_kg) / 3.0;
+        match use_of(low_kg + third_kg) < use_of(high_kg - third_kg) {
+            true => high_kg -= third_kg,
+            false => low_kg += third_kg,
+        }
+    }
+    low_kg
+}
 
 #[cfg(test)]
 mod tests {
+    use super::super::load_limits::read_limits;
     use super::*;
     use crate::arm::file::read_arm_document;
     use crate::arm::load::read_load_cases;
+    use crate::catalog::Catalogs;
+    use crate::input::json::Document;
+
+    /// The payloads that hold an arm with this chain (and further keys) in these cases, with limits of joints.
+    fn found(chain: &str, cases: &str, limits: &str) -> Capacity {
+        let text = format!("{{\"chain\": {chain}}}");
+        let arm = read_arm_document(Document::parse("a", &text).expect("JSON"), &Catalogs::default())
+            .expect("an arm");
+        let cases = Document::parse("c", cases).expect("JSON");
+        let cases = read_load_cases(cases, &arm.driven_joints()).expect("cases");
+        let limits = read_limits(Document::parse("l", limits).expect("JSON"), &arm).expect("limits");
+        arm_capacity(&arm, &cases, &limits)
+    }
 
     #[test]
     fn a_lever_holds_what_its_torque_allows() {
         // 2 kg in the middle of 1 m and m at its end, with a limit of 50 N m: m = (50/9.81 - 1)/1; folded up, nothing
         // limits m
-        let text = r#"{"chain": [{"type": "joint", "name": "j", "axis": [0, 1, 0], "stiffness_nm_per_rad": null},
-            {"type": "link", "name": "l", "vector_m": [1, 0, 0], "mass_kg": 2}]}"#;
-        let arm = read_arm_document(Document::parse("a", text).expect("JSON"), &Catalogs::default())
-            .expect("an arm");
-        let cases = r#"[{"name": "out", "pose_deg": [0]}, {"name": "half", "pose_deg": [-60]}]"#;
-        let cases = Document::parse("c", cases).expect("JSON");
-        let cases = read_load_cases(cases, &arm.driven_joints()).expect("cases");
-        let limits = r#"{"robot": "r", "joints": [{"name": "j", "max_torque_nm": 50}, {"name": "k", "max_torque_nm": null}]}"#;
-        let limits = read_limits(Document::parse("l", limits).expect("JSON")).expect("limits");
-        let found = arm_capacity(&arm, &cases, &limits);
-        let out_kg = 50.0 / 9.81 - 1.0;
-        assert!((found.limit.payload_kg - out_kg).abs() < 1e-9 && found.pose == "out", "{found:?}");
-        assert!((found.table[0].limit.payload_kg - (100.0 / 9.81 - 1.0)).abs() < 1e-9, "{found:?}");
-        assert_eq!((found.limit.piece.as_str(), found.limit.check.as_str()), ("j", "torque limit"));
-        let faulty = r#"{"joints": [{"name": "j", "max_torque_nm": -5}, {"max_torque_nm": 5}]}"#;
-        assert_eq!(
-            read_limits(Document::parse("l", faulty).expect("JSON")).expect_err("two faults").0.len(),
-            2
+        let found = found(
+            r#"[{"type": "joint", "name": "j", "axis": [0, 1, 0], "stiffness_nm_per_rad": null},
+            {"type": "link", "name": "l", "vector_m": [1, 0, 0], "mass_kg": 2}]"#,
+            r#"[{"name": "out", "pose_deg": [0]}, {"name": "half", "pose_deg": [-60]}]"#,
+            r#"{"joints": [{"name": "j", "max_torque_nm": 50}]}"#,
         );
+        let out_kg = 50.0 / 9.81 - 1.0;
+        assert!((found.window.most.payload_kg - out_kg).abs() < 1e-9 && found.pose == "out", "{found:?}");
+        let half_kg = found.table[0].window.most.payload_kg;
+        assert!((half_kg - (100.0 / 9.81 - 1.0)).abs() < 1e-9, "{found:?}");
+        let most = &found.window.most;
+        assert_eq!((most.piece.as_str(), most.check.as_str()), ("j", "torque limit"));
+        assert!(
+            found.window.least.payload_kg == 0.0 && found.least_pose.is_empty() && found.remarks.is_empty()
+        );
+    }
+
+    #[test]
+    fn an_arm_that_is_balanced_for_its_payload_has_a_smallest_payload() {
+        // 2 kg in the middle of 1 m against 20 kg at half a metre behind the joint: |9.81 (9 - m)| <= 50
+        let chain = r#"[{"type": "joint", "name": "j", "axis": [0, 1, 0], "stiffness_nm_per_rad": null},
+            {"type": "link", "name": "l", "vector_m": [1, 0, 0], "mass_kg": 2}],
+            "counterweights": [{"at": "l", "point_m": [-0.5, 0, 0], "mass_kg": 20}]"#;
+        let limits = r#"{"joints": [{"name": "j", "max_torque_nm": 50}]}"#;
+        let out = found(chain, r#"[{"name": "out", "pose_deg": [0]}]"#, limits);
+        let Window { least, most } = &out.window;
+        assert!((least.payload_kg - (9.0 - 50.0 / 9.81)).abs() < 1e-9 && out.least_pose == "out", "{out:?}");
+        assert!((most.payload_kg - (9.0 + 50.0 / 9.81)).abs() < 1e-9, "{out:?}");
+        // a tip force that a further pose adds shifts the window by its force over g: no payload holds in both poses
+        let both = r#"[{"name": "out", "pose_deg": [0]}, {"name": "pushed", "pose_deg": [0], "tip_force_n": [0, 0, 150]}]"#;
+        let both = found(chain, both, limits);
+        assert!(!both.window.holds() && both.pose == "out" && both.least_pose == "pushed", "{both:?}");
+        assert_eq!(both.to_json()["payload_kg"], 0.0);
+        let pushed_kg = both.table.iter().map(|at| at.window.least.payload_kg).fold(0.0, f64::max);
+        assert!((pushed_kg - (9.0 + (150.0 - 50.0) / 9.81)).abs() < 1e-9, "{both:?}");
+    }
+
+    #[test]
+    fn a_slide_is_limited_by_its_force_and_joints_without_a_limit_are_named() {
+        // 3 kg and the payload hang on a vertical slide with a limit of 200 N
+        let found = found(
+            r#"[{"type": "prismatic", "name": "z", "axis": [0, 0, 1], "stiffness_n_per_m": null, "mass_kg": 3},
+            {"type": "joint", "name": "wrist", "axis": [0, 1, 0], "stiffness_nm_per_rad": null}]"#,
+            r#"[{"name": "low", "pose": {"z_mm": 0, "wrist_deg": 0}}]"#,
+            r#"{"joints": [{"name": "z", "max_force_n": 200}]}"#,
+        );
+        let most = &found.window.most;
+        assert!((most.payload_kg - (200.0 / 9.81 - 3.0)).abs() < 1e-9, "{found:?}");
+        assert_eq!((most.piece.as_str(), most.check.as_str()), ("z", "force limit"));
+        assert!(found.remarks.len() == 1 && found.remarks[0].ends_with("not judged: wrist."), "{found:?}");
+    }
+
+    #[test]
+    fn a_bearing_that_a_counterweight_tilts_needs_a_payload() {
+        // a vertical joint under the same lever: the moment across its axis is 9.81 |9 - m|, and 40 N m are permitted
+        let found = found(
+            r#"[{"type": "joint", "name": "waist", "axis": [0, 0, 1], "stiffness_nm_per_rad": null,
+              "bearing": {"tilt_stiffness_nm_per_rad": null, "permissible_moment_nm": 40}},
+            {"type": "link", "name": "l", "vector_m": [1, 0, 0], "mass_kg": 2}],
+            "counterweights": [{"at": "l", "point_m": [-0.5, 0, 0], "mass_kg": 20}]"#,
+            r#"[{"name": "out", "pose_deg": [0]}]"#,
+            r#"{"joints": []}"#,
+        );
+        let Window { least, most } = &found.window;
+        assert!((least.payload_kg - (9.0 - 40.0 / 9.81)).abs() < 1e-9, "{found:?}");
+        assert!((most.payload_kg - (9.0 + 40.0 / 9.81)).abs() < 1e-9, "{found:?}");
+        assert_eq!(least.check, "bearing moment");
     }
 }

@@ -1,78 +1,90 @@
-//! Capacity: the largest payload of an arm with its drives unchanged, in each pose of a study and in all of them.
+//! Capacity: the payloads that an arm holds with its drives unchanged, in each pose of a study and in all of them.
 //!
-//! The mass of the payload grows until a drive, an output bearing or the stress of a link exceeds its limit. The
-//! payload keeps its centre of gravity and its moments of inertia. The checks are those of sizing. For all poses
-//! together, the largest static torque and the largest inertia are combined, which may come from different poses.
+//! The mass of the payload grows, and shrinks, from the one that the study states until a drive, an output bearing or
+//! the stress of a link exceeds its limit. The payload keeps its centre of gravity and its moments of inertia. The
+//! checks are those of sizing. For all poses together, the largest static torque and the largest inertia are combined,
+//! which may come from different poses. A pose that states a payload of its own keeps this payload.
+//!
+//! An arm that is balanced for its payload may hold the payload and fail without it. Its payloads then have a lower
+//! limit too.
 
 use super::chosen::{chosen_design, why_not_held};
 use super::definition::Study;
 use super::refusal::Refusal;
+use super::window::{Overload, Window, window_around};
 use crate::catalog::Catalogs;
 use crate::space::design_space::{DesignSpace, SpacePiece};
 use crate::space::problem::ArmProblem;
 use crate::space::station::Walk;
+use nalgebra::Vector3;
 use serde_json::{Value, json};
 
-/// Largest payload that is tried \[kg\]. An arm that still passes with it is reported as having no limit.
-const MOST_KG: f64 = 1e6;
-/// Relative tolerance of the bisection for the largest payload.
-const TOLERANCE: f64 = 1e-10;
-
-/// The largest payload, and what limits it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Limit {
-    /// The largest payload that passes every check \[kg\]; infinite if nothing limits it.
-    pub payload_kg: f64,
-    /// Name of the joint or link that fails beyond this payload; empty if nothing limits it.
-    pub piece: String,
-    /// Label of the check that fails beyond this payload.
-    pub check: String,
-}
-
-/// The largest payload in one pose.
+/// The payloads that hold in one pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AtPose {
     /// Name of the pose.
     pub pose: String,
-    /// Distance of the tip from the origin, measured perpendicular to gravity \[m\].
+    /// Reach of the tip \[m\]. If gravity points along the z axis of the base, it is the distance of the tip from the
+    /// origin measured across gravity; otherwise, as on a wall, it is the whole distance.
     pub reach_m: f64,
-    /// The largest payload in this pose.
-    pub limit: Limit,
+    /// The payloads that hold in this pose.
+    pub window: Window,
 }
 
-/// The largest payload of an arm, in all poses and in each of them.
+/// The payloads that an arm holds, in all poses and in each of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Capacity {
-    /// The largest payload that passes in all sizing poses together.
-    pub limit: Limit,
+    /// The payloads that hold in all sizing poses together.
+    pub window: Window,
     /// Name of the sizing pose whose largest payload is the smallest of all.
     pub pose: String,
-    /// The largest payload in each sizing pose, sorted by reach, shortest first.
+    /// Name of the sizing pose whose smallest payload is the largest of all; empty if every pose holds the empty arm.
+    pub least_pose: String,
+    /// The payloads that hold in each sizing pose, sorted by reach, shortest first. Poses that keep a payload of their
+    /// own have no entry.
     pub table: Vec<AtPose>,
-}
-
-impl Limit {
-    /// The payload in JSON; null if nothing limits it.
-    fn payload_json(&self) -> Value {
-        if self.payload_kg.is_finite() { json!(self.payload_kg) } else { Value::Null }
-    }
+    /// What the numbers leave out, as sentences.
+    pub remarks: Vec<String>,
 }
 
 impl Capacity {
-    /// The capacity as JSON, as `armwright capacity --json` prints it: the limit in all poses together, and one entry
+    /// The capacity of an arm with the payloads `window` in all poses together, and those of each pose in `table`.
+    pub(crate) fn new(window: Window, mut table: Vec<AtPose>, remarks: Vec<String>) -> Self {
+        let most = table.iter().min_by(|a, b| a.window.most.payload_kg.total_cmp(&b.window.most.payload_kg));
+        let least =
+            table.iter().max_by(|a, b| a.window.least.payload_kg.total_cmp(&b.window.least.payload_kg));
+        let pose = most.map_or(String::new(), |at| at.pose.clone());
+        let least_pose = least.filter(|at| at.window.least.payload_kg > 0.0);
+        let least_pose = least_pose.map_or(String::new(), |at| at.pose.clone());
+        table.sort_by(|a, b| a.reach_m.total_cmp(&b.reach_m));
+        Self { window, pose, least_pose, table, remarks }
+    }
+
+    /// The capacity as JSON, as `armwright capacity --json` prints it: the limits in all poses together, and one entry
     /// for each pose.
     pub fn to_json(&self) -> Value {
-        let rows: Vec<Value> = self
-            .table
-            .iter()
-            .map(|at| {
-                json!({"reach_m": at.reach_m, "payload_kg": at.limit.payload_json(), "pose": at.pose,
-                "joint": at.limit.piece, "check": at.limit.check})
-            })
-            .collect();
-        json!({"payload_kg": self.limit.payload_json(), "pose": self.pose, "joint": self.limit.piece,
-        "check": self.limit.check, "table": rows})
+        let with = |window: &Window, further: Value| {
+            let mut out = window.to_json();
+            for (key, value) in further.as_object().into_iter().flatten() {
+                out[key] = value.clone();
+            }
+            out
+        };
+        let row = |at: &AtPose| with(&at.window, json!({"reach_m": at.reach_m, "pose": at.pose}));
+        let rows: Vec<Value> = self.table.iter().map(row).collect();
+        let pose = if self.window.holds() { &self.pose } else { &self.least_pose };
+        let all =
+            json!({"pose": pose, "least_pose": self.least_pose, "table": rows, "remarks": self.remarks});
+        with(&self.window, all)
     }
+}
+
+/// Reach of a tip at `tip_m` from the origin \[m\]; `down` is the direction of gravity. Gravity along the z axis of the
+/// base means an arm that stands or hangs. Its reach is the distance across gravity, the lever of its payload. The
+/// reach of an arm on a wall is the whole distance.
+pub(crate) fn reach_m(tip_m: &Vector3<f64>, down: &Vector3<f64>) -> f64 {
+    let stands = down.x == 0.0 && down.y == 0.0;
+    if stands { (tip_m - down * down.dot(tip_m)).norm() } else { tip_m.norm() }
 }
 
 /// The capacity of the design with the `design_id` given as `id`. Without an id, it is the capacity of a design with
@@ -84,69 +96,75 @@ pub fn capacity_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Resu
     let (space, chosen) = chosen_design(study, id, catalogs)?;
     let problem = ArmProblem::new(&space, catalogs);
     let arm = problem.walk(&chosen, |_, _| {}).map_err(|slot| why_not_held(&problem, &chosen, slot))?;
-    Ok(capacity(&space, catalogs, arm.slot_options()))
+    Ok(capacity(&space, catalogs, arm.slot_options(), &study.own_payloads))
 }
 
 /// The capacity of the design with these options, one for each slot of the arm (joint or link, in the order in which
-/// the arm is built), tip first. `space` is the space to which the options belong.
-pub(crate) fn capacity(space: &DesignSpace, catalogs: &Catalogs, options: &[u32]) -> Capacity {
-    let upright = space.down;
-    let at_pose = |&case: &usize| {
-        let tip_m = Walk::new(space, &space.cases[case]).tip_m;
-        AtPose {
-            pose: space.cases[case].name.clone(),
-            reach_m: (tip_m - upright * upright.dot(&tip_m)).norm(),
-            limit: limit(space, catalogs, options, &[case]),
-        }
+/// the arm is built), tip first. `space` is the space to which the options belong. The cases with the indices `own`
+/// state a payload of their own and keep it; if all sizing cases do, the payload of all of them changes.
+fn capacity(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], own: &[usize]) -> Capacity {
+    let (kept, mut loaded): (Vec<usize>, Vec<usize>) =
+        space.sizing_cases.iter().partition(|case| own.contains(case));
+    let mut remarks = Vec::new();
+    if loaded.is_empty() {
+        loaded.clone_from(&space.sizing_cases);
+        remarks
+            .push("Every pose states a payload of its own; all of them take the same payload here.".into());
+    } else if !kept.is_empty() {
+        let names: Vec<String> =
+            kept.iter().map(|&case| format!("\u{201c}{}\u{201d}", space.cases[case].name)).collect();
+        remarks.push(format!("Poses that keep the payload that they state: {}.", names.join(", ")));
+    }
+    let window = |cases: &[usize], vary: &[usize]| held_payloads(space, catalogs, options, cases, vary);
+    let at_pose = |&case: &usize| AtPose {
+        pose: space.cases[case].name.clone(),
+        reach_m: reach_m(&Walk::new(space, &space.cases[case]).tip_m, &space.down),
+        window: window(&[case], &[case]),
     };
-    let mut table: Vec<AtPose> = space.sizing_cases.iter().map(at_pose).collect();
-    let least = table.iter().min_by(|a, b| a.limit.payload_kg.total_cmp(&b.limit.payload_kg));
-    let pose = least.map_or(String::new(), |at| at.pose.clone());
-    table.sort_by(|a, b| a.reach_m.total_cmp(&b.reach_m));
-    Capacity { limit: limit(space, catalogs, options, &space.sizing_cases), pose, table }
+    let table = loaded.iter().map(at_pose).collect();
+    Capacity::new(window(&space.sizing_cases, &loaded), table, remarks)
 }
 
-/// The largest payload in the cases with the indices `cases`, by bisection; all other cases are computed without
-/// payload. A heavier payload could pass again where it counteracts a tip force; only the first payload that fails
-/// counts.
-fn limit(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], cases: &[usize]) -> Limit {
+/// The payloads that hold in the cases with the indices `cases`, by bisection from the payload that the study states.
+/// The payload changes in the cases `vary`. All other cases keep theirs, with which the arm holds.
+fn held_payloads(
+    space: &DesignSpace,
+    catalogs: &Catalogs,
+    options: &[u32],
+    cases: &[usize],
+    vary: &[usize],
+) -> Window {
     let overload = |payload_kg: f64| {
         let mut loaded = space.clone();
-        for (index, case) in loaded.cases.iter_mut().enumerate() {
-            // in all other cases the arm is empty, so that they cannot overload a link
-            case.payload.mass_kg = if cases.contains(&index) { payload_kg } else { 0.0 };
+        for &case in vary {
+            loaded.cases[case].payload.mass_kg = payload_kg;
         }
         let problem = ArmProblem::new(&loaded, catalogs);
         problem.overload(options, cases).map(|(piece, check)| {
-            let name =
-                space.pieces.get(piece).map_or(String::new(), |piece| SpacePiece::name(piece).to_string());
-            (name, check.map_or("link stress".to_string(), |check| check.kind.label().to_string()))
+            let piece = space.pieces.get(piece).map_or("", SpacePiece::name).to_string();
+            let check = check.map_or("link stress", |check| check.kind.label()).to_string();
+            Overload { piece, check }
         })
     };
-    let (mut low, mut high) = (0.0, 1.0);
-    let mut why = overload(0.0);
-    if let Some((piece, check)) = why {
-        return Limit { payload_kg: 0.0, piece, check };
+    let mut stated_kg: Vec<f64> = vary.iter().map(|&case| space.cases[case].payload.mass_kg).collect();
+    stated_kg.sort_by(|a, b| b.total_cmp(a));
+    stated_kg.dedup();
+    match stated_kg.iter().find(|&&payload_kg| overload(payload_kg).is_none()) {
+        Some(&payload_kg) => window_around(payload_kg, &overload),
+        None => Window::empty(overload(0.0).unwrap_or_default()),
     }
-    loop {
-        why = overload(high);
-        if why.is_some() || high > MOST_KG {
-            break;
-        }
-        (low, high) = (high, 2.0 * high);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_reach_of_an_arm_on_a_wall_is_its_whole_distance() {
+        let tip_m = Vector3::new(0.9, 0.0, 0.4);
+        assert_eq!(reach_m(&tip_m, &-Vector3::z()), 0.9);
+        assert_eq!(reach_m(&tip_m, &Vector3::z()), 0.9);
+        let on_a_wall_m = reach_m(&tip_m, &Vector3::x());
+        assert!((on_a_wall_m - (0.81f64 + 0.16).sqrt()).abs() < 1e-15, "{on_a_wall_m}");
     }
-    let Some((mut piece, mut check)) = why else {
-        return Limit { payload_kg: f64::INFINITY, piece: String::new(), check: String::new() };
-    };
-    while high - low > TOLERANCE * high {
-        let middle = 0.5 * (low + high);
-        match overload(middle) {
-            Some(found) => {
-                (piece, check) = found;
-                high = middle;
-            }
-            None => low = middle,
-        }
-    }
-    Limit { payload_kg: low, piece, check }
 }

@@ -13,6 +13,8 @@ pub(super) struct Cases {
     pub cases: Vec<Case>,
     pub judged: Vec<usize>,
     pub sizing: Vec<usize>,
+    /// Indices of the cases whose pose states a payload of its own.
+    pub own_payloads: Vec<usize>,
 }
 
 /// One case as it is read, before it is repeated for every environment.
@@ -20,6 +22,7 @@ struct ReadCase {
     case: Case,
     judged: bool,
     sizing: bool,
+    own_payload: bool,
 }
 
 /// Reads the poses of a study and repeats them for every environment. `joints` are the driven joints of the study.
@@ -43,10 +46,11 @@ pub(super) fn read_cases(root: &Object, joints: &[DrivenJoint]) -> Option<Cases>
     }
     let mut out = Cases::default();
     for environment in &environments {
-        for ReadCase { case, judged, sizing } in &poses {
+        for ReadCase { case, judged, sizing, own_payload } in &poses {
             let index = out.cases.len();
             out.judged.extend(judged.then_some(index));
             out.sizing.extend(sizing.then_some(index));
+            out.own_payloads.extend(own_payload.then_some(index));
             let name = match environment.name.as_str() {
                 "" => case.name.clone(),
                 around => format!("{}, {around}", case.name),
@@ -116,5 +120,5 @@ fn read_case(node: &Node, joints: &[DrivenJoint], usual: &Load) -> Option<ReadCa
         tip_moment_nm: tip_moment_nm?,
         water: None,
     };
-    Some(ReadCase { case, judged: judged?, sizing: sizing? })
+    Some(ReadCase { case, judged: judged?, sizing: sizing?, own_payload: object.has("payload") })
 }

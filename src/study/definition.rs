@@ -14,6 +14,8 @@ pub struct Study {
     /// The gap at which an exact search may end: for every design of the study, some listed design is worse by at
     /// most this fraction in each objective.
     pub gap: f64,
+    /// Indices of the cases whose pose states a payload of its own.
+    pub own_payloads: Vec<usize>,
     /// Messages on options that were left out because a rating that a check needs is blank.
     pub not_checked: Vec<String>,
     /// Remarks on the question that a reader of the result should know, as sentences.

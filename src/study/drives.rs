@@ -53,7 +53,7 @@ pub(super) fn read_drives(node: &Node, catalogs: &Catalogs) -> Option<Drives> {
         (names(&object, "gear_series", &known_series), names(&object, "gears", &known_gears));
     let (ratios, gear_kinds) = (
         object.or("ratios", None, |n| read_ratios(n, &known_ratios).map(Some)),
-        object.or("gear_kinds", usual_gears, |n| read_gear_kinds(n).map(Some)),
+        object.or("gear_kinds", usual_gears, |n| read_gear_kinds(n, catalogs).map(Some)),
     );
     let motor_kinds = object.or("motors", usual_motors, |n| read_motor_kinds(n).map(Some));
     let motor_ids = names(&object, "motor_models", &known_motors);
@@ -115,7 +115,8 @@ fn read_gear_mass(node: &Node) -> Option<GearMass> {
     }
 }
 
-fn read_gear_kinds(node: &Node) -> Option<Vec<GearKind>> {
+/// Reads the kinds of gears that may be chosen. The catalogs must have a gear of one of them.
+fn read_gear_kinds(node: &Node, catalogs: &Catalogs) -> Option<Vec<GearKind>> {
     let kind = |n: &Node| {
         let word = n.string()?;
         GearKind::from_word(word).or_else(|| {
@@ -127,7 +128,26 @@ fn read_gear_kinds(node: &Node) -> Option<Vec<GearKind>> {
         })
     };
     let read: Vec<Option<GearKind>> = node.array()?.iter().map(kind).collect();
-    read.into_iter().collect()
+    let kinds = read.into_iter().collect::<Option<Vec<_>>>()?;
+    let has = |kind: &GearKind| catalogs.gears.iter().any(|gear| gear.kind == *kind);
+    if kinds.is_empty() || kinds.iter().any(has) {
+        return Some(kinds);
+    }
+    let words = |with_rows: bool| -> String {
+        let words = GearKind::WORDS.into_iter();
+        let matching = words.filter(|word| {
+            GearKind::from_word(word)
+                .is_some_and(|kind| if with_rows { has(&kind) } else { kinds.contains(&kind) })
+        });
+        matching.collect::<Vec<_>>().join(", ")
+    };
+    node.fault(
+        format!("the catalogs have no gear of the kind {}", words(false)),
+        &format!(
+            "add rows to gears.csv in a folder of your own (--catalogs DIR), or ask for a kind that has rows: {}",
+            words(true)
+        ),
+    )
 }
 
 fn read_ratios(node: &Node, known: &[f64]) -> Option<Vec<f64>> {

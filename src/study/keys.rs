@@ -185,7 +185,7 @@ pub(super) static JOINT: Shape = Shape::new(
         TURNS_WITH,
     ],
     &[
-        Rule::Any(&["drive", "stiffness_nm_per_rad", "windup", "gear"]),
+        Rule::Any(&["drive", "stiffness_nm_per_rad", "windup", "gear", "coupled"]),
         Rule::Refuses("stiffness_nm_per_rad", &["windup"]),
         Rule::Refuses("drive", &OF_GIVEN_DRIVE),
         Rule::Needs("drives", &["drive"]),

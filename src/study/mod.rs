@@ -29,6 +29,7 @@ pub(crate) mod keys;
 mod limit;
 mod linkages;
 pub(crate) mod load;
+pub(crate) mod load_limits;
 pub(crate) mod motion;
 mod motor_kinds;
 pub(crate) mod named;
@@ -54,11 +55,12 @@ pub(crate) mod table;
 pub(crate) mod ties;
 pub(crate) mod tolerance;
 mod transmissions;
+pub(crate) mod window;
 pub(crate) mod worst_pose;
 
 pub use ballast::{BallastFlags, ballast_flags};
 pub use budget::budgets;
-pub use capacity::{AtPose, Capacity, Limit, capacity_of};
+pub use capacity::{AtPose, Capacity, capacity_of};
 pub use check::{Claim, Completeness, FrontCheck, check_front, resume_check};
 pub use chosen::{arm_of_design, sizing_of};
 pub use definition::Study;
@@ -83,4 +85,5 @@ pub use shards::{Swept, candidates_csv, found_csv, gaps, joined, read_candidates
 pub use table::front_table;
 pub use ties::{Ties, ties};
 pub use tolerance::{Sampling, Tolerance, part, scatter_front};
+pub use window::{Limit, Window};
 pub use worst_pose::{WorstPose, WorstPoses, worst_poses};

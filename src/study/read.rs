@@ -102,7 +102,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     let (links, joint_model) = root.or("models", Default::default(), read_models)?;
     let effects = root.or("effects", Vec::new(), read_effects);
     let harness_kg_per_m = root.or("harness_kg_per_m", 0.0, Node::non_negative);
-    let Cases { cases, judged, sizing } = cases?;
+    let Cases { cases, judged, sizing, own_payloads } = cases?;
     let motion = motion?;
     let (gravity_m_s2, down) = gravity?;
     let motion = under_gravity(&root, gravity_m_s2, motion)?;
@@ -128,7 +128,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     in_range?;
     let Aside { not_checked, mut remarks, .. } = aside;
     remarks.extend(remarks_on(&space, harness_kg_per_m, catalogs));
-    Some(Study { name: name?, question: question?, space, gap: gap?, not_checked, remarks })
+    Some(Study { name: name?, question: question?, space, gap: gap?, own_payloads, not_checked, remarks })
 }
 
 /// Reads the name of a study. It must have a letter or a digit, because the folder of results is named after it.

@@ -11,7 +11,7 @@ use crate::sizing::sheet::JointSizingRow;
 use crate::space::design::{Part, id_of, options};
 use crate::space::design_space::{DriveChoice, LinkOption, SpacePiece};
 use crate::space::levels::OutwardIn;
-use crate::space::problem::{ArmProblem, Partial};
+use crate::space::problem::ArmProblem;
 
 /// A front as a table: one row for each design, with its choices, objectives and margins.
 pub fn front_table(problem: &ArmProblem, catalogs: &Catalogs, front: &Front) -> FrontTable {
@@ -149,61 +149,27 @@ pub(crate) fn sizing_rows(
     catalogs: &Catalogs,
     chosen: &[u32],
 ) -> Result<Vec<JointSizingRow>, usize> {
-    let mut rows = Vec::new();
-    // the drive of a sized joint is known only after it is added, so its row is completed at the next slot
-    let mut open: Option<(usize, JointDemand, f64)> = None;
+    let mut demands: Vec<(usize, JointDemand)> = Vec::new();
     let complete = problem.walk(chosen, |slot, partial| {
-        rows.extend(close(problem, catalogs, open.take(), partial));
         let piece = problem.piece_of_slot(slot);
         if problem.sized_joint(piece).is_some() {
-            open = Some((slot, problem.demand_at(partial, slot), problem.mass_kg(partial)));
+            demands.push((piece, problem.demand_at(partial, slot)));
         } else if let Some(fixed) = problem.fixed_drive(piece, catalogs) {
-            let demand = problem.fixed_demand(partial, slot, &fixed.motion);
-            let passed = problem.mass_kg(partial)
-                + fixed.mass_kg
-                + fixed.drive.extras().total_kg()
-                + bearing_kg(problem, piece);
-            let name = joint_name(problem, piece);
-            let row = JointSizingRow::new(name, &fixed.drive, &fixed.motion, &demand, passed);
-            rows.push(at_cycle_efficiency(row, catalogs, &fixed.drive, &fixed.motion, &demand));
+            demands.push((piece, problem.fixed_demand(partial, slot, &fixed.motion)));
         }
     })?;
-    rows.extend(close(problem, catalogs, open.take(), &complete));
-    Ok(rows)
-}
-
-/// Mass of the output bearing of the joint `piece` \[kg\] if the study states the bearing as a separate part; otherwise
-/// 0.
-fn bearing_kg(problem: &ArmProblem, piece: usize) -> f64 {
-    match &problem.space().pieces[piece] {
-        SpacePiece::Joint(joint) => joint.bearing.stated().map_or(0.0, |bearing| bearing.mass_kg),
-        _ => 0.0,
-    }
-}
-
-fn joint_name<'p>(problem: &'p ArmProblem, piece: usize) -> &'p str {
-    match &problem.space().pieces[piece] {
-        SpacePiece::Joint(joint) => &joint.name,
-        _ => "",
-    }
-}
-
-/// Completes the sizing row of a joint whose drive is now known. `open` is the joint's slot, its demand and the mass
-/// outboard of it \[kg\]; `with_it` is the arm up to this joint with its drive. `None` if no row is open.
-fn close(
-    problem: &ArmProblem,
-    catalogs: &Catalogs,
-    open: Option<(usize, JointDemand, f64)>,
-    with_it: &Partial,
-) -> Option<JointSizingRow> {
-    let (slot, demand, outboard_kg) = open?;
-    let piece = problem.piece_of_slot(slot);
-    let table = &problem.sized_joint(piece)?.table;
-    let index = problem.options(with_it).nth(piece)? as usize;
-    let passed = outboard_kg + table.mass_kg(index) + bearing_kg(problem, piece);
-    let drive = table.drive(index);
-    let row = JointSizingRow::new(table.joint(), &drive, table.motion(), &demand, passed);
-    Some(at_cycle_efficiency(row, catalogs, &drive, table.motion(), &demand))
+    let options: Vec<u32> = problem.options(&complete).collect();
+    let inward_kg = problem.masses_inward_kg(&complete);
+    let row = |(piece, demand): &(usize, JointDemand)| {
+        let (drive, motion) = match problem.sized_joint(*piece) {
+            Some(sized) => (sized.table.drive(options[*piece] as usize), *sized.table.motion()),
+            None => problem.fixed_drive(*piece, catalogs).map(|fixed| (fixed.drive, fixed.motion))?,
+        };
+        let name = problem.space().pieces[*piece].name();
+        let row = JointSizingRow::new(name, &drive, &motion, demand, inward_kg[*piece]);
+        Some(at_cycle_efficiency(row, catalogs, &drive, &motion, demand))
+    };
+    Ok(demands.iter().filter_map(row).collect())
 }
 
 /// Adds to `row` the efficiency of the gear at the mean speed and mean torque of the duty cycle, if the catalogs have

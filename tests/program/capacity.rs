@@ -132,3 +132,87 @@ fn the_capacity_of_an_arm_file_ends_where_an_output_bearing_is_overloaded() {
     arm["chain"][0]["bearing"]["permissible_moment_nm"] = json!(5);
     assert_eq!(capacity(&arm)["payload_kg"], 0.0);
 }
+
+/// A lever of 0.6 m whose joint has one drive, and a counterweight behind it.
+fn balanced(poses: Value) -> Value {
+    json!({"name": "balanced", "payload": {"mass_kg": 12}, "poses": poses, "chain": [
+            joint("j1", [0.0, 1.0, 0.0], "CSG-20-100", "ILM70x18"),
+            {"type": "link", "name": "a", "vector_m": [0.6, 0, 0], "mass_kg": 2}],
+        "counterweights": [{"at": "a", "point_m": [-0.3, 0, 0], "mass_kg": 30}],
+        "motion": {"tip_speed_m_s": 0.2, "ramp_time_s": 1}})
+}
+
+#[test]
+fn a_balanced_arm_has_a_smallest_payload_below_which_sizing_fails() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let study = balanced(json!([{"name": "out", "pose_deg": [0]}]));
+    let write =
+        |study: &Value| std::fs::write(dir.path().join("s.json"), study.to_string()).expect("written");
+    write(&study);
+    let found = armwright(&["capacity", "s.json", "--json"], dir.path());
+    assert!(found.status.success(), "{}", String::from_utf8_lossy(&found.stderr));
+    let found: Value = serde_json::from_slice(&found.stdout).expect("JSON");
+    let ends = ["least_payload_kg", "payload_kg"].map(|key| found[key].as_f64().expect("kg"));
+    assert!(0.0 < ends[0] && ends[0] < 12.0 && 12.0 < ends[1], "{found}");
+    assert_eq!((&found["least_joint"], &found["least_pose"]), (&json!("j1"), &json!("out")));
+    for (payload_kg, holds) in ends.into_iter().zip([[false, true], [true, false]]) {
+        for (times, holds) in [1.0 - 1e-6, 1.0 + 1e-6].into_iter().zip(holds) {
+            let mut loaded = study.clone();
+            loaded["payload"]["mass_kg"] = json!(payload_kg * times);
+            write(&loaded);
+            let code = armwright(&["size", "s.json"], dir.path()).status.code();
+            assert_eq!(code, Some(if holds { 0 } else { 6 }), "{payload_kg} kg times {times}");
+        }
+    }
+    write(&study);
+    let text = armwright(&["capacity", "s.json"], dir.path());
+    let text = String::from_utf8_lossy(&text.stdout).to_string();
+    let says = format!("balanced holds from {:.3} to {:.3} kg in all of its poses", ends[0], ends[1]);
+    assert!(text.starts_with(&says) && text.contains("It does not hold the empty arm"), "{text}");
+}
+
+#[test]
+fn a_pose_that_states_its_own_payload_keeps_it_and_is_named() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let capacity = |study: &Value| -> Value {
+        std::fs::write(dir.path().join("s.json"), study.to_string()).expect("written");
+        let found = armwright(&["capacity", "s.json", "--json"], dir.path());
+        assert!(found.status.success(), "{}", String::from_utf8_lossy(&found.stderr));
+        serde_json::from_slice(&found.stdout).expect("JSON")
+    };
+    let out = json!({"name": "out", "pose_deg": [0]});
+    let alone = capacity(&balanced(json!([out])));
+    // a push at the tip, which the joint bears with the payload of this pose and would not bear with the largest one
+    let own = json!({"name": "own", "pose_deg": [0], "payload": {"mass_kg": 8}, "tip_force_n": [0, 0, -20]});
+    let with_own = capacity(&balanced(json!([out, own])));
+    let [a, b] = [&alone, &with_own].map(|found| found["payload_kg"].as_f64().expect("kg"));
+    assert!((a - b).abs() < 1e-9, "{alone} {with_own}");
+    assert_eq!(with_own["table"].as_array().expect("rows").len(), 1, "{with_own}");
+    let remarks = with_own["remarks"].to_string();
+    assert!(
+        remarks.contains("Poses that keep the payload that they state: \u{201c}own\u{201d}."),
+        "{remarks}"
+    );
+}
+
+#[test]
+fn an_actuator_that_is_named_as_the_gear_alone_limits_by_its_motor() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let arm = json!({"name": "a", "chain": [
+        {"type": "joint", "name": "j1", "axis": [0, 1, 0], "gear": "CHA-20A-100"},
+        {"type": "link", "name": "l", "vector_m": [0.5, 0, 0], "mass_kg": 1},
+        {"type": "joint", "name": "j2", "axis": [0, 1, 0], "stiffness_nm_per_rad": null}]});
+    std::fs::write(dir.path().join("arm.json"), arm.to_string()).expect("written");
+    let found = armwright(&["capacity", "arm.json", "--json"], dir.path());
+    let found: Value = serde_json::from_slice(&found.stdout).expect("JSON");
+    // the data sheet of the actuator states 49 N m at its output
+    let by_hand_kg = (49.0 - 0.25 * 9.81) / (0.5 * 9.81);
+    assert!((found["payload_kg"].as_f64().expect("kg") - by_hand_kg).abs() < 1e-9, "{by_hand_kg} in {found}");
+    assert_eq!(found["check"], "continuous torque of the motor");
+    assert!(found["remarks"][0].as_str().expect("a remark").ends_with("not judged: j2."), "{found}");
+    std::fs::write(dir.path().join("l.json"), r#"{"joints": [{"name": "J1", "max_torque_nm": 5}]}"#)
+        .expect("written");
+    let refused = armwright(&["capacity", "arm.json", "--limits", "l.json"], dir.path());
+    let said = String::from_utf8_lossy(&refused.stderr).to_string();
+    assert!(refused.status.code() == Some(3) && said.contains("did you mean \"j1\"?"), "{said}");
+}

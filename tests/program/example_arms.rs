@@ -56,3 +56,9 @@ fn the_palletizer_is_lighter_with_its_gas_spring() {
     answers("A palletizer with a gas spring", &run, &summary, 16);
     assert!(summary.contains("stiffness that they add to modes is left out"), "{summary}");
 }
+
+#[test]
+fn the_gantry_is_as_stiff_as_its_guides_and_its_wrist() {
+    let (run, summary) = run("gantry.json", None);
+    answers("A gantry with a wrist", &run, &summary, 48);
+}

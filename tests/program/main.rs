@@ -12,6 +12,7 @@ mod catalog_cli;
 mod cli;
 mod compare;
 mod docs;
+mod drive_reports;
 mod drives;
 mod duty_cycles;
 mod example_arms;

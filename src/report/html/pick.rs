@@ -62,6 +62,8 @@ pub struct DeflectionPart {
     pub element: String,
     /// Torque on the joint \[N m\]; `None` for other elements.
     pub torque_nm: Option<f64>,
+    /// Force on the prismatic joint along its travel \[N\]; `None` for other elements.
+    pub force_n: Option<f64>,
     /// Displacement of the tip by this element's deformation, world axes \[mm\].
     pub moved_mm: [f64; 3],
     /// Component of `moved_mm` along the whole tip deflection \[mm\].
@@ -71,7 +73,7 @@ pub struct DeflectionPart {
 impl DeflectionPart {
     /// Whether the element is a joint or its output bearing.
     fn is_of_joint(&self) -> bool {
-        self.torque_nm.is_some() || self.element.ends_with(".bearing")
+        self.torque_nm.is_some() || self.force_n.is_some() || self.element.ends_with(".bearing")
     }
 }
 
@@ -106,6 +108,7 @@ impl PickedArm {
     /// The values for the template of the card that shows this pick. Pictures are added to `gallery`.
     pub(super) fn context(&self, gallery: &mut Gallery) -> Value {
         let (worst, slowest) = (self.worst(), self.slowest());
+        let kinds = self.checks_of_any_drive();
         let drawing = worst.as_ref().map(|s| gallery.show(&self.drawing(s)));
         let modes: Vec<Value> =
             slowest.iter().flat_map(|s| self.mode_figures(s)).map(|figure| gallery.show(&figure)).collect();
@@ -121,9 +124,18 @@ impl PickedArm {
             "modal_case": slowest.as_ref().map(|s| s.case.name.clone()),
             "parts": worst.as_ref().map(|s| table(&parts_table(&s.parts))),
             "links": self.links(),
-            "drives": self.drives.iter().rev().map(drive).collect::<Vec<_>>(),
+            "checks": kinds.iter().map(|kind| json!({"name": kind.label(), "unit": kind.unit()})).collect::<Vec<_>>(),
+            "drives": self.drives.iter().rev().map(|row| drive(row, &kinds)).collect::<Vec<_>>(),
             "row": self.row,
         })
+    }
+
+    /// The kinds of checks that the page shows and that were made for some drive, in the order of its table. Drives
+    /// differ in their checks: a screw has no bearing that tilts, and a rack does not buckle.
+    fn checks_of_any_drive(&self) -> Vec<CheckKind> {
+        let is_made =
+            |kind: &CheckKind| self.drives.iter().any(|row| row.checks.iter().any(|c| c.kind == *kind));
+        CHECKS.into_iter().filter(is_made).collect()
     }
 
     fn drawing(&self, solved: &Solved) -> Figure {
@@ -315,6 +327,7 @@ fn deflection_parts(statics: &Statics) -> Vec<DeflectionPart> {
         .map(|(element, moved)| DeflectionPart {
             element: element.clone(),
             torque_nm: statics.joint_torques_nm.iter().find(|(n, _)| n == element).map(|(_, t)| *t),
+            force_n: statics.joint_forces_n.iter().find(|(n, _)| n == element).map(|(_, f)| *f),
             moved_mm: (moved * 1e3).into(),
             along_mm: moved.dot(&direction) * 1e3,
         })
@@ -335,7 +348,8 @@ fn parts_table(parts: &[DeflectionPart]) -> Table {
     for part in parts {
         let mm = |v: f64| fixed(v, 4);
         let [x, y, z] = part.moved_mm.map(mm);
-        let torque = part.torque_nm.map_or(String::new(), |t| significant(t, 4));
+        let force = part.force_n.map_or(String::new(), |n| format!("{} N", significant(n, 4)));
+        let torque = part.torque_nm.map_or(force, |t| significant(t, 4));
         let share = percent(100.0 * part.along_mm / whole, 1);
         table.row([part.element.clone(), torque, x, y, z, mm(part.along_mm), share]);
     }
@@ -421,20 +435,27 @@ const CHECKS: [CheckKind; 22] = [
     CheckKind::DriveLength,
 ];
 
-/// The sizing of one joint for the template: torques, parts and the margin of every check.
-fn drive(row: &JointSizingRow) -> Value {
+/// The sizing of one joint for the template: torques, parts and the margin of every check. The columns of the page are
+/// those of joints that turn, so that the forces of a joint that slides are written with their unit. There is one entry
+/// for each of the checks `kinds`, null where the drive does not have this check.
+fn drive(row: &JointSizingRow, kinds: &[CheckKind]) -> Value {
     let number = |v: f64| significant(v, 4);
     let open = |v: Option<f64>| v.map_or("unknown".to_string(), number);
+    let load = |v: Option<f64>| match v {
+        Some(force_n) if row.slides => format!("{} N", number(force_n)),
+        _ => open(v),
+    };
+    let of_kind = |kind: &CheckKind| row.checks.iter().find(|c| c.kind == *kind);
     let made: Vec<Value> =
-        row.checks.iter().filter(|c| CHECKS.contains(&c.kind)).map(|c| check(c, row.binds)).collect();
+        kinds.iter().map(|kind| of_kind(kind).map_or(Value::Null, |c| check(c, row.binds))).collect();
     json!({
         "joint": row.joint,
         "gear": row.gear,
         "motor": row.motor,
-        "static_nm": number(row.static_torque_nm),
-        "linear_nm": number(row.linear_torque_nm),
-        "rotary_nm": open(row.rotary_torque_output_nm),
-        "total_nm": open(row.total_torque_nm),
+        "static": load(Some(row.static_torque_nm)),
+        "linear": load(Some(row.linear_torque_nm)),
+        "rotary": load(row.rotary_torque_output_nm),
+        "total": load(row.total_torque_nm),
         "motor_rpm": format!("{:.0}", row.motor_speed_rpm),
         "mass_kg": open(row.mass_kg),
         "inward_kg": number(row.mass_passed_inward_kg),
@@ -450,6 +471,7 @@ fn check(check: &Check, binds: Option<&str>) -> Value {
     json!({
         "name": check.kind.label(),
         "unit": check.kind.unit(),
+        "own_unit": (check.unit() != check.kind.unit()).then(|| check.unit()),
         "needed": number(check.needed),
         "allowed": number(check.allowed),
         "margin": margin.map(|m| if m < 100.0 { significant(m, 3) } else { "> 100".into() }),

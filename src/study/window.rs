@@ -1,0 +1,142 @@
+//! The payloads that an arm holds: a window from a smallest to a largest one, and what fails beyond its ends.
+//!
+//! Every load on a drive, a bearing or a link is a convex function of the payload's mass, because it is a norm or a
+//! mean of quantities that are affine in this mass. The payloads that hold are therefore one interval.
+
+use serde_json::{Value, json};
+
+/// Largest payload that is tried \[kg\]. An arm that still holds it is reported as having no limit.
+pub(crate) const MOST_KG: f64 = 1e6;
+/// A bisection for an end of a window stops when its interval is this narrow, relative to the payload.
+const TOLERANCE: f64 = 1e-13;
+/// Payload below which the tolerance does not shrink any more \[kg\].
+const SMALL_KG: f64 = 1e-3;
+
+/// One end of the payloads that an arm holds, and what fails beyond it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limit {
+    /// The last payload that passes every check \[kg\]. At the upper end it is infinite if nothing limits the payload;
+    /// at the lower end it is 0 if the empty arm passes.
+    pub payload_kg: f64,
+    /// Name of the joint or link that fails beyond this payload; empty if none does.
+    pub piece: String,
+    /// Label of the check that fails beyond this payload.
+    pub check: String,
+}
+
+/// The payloads that an arm holds, in one pose or in several.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Window {
+    /// The smallest payload that holds; 0 if the empty arm holds. It exceeds `most` if no payload holds.
+    pub least: Limit,
+    /// The largest payload that holds.
+    pub most: Limit,
+}
+
+/// The first joint or link that a payload overloads.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Overload {
+    /// Name of the joint or link.
+    pub piece: String,
+    /// Label of the check that fails.
+    pub check: String,
+}
+
+impl Limit {
+    pub(crate) fn new(payload_kg: f64, beyond: Overload) -> Self {
+        Self { payload_kg, piece: beyond.piece, check: beyond.check }
+    }
+}
+
+impl Window {
+    /// Every payload holds.
+    pub(crate) fn unlimited() -> Self {
+        let end = |payload_kg| Limit::new(payload_kg, Overload::default());
+        Self { least: end(0.0), most: end(f64::INFINITY) }
+    }
+
+    /// No payload holds; `fails` is what the empty arm overloads.
+    pub(crate) fn empty(fails: Overload) -> Self {
+        Self { least: Limit::new(f64::INFINITY, fails.clone()), most: Limit::new(0.0, fails) }
+    }
+
+    /// Whether any payload holds.
+    pub fn holds(&self) -> bool {
+        self.least.payload_kg <= self.most.payload_kg
+    }
+
+    /// The payloads that are in this window and in `other`.
+    #[must_use]
+    pub(crate) fn and(self, other: Self) -> Self {
+        Self {
+            least: if other.least.payload_kg > self.least.payload_kg { other.least } else { self.least },
+            most: if other.most.payload_kg < self.most.payload_kg { other.most } else { self.most },
+        }
+    }
+
+    /// The window in JSON. `payload_kg` is the largest payload: null if nothing limits it, 0 if no payload holds.
+    pub(super) fn to_json(&self) -> Value {
+        let finite = |x: f64| if x.is_finite() { json!(x) } else { Value::Null };
+        let holds = self.holds();
+        let (most, least) = (&self.most, &self.least);
+        let ends = if holds { most } else { least };
+        json!({"payload_kg": if holds { finite(most.payload_kg) } else { json!(0.0) },
+            "joint": ends.piece, "check": ends.check, "holds": holds,
+            "least_payload_kg": finite(least.payload_kg), "least_joint": least.piece, "least_check": least.check})
+    }
+}
+
+/// The payloads around `held_kg` that hold. `overload` says what a payload \[kg\] overloads; it must be `None` for
+/// `held_kg`.
+pub(crate) fn window_around(held_kg: f64, overload: &dyn Fn(f64) -> Option<Overload>) -> Window {
+    let least = overload(0.0).map(|fails| end_between(held_kg, 0.0, fails, overload));
+    let (mut held_kg, mut more_kg) = (held_kg, (2.0 * held_kg).max(1.0));
+    let most = loop {
+        match overload(more_kg) {
+            Some(fails) => break Some(end_between(held_kg, more_kg, fails, overload)),
+            None if more_kg > MOST_KG => break None,
+            None => (held_kg, more_kg) = (more_kg, 2.0 * more_kg),
+        }
+    };
+    let open = Window::unlimited();
+    Window { least: least.unwrap_or(open.least), most: most.unwrap_or(open.most) }
+}
+
+/// The end of a window between a payload that holds and one that fails, by bisection. `fails` is what the payload
+/// `failed_kg` overloads.
+fn end_between(
+    mut held_kg: f64,
+    mut failed_kg: f64,
+    mut fails: Overload,
+    overload: &dyn Fn(f64) -> Option<Overload>,
+) -> Limit {
+    while (failed_kg - held_kg).abs() > TOLERANCE * failed_kg.max(held_kg).max(SMALL_KG) {
+        let middle_kg = 0.5 * (held_kg + failed_kg);
+        match overload(middle_kg) {
+            Some(found) => (failed_kg, fails) = (middle_kg, found),
+            None => held_kg = middle_kg,
+        }
+    }
+    Limit::new(held_kg, fails)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_window_ends_where_checks_begin_to_fail_on_either_side() {
+        let overload = |kg: f64| {
+            let piece = if kg < 2.5 { "spring" } else { "motor" };
+            ((kg - 10.0).abs() > 7.5).then(|| Overload { piece: piece.into(), check: "torque".into() })
+        };
+        let window = window_around(4.0, &overload);
+        assert!(
+            (window.least.payload_kg - 2.5).abs() < 1e-12 && window.least.piece == "spring",
+            "{window:?}"
+        );
+        assert!((window.most.payload_kg - 17.5).abs() < 1e-12 && window.most.piece == "motor", "{window:?}");
+        let above = window_around(1e3, &|kg: f64| (kg < 20.0).then(Overload::default));
+        assert!(above.most.payload_kg.is_infinite() && !window.and(above).holds());
+    }
+}
