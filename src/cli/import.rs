@@ -8,7 +8,8 @@ use crate::input::json::Document;
 use crate::interchange::given::{blank, read_given};
 use crate::interchange::import::Robot;
 use clap::Args;
-use std::path::PathBuf;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
 
 /// Makes an arm file of a robot in a URDF file: of the joints and links from its root to a tip.
 #[derive(Debug, Args)]
@@ -16,7 +17,7 @@ use std::path::PathBuf;
                         armwright analyze ur5e/arm.json --pose-deg 0,-90,90,0,0,0 --payload-kg 5\n\n\
                         Writes arm.json and import.json (what was lumped, guessed and left rigid; ranges and limits). A URDF says nothing of \
                         stiffness: without --stiffness every joint is rigid, and stiffness.json with all joints is written to be filled \
-                        in. Expand xacro files first.")]
+                        in; one that has values is kept. Expand xacro files first.")]
 pub(crate) struct ImportArgs {
     /// URDF file
     file: PathBuf,
@@ -30,6 +31,24 @@ pub(crate) struct ImportArgs {
     /// Folder for arm.json and import.json
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+}
+
+/// Name of the file with the stiffness of all joints, which an import without one writes to be filled in.
+const STIFFNESS: &str = "stiffness.json";
+
+/// Whether a file has something that a user has written into it: a value other than null. A file that is no JSON is
+/// taken to have.
+fn holds_values(path: &Path) -> bool {
+    fn has_value(value: &Value) -> bool {
+        match value {
+            Value::Null => false,
+            Value::Array(items) => items.iter().any(has_value),
+            Value::Object(map) => map.values().any(has_value),
+            _ => true,
+        }
+    }
+    let Ok(bytes) = std::fs::read(path) else { return false };
+    serde_json::from_slice(&bytes).map_or(true, |value| has_value(&value))
 }
 
 /// Runs `armwright import`: writes the files, and returns the text to print.
@@ -46,19 +65,26 @@ pub(super) fn run(args: &ImportArgs, catalogs: &Catalogs) -> Result<String, Fail
         ("arm.json".to_string(), pretty(&arm.to_json())),
         ("import.json".to_string(), pretty(&report.to_json())),
     ];
-    if args.stiffness.is_none() {
-        files.push(("stiffness.json".into(), pretty(&blank(&robot.joints()))));
+    let stiffness = args.out.join(STIFFNESS);
+    let is_kept = args.stiffness.is_none() && holds_values(&stiffness);
+    if args.stiffness.is_none() && !is_kept {
+        files.push((STIFFNESS.into(), pretty(&blank(&robot.joints()))));
     }
     let inputs: Vec<_> =
         [Some(args.file.as_path()), args.stiffness.as_deref()].into_iter().flatten().collect();
     write_all(&args.out, &files, &inputs)?;
     let out = args.out.display();
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+    let stiffness = stiffness.display();
     let next = match &args.stiffness {
-        None => format!(
-            "fill in {} and import again with --stiffness to have deflections and modes\n",
-            args.out.join("stiffness.json").display()
-        ),
+        None if is_kept => {
+            format!(
+                "{stiffness} has values and was kept, but not read: import again with --stiffness {stiffness} to use them\n"
+            )
+        }
+        None => {
+            format!("fill in {stiffness} and import again with --stiffness to have deflections and modes\n")
+        }
         Some(_) => String::new(),
     };
     Ok(format!(

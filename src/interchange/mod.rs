@@ -5,7 +5,7 @@
 //!   to a tip. `given` reads the stiffness of the joints, which a URDF does not have. `report` says what became of
 //!   every link and joint of the URDF.
 //! - Export: `export` writes an arm in a load case. `snapshot` has its springs at their working points, and `tree`
-//!   converts it to a chain of rigid bodies for `mjcf` and `urdf_out`. `calculix` converts it to solids, `bill` and
+//!   converts it to a chain of rigid bodies for `mjcf` and `urdf_out`. `motors` has what catalogs know of its drives. `calculix` converts it to solids, `bill` and
 //!   `design_table` to tables. `left_out` lists what a file cannot represent, each with its part of the tip deflection.
 
 pub(crate) mod bill;
@@ -13,10 +13,12 @@ pub(crate) mod calculix;
 mod csv_text;
 pub(crate) mod design_table;
 pub(crate) mod export;
+mod free_name;
 pub(crate) mod given;
 pub(crate) mod import;
 pub(crate) mod left_out;
 pub(crate) mod mjcf;
+mod motors;
 pub(crate) mod report;
 pub(crate) mod snapshot;
 pub(crate) mod tree;
