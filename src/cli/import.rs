@@ -4,7 +4,7 @@ use super::failure::Failure;
 use super::finished::pretty;
 use super::write::write_all;
 use crate::catalog::Catalogs;
-use crate::input::json::Document;
+use crate::input::json::{Document, Fault, Faults};
 use crate::interchange::given::{blank, read_given};
 use crate::interchange::import::Robot;
 use clap::Args;
@@ -33,6 +33,27 @@ pub(crate) struct ImportArgs {
     out: PathBuf,
 }
 
+/// The text of a URDF file.
+///
+/// # Errors
+/// The file cannot be read, or it is not in UTF-8.
+fn read_text(path: &Path) -> Result<String, Failure> {
+    let bytes = fs_err::read(path).map_err(|e| Failure::File(e.to_string()))?;
+    String::from_utf8(bytes).map_err(|e| {
+        let before = &e.as_bytes()[..e.utf8_error().valid_up_to()];
+        let line = before.iter().filter(|byte| **byte == b'\n').count() + 1;
+        let byte = e.as_bytes().get(before.len()).copied().unwrap_or_default();
+        Failure::Input(Faults(vec![Fault {
+            file: path.display().to_string(),
+            line: Some(line),
+            field: String::new(),
+            problem: format!("is not in UTF-8: the byte {byte:#04x} begins no character"),
+            hint: "save the file in UTF-8; a file in Latin-1 is converted by `iconv -f latin1 -t utf8`"
+                .into(),
+        }]))
+    })
+}
+
 /// Name of the file with the stiffness of all joints, which an import without one writes to be filled in.
 const STIFFNESS: &str = "stiffness.json";
 
@@ -54,7 +75,7 @@ fn holds_values(path: &Path) -> bool {
 /// Runs `armwright import`: writes the files, and returns the text to print.
 pub(super) fn run(args: &ImportArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let file = args.file.display().to_string();
-    let text = fs_err::read_to_string(&args.file).map_err(|e| Failure::File(e.to_string()))?;
+    let text = read_text(&args.file)?;
     let robot = Robot::read(&file, &text, &args.tip)?;
     let given = match &args.stiffness {
         Some(path) => read_given(Document::read(path)?, &robot.joints(), catalogs)?,

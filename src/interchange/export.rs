@@ -11,6 +11,7 @@ use super::left_out::{LeftOut, Remainder};
 use super::mjcf::mjcf;
 use super::motors::{motors, plays};
 use super::snapshot::{FileSprings, Snapshot};
+use super::table_notes::{not_in_bill, not_in_design_table};
 use super::tree::TreeOptions;
 use super::urdf_out::{TRAVEL_M, stiffness_file, urdf, with_several_drivers};
 use super::xml::triple;
@@ -18,7 +19,7 @@ use crate::arm::effect::entry::Effect;
 use crate::arm::load::{LoadCase, Payload};
 use crate::arm::section::Section;
 use crate::arm::structure::{Piece, Structure};
-use crate::arm::{Arm, LinkBody, LinkModel, Words};
+use crate::arm::{Arm, Element, LinkBody, LinkModel, Words};
 use crate::catalog::Catalogs;
 use nalgebra::Vector3;
 use serde_json::{Value, json};
@@ -88,14 +89,21 @@ pub(crate) fn export(asked: &Asked, catalogs: &Catalogs) -> Export {
         Format::Mjcf => to_mjcf(asked, catalogs),
         Format::Urdf => to_urdf(asked),
         Format::Json => to_json(asked),
-        Format::Csv => {
-            Export { files: vec![("design.csv".into(), design_csv(asked.arm))], ..Export::default() }
-        }
+        Format::Csv => Export {
+            files: vec![("design.csv".into(), design_csv(asked.arm))],
+            notes: not_in_design_table(asked.arm).into_iter().collect(),
+            ..Export::default()
+        },
         Format::Bom => Export {
             files: vec![("bom.csv".into(), bill_csv(&bill(asked.arm, catalogs)))],
+            notes: not_in_bill(asked.arm, effects_mass_kg(asked)).into_iter().collect(),
             ..Export::default()
         },
     };
+    let added_kg = effects_mass_kg(asked);
+    if added_kg != 0.0 && matches!(asked.format, Format::Calculix | Format::Mjcf | Format::Urdf) {
+        out.notes.push(format!("effects add {added_kg} kg, which the files have in addition to mass_kg"));
+    }
     let ignored: Vec<String> = asked.arm.ignored_effects().into_iter().map(Effect::label).collect();
     if !ignored.is_empty() {
         out.notes.push(format!(
@@ -201,6 +209,14 @@ fn to_calculix(asked: &Asked) -> Export {
         out.notes.push(format!(
             "rigid end faces hold the warping of open sections, so that they twist less than expected: {}",
             open.join(", ")
+        ));
+    }
+    let runs = links_in_pieces(asked.arm);
+    if !runs.is_empty() && links == LinkModel::Full {
+        out.notes.push(format!(
+            "links that follow each other have a rigid face between them, which holds the cross-section in shape; for a taper of \
+             12 pieces this costs 2 % of the tip's displacement and 3 % of frequencies: {}",
+            runs.join(", ")
         ));
     }
     if asked.case.links == LinkModel::Bending {
@@ -313,6 +329,17 @@ fn to_urdf(asked: &Asked) -> Export {
         // a rigid arm has torques and nothing else
         expected: torques_and_forces(&snapshot),
     }
+}
+
+/// The first and the last link of each run of tubes without a joint between them, in words.
+fn links_in_pieces(arm: &Arm) -> Vec<String> {
+    let is_tube = |element: &&Element| matches!(element, Element::Link(link) if matches!(link.body, LinkBody::Tube { .. }));
+    let runs = arm.chain.split(|element| !is_tube(&element));
+    runs.filter_map(|run| match run {
+        [first, .., last] => Some(format!("{} to {}", first.name(), last.name())),
+        _ => None,
+    })
+    .collect()
 }
 
 /// A note for files without loads that the arm has, on the torques at which their springs are tangents.

@@ -16,9 +16,9 @@ use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeMap;
 
 /// Mass of a body that has none, relative to the mass of the arm. MuJoCo accepts no moving body without mass.
-const LEAST_MASS: f64 = 1e-9;
+const LEAST_MASS: f64 = 1e-10;
 /// Square of the radius of gyration that is added to the moments of every body \[m²\]: 0.03 mm. MuJoCo accepts no
-/// moving body without inertia. The moments of a body without mass are those of a ten thousandth of the arm.
+/// moving body without inertia. A body without mass has the moments of a tenth of the arm's mass.
 const LEAST_RADIUS2_M2: f64 = 1e-9;
 /// Armature of the hinge of a backlash, relative to the motor's. Without it, this hinge and that of the gear would have
 /// one axis and nothing between them, and the mass matrix would be singular.
@@ -252,7 +252,7 @@ impl Least {
 
     /// Inertia that is added to that of a body of this mass \[kg m²\].
     fn inertia_kgm2(&self, mass_kg: f64) -> Matrix3<f64> {
-        let mass_kg = if mass_kg > 0.0 { mass_kg } else { 1e-4 * self.mass_kg / LEAST_MASS };
+        let mass_kg = if mass_kg > 0.0 { mass_kg } else { 0.1 * self.mass_kg / LEAST_MASS };
         Matrix3::identity() * (LEAST_RADIUS2_M2 * mass_kg)
     }
 }

@@ -14,7 +14,7 @@ use super::free_name::FreeNames;
 use super::snapshot::{Snapshot, Working};
 use crate::arm::LinkModel;
 use crate::arm::prismatic::PrismaticPiece;
-use crate::arm::structure::{Beam, LinkPiece};
+use crate::arm::structure::{Beam, LinkPiece, Piece};
 use crate::mechanics::beam::{line_stiffnesses, tube_inertia};
 use crate::mechanics::chain::{Compliance, ElasticElement, Item, OwnMass};
 use crate::mechanics::{Twist, angular, body_inertia, linear, stack};
@@ -118,7 +118,9 @@ pub(crate) struct TreeOptions {
 
 /// The rigid bodies of an arm, base to tip.
 pub(crate) fn tree(snapshot: &Snapshot, options: &TreeOptions) -> Vec<Node> {
-    let joints = snapshot.structure.pieces.iter().map(|piece| piece.name().to_string());
+    let pieces = snapshot.structure.pieces.iter();
+    let joints =
+        pieces.filter(|piece| !matches!(piece, Piece::Link(_))).map(|piece| piece.name().to_string());
     let mut builder = Builder { options, nodes: Vec::new(), free: FreeNames::all_but(joints) };
     builder.open("base", Vector3::zeros());
     let posed = snapshot.at_zero();
@@ -174,8 +176,10 @@ impl Builder<'_> {
         // a joint is in one body with its bearing or guide, whose name begins with the joint's
         let of_joint = [".bearing", ".guide"].iter().find_map(|end| element.name.strip_suffix(end));
         let node = of_joint.unwrap_or(&element.name).to_string();
+        // the first body is the ground, even if a joint has its name
+        let is_first = self.nodes.len() == 1;
         let last = self.last();
-        let shares = last.name == node && last.inertia == Matrix6::zeros();
+        let shares = !is_first && last.name == node && last.inertia == Matrix6::zeros();
         // a joint that turns may bring its motor and its backlash too
         let more = if slides { 1 } else { 2 };
         if !shares || last.hinges.len() + element.twists.len() > MOST_HINGES - more {

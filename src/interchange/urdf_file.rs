@@ -3,6 +3,7 @@
 //! The text is parsed by the crate `urdf-rs`. What the crate does not check is checked here: duplicate and unknown
 //! names, links with two parents, loops, axes without a direction, and masses and inertias that no body can have.
 
+use super::urdf_place::{line_of_robot, no_numbers};
 use crate::input::json::{Fault, Faults};
 use crate::input::names::unfit_name;
 use nalgebra::{Isometry3, Matrix3, SymmetricEigen, Translation3, UnitQuaternion, Vector3};
@@ -57,12 +58,17 @@ impl UrdfTree {
     pub(crate) fn read(file: &str, text: &str) -> Result<Self, Faults> {
         let fault = |name: &str, problem: String, hint: &str| Fault {
             file: file.into(),
-            line: line_of(text, name),
+            line: line_of(text, name).or_else(|| line_of_robot(text)),
             field: name.into(),
             problem,
             hint: hint.into(),
         };
         let robot: Robot = urdf_rs::read_from_string(text).map_err(|e| {
+            if let Some((line, wrong)) = no_numbers(text) {
+                let hint = "write numbers with a point, separated by spaces";
+                let problem = format!("is no list of numbers: {wrong}");
+                return Faults(vec![Fault { line: Some(line), ..fault("", problem, hint) }]);
+            }
             let hint = "the file must be plain URDF: expand macros first with `xacro FILE.xacro > FILE.urdf`";
             Faults(vec![Fault { line: None, ..fault("", format!("is no URDF: {e}"), hint) }])
         })?;

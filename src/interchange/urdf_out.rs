@@ -27,7 +27,8 @@ pub(crate) struct Urdf {
 pub(crate) fn urdf(arm: &Arm, snapshot: &Snapshot) -> Urdf {
     let nodes = tree(snapshot, &TreeOptions::default());
     // readers differ in whether a link and a joint may have the same name
-    let mut free = FreeNames::all_but(arm.chain.iter().map(|element| element.name().to_string()));
+    let joints = arm.joints().map(|joint| joint.name.clone());
+    let mut free = FreeNames::all_but(joints.chain(arm.prismatics().map(|joint| joint.name.clone())));
     let names: Vec<String> =
         nodes.iter().enumerate().map(|(i, node)| link_name(i, node, &mut free)).collect();
     let (tip, tip_joint) = (free.take("tip", "_link"), free.take("tip_frame", "_joint"));

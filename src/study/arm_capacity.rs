@@ -8,10 +8,13 @@
 //! moment and by its static safety at rest, if it has these ratings.
 
 use super::capacity::{AtPose, Capacity, Limit};
+use crate::arm::keys::POSITIVE_OR_NULL;
 use crate::arm::load::LoadCase;
 use crate::arm::{Arm, Bearing};
 use crate::catalog::Catalogs;
 use crate::input::json::{Document, Faults, Node};
+use crate::input::key::{Kind, Shape, optional, required};
+use crate::input::schema::FileKind;
 use crate::mechanics::chain::Chain;
 use crate::mechanics::statics::JointLoad;
 use crate::sizing::bearing::BearingLimits;
@@ -27,6 +30,32 @@ pub(crate) struct TorqueLimit {
     /// Largest permitted torque \[N m\].
     pub most_nm: f64,
 }
+
+/// The format of a file with torque limits.
+pub(crate) const LIMITS_FILE: FileKind = FileKind {
+    name: "limits",
+    about: "What `armwright capacity --limits` takes: the largest torques of joints. `import.json` is such a file.",
+    root: Kind::Object(&LIMITS),
+};
+
+static LIMITS: Shape = Shape {
+    name: "limits",
+    about: "Torque limits; other keys are not read.",
+    keys: &[required("joints", Kind::List(&Kind::Object(&LIMIT)), "-", "The joints with limits.")],
+    rules: &[],
+    others: Some(&Kind::Anything),
+};
+
+static LIMIT: Shape = Shape {
+    name: "limit",
+    about: "The limit of a joint.",
+    keys: &[
+        required("name", Kind::Text, "-", "Name of the joint."),
+        optional("max_torque_nm", POSITIVE_OR_NULL, "N m", "none", "Largest torque at rest."),
+    ],
+    rules: &[],
+    others: Some(&Kind::Anything),
+};
 
 /// Reads the torque limits of a file with `{"joints": [{"name": "j1", "max_torque_nm": 87}]}`, such as `import.json`.
 /// Joints without a number have no limit.
