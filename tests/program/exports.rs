@@ -348,7 +348,7 @@ fn gravity_that_a_urdf_cannot_state_is_noted() {
 fn masses_of_effects_and_what_tables_lack_are_said() {
     let folder = tempfile::tempdir().expect("a folder");
     let mut arm = balanced_lever();
-    arm["effects"] = json!([{"effect": "extra_mass", "at": "j", "parameters": {"mass_kg": 2}}]);
+    arm["effects"] = json!([{"effect": "extra_mass", "at": "j", "parameters": {"delta_kg": 2}}]);
     for form in ["mjcf", "bom", "csv"] {
         let (record, _) = export(folder.path(), &arm, &[form]);
         close(number(&record["mass_kg"]), 10.0, 1e-12);
