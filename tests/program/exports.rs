@@ -42,8 +42,8 @@ fn notes(record: &Value) -> String {
 
 /// The value of an attribute of the first element of an XML text with this name that has the attribute.
 fn attribute(xml: &str, name: &str, key: &str) -> String {
-    let named = xml.lines().filter(|line| line.contains(&format!(" name=\"{name}\"")));
-    let after = named.filter_map(|line| line.split(&format!(" {key}=\"")).nth(1)).next();
+    let mut named = xml.lines().filter(|line| line.contains(&format!(" name=\"{name}\"")));
+    let after = named.find_map(|line| line.split(&format!(" {key}=\"")).nth(1));
     let after = after.unwrap_or_else(|| panic!("no {name} with {key} in {xml}"));
     after.split('"').next().expect("a value").into()
 }
