@@ -23,8 +23,8 @@ use super::springs_file::{BodiesOf, Named, hang, read_counterweights, read_sprin
 use super::transmission::{Seen, Transmission, gear_is_at_motor, read_turns_with};
 use super::transmissions::{Driven, place_all};
 use super::{Arm, Element, Joint};
-use crate::catalog::Catalogs;
 use crate::catalog::gear::{Gear, GearMass};
+use crate::catalog::{Catalogs, PartError};
 use crate::input::json::{Document, Faults, InputError, Node, Object};
 use nalgebra::{Unit, Vector3};
 use serde_json::Value;
@@ -292,10 +292,13 @@ fn read_windup(node: &Node) -> Option<Windup> {
 }
 
 fn find_gear<'c>(node: &Node, catalogs: &'c Catalogs) -> Option<&'c Gear> {
-    catalogs
-        .gear(node.string()?)
-        .map_err(|e| node.fault::<()>(e.to_string(), "`armwright catalog show gears` lists them"))
-        .ok()
+    const LISTS: &str = "`armwright catalog show gears` lists them";
+    let told = |e: PartError| {
+        let said = e.to_string();
+        let hint = if said.contains(LISTS) { "" } else { LISTS };
+        node.fault::<()>(said, hint)
+    };
+    catalogs.gear(node.string()?).map_err(told).ok()
 }
 
 /// The torsion curve of a gear in the catalog; `None` if a slope or a break point is blank.

@@ -87,11 +87,13 @@ pub struct Stages {
     pub before: Stage,
     /// Between the gear and the joint.
     pub after: Stage,
+    /// Ratio of the gear, if the file states it in numbers.
+    pub gear_ratio: Option<f64>,
 }
 
 impl Default for Stages {
     fn default() -> Self {
-        Self { before: Stage::NONE, after: Stage::NONE }
+        Self { before: Stage::NONE, after: Stage::NONE, gear_ratio: None }
     }
 }
 
@@ -103,7 +105,7 @@ impl Stages {
 
     /// Moment of inertia of rotor, gear input and stages together, referred to the motor \[kg m²\].
     pub fn input_inertia_kgm2(&self, rotor_kgm2: f64, gear_kgm2: f64, gear_ratio: f64) -> f64 {
-        let Self { before, after } = self;
+        let Self { before, after, .. } = self;
         let at_gear_kgm2 = gear_kgm2 + after.inertia_kgm2 / (gear_ratio * gear_ratio);
         rotor_kgm2 + before.inertia_kgm2 + at_gear_kgm2 / (before.ratio * before.ratio)
     }
@@ -113,18 +115,20 @@ impl Stages {
     #[must_use]
     pub fn rigid(&self) -> Self {
         let rigid = |stage: Stage| Stage { rad_per_nm: 0.0, mass_kg: 0.0, ..stage };
-        Self { before: rigid(self.before), after: rigid(self.after) }
+        Self { before: rigid(self.before), after: rigid(self.after), gear_ratio: self.gear_ratio }
     }
 
     /// The keys with which files write the stages. Compliance and mass are left out, because the torsion curve and the
     /// bodies include them.
     pub(crate) fn to_json(self) -> Vec<(&'static str, Value)> {
         let one = |stage: Stage| json!([{"ratio": stage.ratio, "efficiency": stage.efficiency, "inertia_kgm2": stage.inertia_kgm2}]);
-        match (self.before == Stage::NONE, self.after == Stage::NONE) {
-            (true, true) => Vec::new(),
-            (false, _) => vec![("transmission", one(self.before))],
+        let mut out = match (self.before == Stage::NONE, self.after == Stage::NONE) {
+            (true, true) if self.gear_ratio.is_none() => Vec::new(),
             (true, false) => vec![("gear_at", json!("motor")), ("transmission", one(self.after))],
-        }
+            _ => vec![("transmission", one(self.before))],
+        };
+        out.extend(self.gear_ratio.map(|ratio| ("gear_ratio", json!(ratio))));
+        out
     }
 }
 
@@ -145,6 +149,8 @@ pub(crate) struct Transmission {
     gear_at_motor: bool,
     /// Ratio of a gear at the joint, after the stages; `None` if no gear is known.
     gear_ratio: Option<f64>,
+    /// Whether the file states this ratio in numbers.
+    is_ratio_stated: bool,
     stages: Vec<Stage>,
     /// Whether the file itself states which joints turn this joint (key `turns_with`).
     is_coupling_stated: bool,
@@ -187,6 +193,7 @@ impl Transmission {
             motor_kg: motor_kg?,
             gear_at_motor: gear_at_motor?,
             gear_ratio,
+            is_ratio_stated: object.has("gear_ratio"),
             stages: stages?,
             is_coupling_stated: object.has("turns_with"),
         }))
@@ -204,9 +211,10 @@ impl Transmission {
 
     /// The stages on either side of the gear.
     pub(crate) fn stages(&self) -> Stages {
+        let gear_ratio = self.gear_ratio.filter(|_| self.is_ratio_stated);
         match self.gear_at_motor {
-            true => Stages { after: self.stage(), ..Stages::default() },
-            false => Stages { before: self.stage(), ..Stages::default() },
+            true => Stages { after: self.stage(), gear_ratio, ..Stages::default() },
+            false => Stages { before: self.stage(), gear_ratio, ..Stages::default() },
         }
     }
 

@@ -47,11 +47,11 @@ pub(crate) struct AnalyzeArgs {
     #[arg(long, value_name = "X,Y,Z", default_value = "0,0,0", allow_hyphen_values = true, value_parser = numbers::<3>)]
     moment_nm: [f64; 3],
     /// Link model: rigid, bending (Eqs 1-6) or full
-    #[arg(long, default_value = "full", value_parser = choice::<LinkModel>)]
+    #[arg(long, default_value = "full", value_parser = choice::<LinkModel>(), hide_possible_values = true)]
     links: LinkModel,
     /// Joint model: k2 (the paper's single number), three_segment, or three_segment_k1 (modes with the
     /// gears' first slope)
-    #[arg(long, default_value = "three_segment", value_parser = choice::<JointModel>)]
+    #[arg(long, default_value = "three_segment", value_parser = choice::<JointModel>(), hide_possible_values = true)]
     joints: JointModel,
     /// How many modes to print
     #[arg(long, default_value_t = 6)]

@@ -1,18 +1,19 @@
 //! Finds out which kind of file or folder something is, and finds all its faults.
 
+use super::check_kinds::{kind_of, missing_keys, table_of};
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
 use super::manifest::{MANIFESTS, hash, listed};
-use super::schema::FILES;
-use crate::arm::case_keys::CASE;
 use crate::arm::{Arm, DrivenJoint, Motion, read_arm, read_arm_document, read_load_cases};
 use crate::catalog::Catalogs;
 use crate::catalog::schema::CatalogFile;
 use crate::input::json::{Document, Fault, Faults, InputError};
-use crate::input::key::{Kind, SCHEMA_ADDRESS, Shape};
+use crate::interchange::given::{MovingJoint, read_given};
+use crate::interchange::urdf_file::UrdfTree;
 use crate::reconcile::Campaign;
 use crate::reconcile::readings::source::DEFAULT_FILES;
 use crate::report::whole_file::folder_of;
+use crate::study::load_limits::check_limits;
 use crate::study::read_study;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -107,14 +108,27 @@ fn look_at_folder(folder: &Path, catalogs: &Catalogs) -> Look {
     if CatalogFile::ALL.iter().any(|file| has(file.file_name())) {
         return ("catalogs", Catalogs::load(Some(folder)).map(drop).map_err(Problem::from));
     }
-    let hint =
-        "give a folder with campaign.json, run.json or verdict.json, or with catalog files; or single files";
+    // an export of an arm file has an arm.json too
+    if let Some(name) = ["export.json", "study.json", "arm.json"].into_iter().find(|name| has(name)) {
+        let (what, outcome) = look_at_file(&folder.join(name), catalogs);
+        return (what, outcome);
+    }
+    let hint = "give a folder with arm.json, study.json, campaign.json, export.json, run.json or verdict.json, or with catalog \
+                files; or single files";
     ("unknown", Err(unknown(folder, "is a folder of nothing that is known", hint)))
 }
 
 fn look_at_file(path: &Path, catalogs: &Catalogs) -> Look {
+    if path.extension().is_some_and(|end| end == "urdf") {
+        return ("robot", check_urdf(path));
+    }
     let document = match Document::read(path) {
         Ok(document) => document,
+        Err(InputError::Faulty(_))
+            if let Some(table) = std::fs::read_to_string(path).ok().and_then(|text| table_of(&text)) =>
+        {
+            return (table, Ok(()));
+        }
         Err(InputError::Faulty(_)) if path.extension().is_some_and(|e| e != "json") => {
             let hint = "tables are checked with the folder of their campaign, catalog or result";
             return ("unknown", Err(unknown(path, "is no JSON file", hint)));
@@ -125,6 +139,11 @@ fn look_at_file(path: &Path, catalogs: &Catalogs) -> Look {
         Some("arm") => ("arm", read_arm_document(document, catalogs).map(drop).map_err(Problem::Faulty)),
         Some("cases") => ("cases", check_cases(document, path, catalogs)),
         Some("study") => ("study", read_study(document, catalogs).map(drop).map_err(Problem::Faulty)),
+        Some("stiffness") => ("stiffness of an import", check_stiffness(document, path, catalogs)),
+        Some("limits") => ("limits of joints", check_limits(document).map_err(Problem::Faulty)),
+        Some(written @ ("export" | "import" | "run" | "shard" | "verdict")) => {
+            (written, check_written(written, path, &document))
+        }
         Some(_) => {
             let hint = "call it campaign.json, in a folder with its arm and its readings";
             ("campaign", Err(unknown(path, "is the statement of a campaign, outside of one", hint)))
@@ -136,24 +155,43 @@ fn look_at_file(path: &Path, catalogs: &Catalogs) -> Look {
     }
 }
 
-/// The kind of file to which a document belongs: the one whose keys match most keys of the document, or "cases" for a
-/// list of cases. If several kinds match equally many keys, it is the one that comes first in `FILES`.
-fn kind_of(value: &Value) -> Option<&'static str> {
-    let Value::Object(map) = value else {
-        let is_case = |item: &Value| item.as_object().is_some_and(|map| map.keys().any(|key| CASE.has(key)));
-        return value.as_array()?.iter().any(is_case).then_some("cases");
-    };
-    let known = |shape: &Shape| map.keys().filter(|key| shape.has(key)).count();
-    let of_itself = map.contains_key(SCHEMA_ADDRESS.name) as usize;
-    let mut best = (of_itself, None);
-    for file in &FILES {
-        if let Kind::Object(shape) = file.root
-            && known(shape) > best.0
-        {
-            best = (known(shape), Some(file.name));
+/// Checks that a file that the program wrote has all of its keys.
+fn check_written(kind: &str, path: &Path, document: &Document) -> Result<(), Problem> {
+    let missing = missing_keys(kind, document.root().value());
+    match missing.is_empty() {
+        true => Ok(()),
+        false => {
+            let problem = format!("is {kind}.json without {}", missing.join(", "));
+            Err(unknown(path, &problem, "write it anew with the program"))
         }
     }
-    best.1
+}
+
+/// Checks a URDF file.
+fn check_urdf(path: &Path) -> Result<(), Problem> {
+    let text = fs_err::read_to_string(path).map_err(|e| Problem::Unreadable(e.to_string()))?;
+    UrdfTree::read(&path.display().to_string(), &text).map(drop).map_err(Problem::Faulty)
+}
+
+/// Checks a stiffness file against the `arm.json` in the same folder. If there is none, a joint slides if the file
+/// states a stiffness along its travel.
+fn check_stiffness(document: Document, path: &Path, catalogs: &Catalogs) -> Result<(), Problem> {
+    let near = folder_of(path).join("arm.json");
+    let stated: Vec<(String, bool)> = match near.is_file() {
+        true => {
+            let arm = read_arm(&near, catalogs)?;
+            let turning = arm.joints().map(|joint| (joint.name.clone(), false));
+            turning.chain(arm.prismatics().map(|joint| (joint.name.clone(), true))).collect()
+        }
+        false => {
+            let joints = document.root().value()["joints"].as_object().cloned().unwrap_or_default();
+            let slides = |joint: &Value| joint.get("stiffness_n_per_m").is_some();
+            joints.iter().map(|(name, joint)| (name.clone(), slides(joint))).collect()
+        }
+    };
+    let joints: Vec<MovingJoint> =
+        stated.iter().map(|(name, slides)| MovingJoint { name, slides: *slides }).collect();
+    read_given(document, &joints, catalogs).map(drop).map_err(Problem::Faulty)
 }
 
 /// Checks the cases file `document` against the arm file `arm.json` in the same folder. If there is none, the poses are

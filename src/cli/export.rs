@@ -34,7 +34,7 @@ pub(crate) struct ExportArgs {
     #[arg(value_name = "ARM|RESULTS#ID")]
     source: String,
     /// Form: calculix, mjcf, urdf, json, csv or bom
-    #[arg(long, value_name = "FORM", value_parser = choice::<Format>)]
+    #[arg(long, value_name = "FORM", value_parser = choice::<Format>(), hide_possible_values = true)]
     to: Format,
     /// Folder for the files
     #[arg(long, value_name = "DIR")]

@@ -4,11 +4,12 @@ use super::failure::Failure;
 use super::finished::pretty;
 use super::write::write_all;
 use crate::catalog::Catalogs;
-use crate::input::json::Document;
+use crate::input::json::{Document, Fault, Faults};
 use crate::interchange::given::{blank, read_given};
 use crate::interchange::import::Robot;
 use clap::Args;
-use std::path::PathBuf;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
 
 /// Makes an arm file of a robot in a URDF file: of the joints and links from its root to a tip.
 #[derive(Debug, Args)]
@@ -16,7 +17,7 @@ use std::path::PathBuf;
                         armwright analyze ur5e/arm.json --pose-deg 0,-90,90,0,0,0 --payload-kg 5\n\n\
                         Writes arm.json and import.json (what was lumped, guessed and left rigid; ranges and limits). A URDF says nothing of \
                         stiffness: without --stiffness every joint is rigid, and stiffness.json with all joints is written to be filled \
-                        in. Expand xacro files first.")]
+                        in; one that has values is kept. Expand xacro files first.")]
 pub(crate) struct ImportArgs {
     /// URDF file
     file: PathBuf,
@@ -32,10 +33,49 @@ pub(crate) struct ImportArgs {
     out: PathBuf,
 }
 
+/// The text of a URDF file.
+///
+/// # Errors
+/// The file cannot be read, or it is not in UTF-8.
+fn read_text(path: &Path) -> Result<String, Failure> {
+    let bytes = fs_err::read(path).map_err(|e| Failure::File(e.to_string()))?;
+    String::from_utf8(bytes).map_err(|e| {
+        let before = &e.as_bytes()[..e.utf8_error().valid_up_to()];
+        let line = before.iter().filter(|byte| **byte == b'\n').count() + 1;
+        let byte = e.as_bytes().get(before.len()).copied().unwrap_or_default();
+        Failure::Input(Faults(vec![Fault {
+            file: path.display().to_string(),
+            line: Some(line),
+            field: String::new(),
+            problem: format!("is not in UTF-8: the byte {byte:#04x} begins no character"),
+            hint: "save the file in UTF-8; a file in Latin-1 is converted by `iconv -f latin1 -t utf8`"
+                .into(),
+        }]))
+    })
+}
+
+/// Name of the file with the stiffness of all joints, which an import without one writes to be filled in.
+const STIFFNESS: &str = "stiffness.json";
+
+/// Whether a file has something that a user has written into it: a value other than null. A file that is no JSON is
+/// taken to have.
+fn holds_values(path: &Path) -> bool {
+    fn has_value(value: &Value) -> bool {
+        match value {
+            Value::Null => false,
+            Value::Array(items) => items.iter().any(has_value),
+            Value::Object(map) => map.values().any(has_value),
+            _ => true,
+        }
+    }
+    let Ok(bytes) = std::fs::read(path) else { return false };
+    serde_json::from_slice(&bytes).map_or(true, |value| has_value(&value))
+}
+
 /// Runs `armwright import`: writes the files, and returns the text to print.
 pub(super) fn run(args: &ImportArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let file = args.file.display().to_string();
-    let text = fs_err::read_to_string(&args.file).map_err(|e| Failure::File(e.to_string()))?;
+    let text = read_text(&args.file)?;
     let robot = Robot::read(&file, &text, &args.tip)?;
     let given = match &args.stiffness {
         Some(path) => read_given(Document::read(path)?, &robot.joints(), catalogs)?,
@@ -46,19 +86,26 @@ pub(super) fn run(args: &ImportArgs, catalogs: &Catalogs) -> Result<String, Fail
         ("arm.json".to_string(), pretty(&arm.to_json())),
         ("import.json".to_string(), pretty(&report.to_json())),
     ];
-    if args.stiffness.is_none() {
-        files.push(("stiffness.json".into(), pretty(&blank(&robot.joints()))));
+    let stiffness = args.out.join(STIFFNESS);
+    let is_kept = args.stiffness.is_none() && holds_values(&stiffness);
+    if args.stiffness.is_none() && !is_kept {
+        files.push((STIFFNESS.into(), pretty(&blank(&robot.joints()))));
     }
     let inputs: Vec<_> =
         [Some(args.file.as_path()), args.stiffness.as_deref()].into_iter().flatten().collect();
     write_all(&args.out, &files, &inputs)?;
     let out = args.out.display();
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+    let stiffness = stiffness.display();
     let next = match &args.stiffness {
-        None => format!(
-            "fill in {} and import again with --stiffness to have deflections and modes\n",
-            args.out.join("stiffness.json").display()
-        ),
+        None if is_kept => {
+            format!(
+                "{stiffness} has values and was kept, but not read: import again with --stiffness {stiffness} to use them\n"
+            )
+        }
+        None => {
+            format!("fill in {stiffness} and import again with --stiffness to have deflections and modes\n")
+        }
         Some(_) => String::new(),
     };
     Ok(format!(

@@ -10,6 +10,7 @@ mod catalog_check;
 mod catalog_table;
 pub(crate) mod check;
 mod check_files;
+mod check_kinds;
 mod check_same;
 pub(crate) mod compare;
 mod compare_remarks;

@@ -4,9 +4,10 @@
 
 use crate::input::key::{Key, Kind, Shape, optional, required};
 use crate::input::schema::FileKind;
+use crate::interchange::keys::IMPORT_FILE;
 
 /// The kinds of JSON files that the program writes and other programs read.
-pub(super) const OUTPUTS: [FileKind; 4] = [
+pub(super) const OUTPUTS: [FileKind; 5] = [
     FileKind {
         name: "run",
         about: "`run.json`: what was searched, how it ended, and the files of a study's result.",
@@ -27,6 +28,7 @@ pub(super) const OUTPUTS: [FileKind; 4] = [
         about: "`export.json`: what an export carries, what it leaves out, and what the other program must find.",
         root: Kind::Object(&EXPORT),
     },
+    IMPORT_FILE,
 ];
 
 const NUMBER_OR_NULL: Kind = Kind::Either(&[Kind::NonNegative, Kind::Null]);
@@ -341,7 +343,8 @@ static EXPORT: Shape = Shape::new(
     &[
         required("to", Kind::Word(&["calculix", "mjcf", "urdf", "json", "csv", "bom"]), "-", "The form."),
         required("arm", Kind::Text, "-", "Name of the arm."),
-        required("mass_kg", Kind::NonNegative, "kg", "Its mass, payload excluded."),
+        required("mass_kg", Kind::NonNegative, "kg", "Its mass, without payload and effects."),
+        required("effects_mass_kg", Kind::Number, "kg", "Mass that effects add, which is in the files too."),
         required(
             "case",
             Kind::Anything,

@@ -5,11 +5,14 @@ use super::effects_schema::{EFFECTS, effects_schema};
 use super::failure::Failure;
 use super::output_keys::OUTPUTS;
 use super::output_tables::TABLES;
+use super::values::proposed;
 use crate::arm::{ARM_FILE, CASES_FILE};
 use crate::catalog::schema::CatalogFile;
 use crate::input::schema::FileKind;
+use crate::interchange::keys::STIFFNESS_FILE;
 use crate::reconcile::CAMPAIGN_FILE;
 use crate::study::STUDY_FILE;
+use crate::study::load_limits::LIMITS_FILE;
 use clap::Args;
 use serde_json::Value;
 
@@ -22,7 +25,7 @@ use serde_json::Value;
     {\"$schema\": \"study.schema.json\", ...}")]
 pub(crate) struct SchemaArgs {
     /// Kind of file
-    #[arg(value_name = "KIND")]
+    #[arg(value_name = "KIND", value_parser = proposed(kinds()), hide_possible_values = true)]
     kind: Option<String>,
     /// Print the keys as Markdown tables; without a kind, those of every JSON file
     #[arg(long)]
@@ -30,7 +33,8 @@ pub(crate) struct SchemaArgs {
 }
 
 /// The kinds of JSON files that users write.
-pub(super) const FILES: [FileKind; 4] = [ARM_FILE, CASES_FILE, STUDY_FILE, CAMPAIGN_FILE];
+pub(super) const FILES: [FileKind; 6] =
+    [ARM_FILE, CASES_FILE, STUDY_FILE, CAMPAIGN_FILE, STIFFNESS_FILE, LIMITS_FILE];
 
 /// Beginning of the page with all keys.
 const PAGE_HEAD: &str = "# Keys of all files\n\nEvery key that the readers know, printed by `armwright schema --markdown`. \
@@ -73,10 +77,14 @@ fn stem(file: CatalogFile) -> &'static str {
 }
 
 fn unknown(name: &str) -> Failure {
+    Failure::Usage(format!("there is no kind of file \"{name}\"; kinds: {}", kinds().join(", ")))
+}
+
+/// The names of all kinds of files.
+fn kinds() -> Vec<&'static str> {
     let json = FILES.iter().chain(&OUTPUTS).map(|file| file.name);
     let tables = TABLES.iter().map(|table| table.name).chain([EFFECTS.0]);
-    let names: Vec<&str> = json.chain(CatalogFile::ALL.into_iter().map(stem)).chain(tables).collect();
-    Failure::Usage(format!("there is no kind of file \"{name}\"; kinds: {}", names.join(", ")))
+    json.chain(CatalogFile::ALL.into_iter().map(stem)).chain(tables).collect()
 }
 
 fn list() -> String {

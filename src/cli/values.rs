@@ -1,6 +1,9 @@
 //! Reads the values of options: lists of numbers, and words of which one is to be chosen.
 
 use crate::arm::Words;
+use clap::builder::{PossibleValue, TypedValueParser};
+use clap::{Arg, Command};
+use std::ffi::OsStr;
 
 /// Reads exactly `N` numbers, separated by commas.
 pub(super) fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
@@ -28,7 +31,32 @@ pub(super) fn entries(text: &str) -> Result<Vec<(String, f64)>, String> {
     text.split(',').map(entry).collect()
 }
 
-/// Reads one of the words that `T` allows.
-pub(super) fn choice<T: Words>(text: &str) -> Result<T, String> {
-    T::from_word(text).ok_or_else(|| format!("choose one of: {}", T::words()))
+/// Reads one of the words that `T` allows, which shells propose.
+pub(super) fn choice<T: Words + Send + Sync>() -> Proposed<T> {
+    let read = |text: &str| T::from_word(text).ok_or_else(|| format!("choose one of: {}", T::words()));
+    Proposed { read, words: T::WORDS.iter().map(|(word, _)| *word).collect() }
+}
+
+/// Reads any text; shells propose some words.
+pub(super) fn proposed(words: Vec<&'static str>) -> Proposed<String> {
+    Proposed { read: |text| Ok(text.to_string()), words }
+}
+
+/// The reader of a value for which shells propose words.
+#[derive(Clone)]
+pub(super) struct Proposed<T> {
+    read: fn(&str) -> Result<T, String>,
+    words: Vec<&'static str>,
+}
+
+impl<T: Clone + Send + Sync + 'static> TypedValueParser for Proposed<T> {
+    type Value = T;
+
+    fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<T, clap::Error> {
+        self.read.parse_ref(command, arg, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new(self.words.iter().map(|word| PossibleValue::new(*word))))
+    }
 }

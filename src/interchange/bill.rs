@@ -1,9 +1,13 @@
 //! A bill of materials: every part of an arm with its mass. The masses add up to the mass of the arm.
 //!
 //! An arm file states one mass for gear and motor together. If the catalogs know both parts and their masses add up to
-//! this mass, the bill has a row for each part.
+//! this mass, the bill has a row for each part. A motor that sits elsewhere than its joint is a body of another element,
+//! which is recognized by its mass (`bill_motors`).
 
+use super::bill_motors::{Elsewhere, motors_elsewhere};
 use super::csv_text::csv_text;
+use crate::arm::body::RigidBody;
+use crate::arm::pieces::without_factors;
 use crate::arm::prismatic::ROUNDED_KG;
 use crate::arm::section::Section;
 use crate::arm::{Arm, Element, Extras, Joint, Link, LinkBody, Prismatic};
@@ -39,12 +43,23 @@ pub(crate) struct Row {
 /// The bill of materials of an arm. Equal parts are collected in one row.
 pub(crate) fn bill(arm: &Arm, catalogs: &Catalogs) -> Vec<Row> {
     let mut rows: Vec<Row> = Vec::new();
-    for element in &arm.chain {
-        let parts = match element {
-            Element::Joint(joint) => joint_parts(joint, catalogs),
+    let elsewhere = motors_elsewhere(arm, catalogs);
+    for (index, element) in arm.chain.iter().enumerate() {
+        let mut parts = match element {
+            Element::Joint(joint) => joint_parts(joint, catalogs, &elsewhere),
             Element::Prismatic(joint) => prismatic_parts(joint, catalogs),
             Element::Link(link) => link_parts(link, catalogs),
         };
+        parts.extend(bodies_of(element).iter().enumerate().flat_map(|(i, body)| {
+            let motor = elsewhere.iter().find(|motor| motor.body == (index, i));
+            match motor {
+                Some(motor) => motor.rows.clone(),
+                None => {
+                    let at = element.name();
+                    vec![stated(at, format!("body {} of {at}", i + 1), "body", body.mass_kg)]
+                }
+            }
+        }));
         for part in parts {
             let same = |row: &&mut Row| {
                 let each_kg = row.mass_kg / row.count as f64;
@@ -99,6 +114,15 @@ pub(crate) fn bill_csv(rows: &[Row]) -> Vec<u8> {
     csv_text(&header, cells)
 }
 
+/// The bodies of an element, in the order of the bill.
+pub(super) fn bodies_of(element: &Element) -> Vec<&RigidBody> {
+    match element {
+        Element::Joint(joint) => joint.bodies.iter().collect(),
+        Element::Prismatic(joint) => joint.bodies.iter().collect(),
+        Element::Link(link) => link.bodies.iter().collect(),
+    }
+}
+
 /// The row of the bill for a part that is in no catalog and is used at the element `at`. Its data come from the arm
 /// file.
 fn stated(at: &str, part: String, kind: &'static str, mass_kg: f64) -> Row {
@@ -117,14 +141,18 @@ fn stated(at: &str, part: String, kind: &'static str, mass_kg: f64) -> Row {
 
 /// The row of the bill for a catalog part that is used at the element `at`. `from` states from where the catalog has
 /// the numbers of the part.
-fn bought(at: &str, part: &str, kind: &'static str, mass_kg: f64, from: &Provenance) -> Row {
+pub(super) fn bought(at: &str, part: &str, kind: &'static str, mass_kg: f64, from: &Provenance) -> Row {
     let (source, confidence) = (from.source.clone(), from.confidence.to_string());
     Row { source, confidence, ..stated(at, part.into(), kind, mass_kg) }
 }
 
-fn joint_parts(joint: &Joint, catalogs: &Catalogs) -> Vec<Row> {
+fn joint_parts(joint: &Joint, catalogs: &Catalogs, elsewhere: &[Elsewhere]) -> Vec<Row> {
     let at = joint.name.as_str();
-    let mut out = drive_parts(joint, catalogs);
+    let away = elsewhere.iter().find(|motor| motor.joint == joint.name);
+    let mut out = match away {
+        Some(away) => away.gear_row.iter().cloned().collect(),
+        None => drive_parts(joint, catalogs),
+    };
     if let Some(bearing) = joint.bearing.filter(|bearing| bearing.mass_kg > 0.0) {
         out.push(stated(at, format!("output bearing of {at}"), "bearing", bearing.mass_kg));
     }
@@ -138,8 +166,6 @@ fn joint_parts(joint: &Joint, catalogs: &Catalogs) -> Vec<Row> {
     ];
     let extras = extras.into_iter().filter(|(_, mass_kg)| *mass_kg > 0.0);
     out.extend(extras.map(|(kind, mass_kg)| stated(at, format!("{kind} of {at}"), kind, mass_kg)));
-    let bodies = joint.bodies.iter().enumerate();
-    out.extend(bodies.map(|(i, body)| stated(at, format!("body {} of {at}", i + 1), "body", body.mass_kg)));
     out
 }
 
@@ -171,8 +197,6 @@ fn prismatic_parts(joint: &Prismatic, catalogs: &Catalogs) -> Vec<Row> {
     if stays_kg > least_kg {
         out.push(stated(at, format!("what stays of {at}"), "prismatic", stays_kg));
     }
-    let bodies = joint.bodies.iter().enumerate();
-    out.extend(bodies.map(|(i, body)| stated(at, format!("body {} of {at}", i + 1), "body", body.mass_kg)));
     out
 }
 
@@ -221,7 +245,7 @@ fn drive_parts(joint: &Joint, catalogs: &Catalogs) -> Vec<Row> {
 
 /// Whether a gear of this mass is the housed unit or the component set of the catalog; `None` if neither has this
 /// mass.
-fn which_mass(gear: &Gear, mass_kg: f64) -> Option<&'static str> {
+pub(super) fn which_mass(gear: &Gear, mass_kg: f64) -> Option<&'static str> {
     let is =
         |which| gear.mass_kg(which).is_some_and(|kg: f64| (kg - mass_kg).abs() <= ROUNDING * kg.max(1.0));
     match (is(GearMass::HousedUnit), is(GearMass::ComponentSet)) {
@@ -238,7 +262,7 @@ fn link_parts(link: &Link, catalogs: &Catalogs) -> Vec<Row> {
         LinkBody::Tube { material_name, material, section } => {
             let length_m = link.vector_m.norm();
             let kg = material.density_kg_m3 * section.properties(material.poisson).area_m2 * length_m;
-            let row = catalogs.materials.iter().find(|row| row.name == *material_name);
+            let row = catalogs.materials.iter().find(|row| row.name == without_factors(material_name));
             let part = format!("{} {}", section_words(section), material_name);
             let mut part = match row {
                 Some(row) => bought(at, &part, "link", kg, &row.provenance),
@@ -254,8 +278,6 @@ fn link_parts(link: &Link, catalogs: &Catalogs) -> Vec<Row> {
         }
         LinkBody::Offset { .. } => {}
     }
-    let bodies = link.bodies.iter().enumerate();
-    out.extend(bodies.map(|(i, body)| stated(at, format!("body {} of {at}", i + 1), "body", body.mass_kg)));
     out
 }
 

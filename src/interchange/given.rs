@@ -9,6 +9,7 @@
 //! `gear`, and in addition `motor` and `bearing`. A prismatic joint has `stiffness_n_per_m`, `guide` and `moves`. The
 //! masses of the named parts and of bearings are not added, because the bodies of a URDF include them.
 
+use super::keys::{ALL_JOINTS, HINGE, SLIDE};
 use crate::arm::bearing::Bearing;
 use crate::arm::file::{read_curve, read_joint_bearing};
 use crate::arm::joint_law::Curve;
@@ -70,9 +71,6 @@ pub(crate) struct MovingJoint<'a> {
     pub slides: bool,
 }
 
-const HINGE_KEYS: [&str; 6] = ["stiffness_nm_per_rad", "windup", "gear", "gear_mass", "motor", "bearing"];
-const SLIDE_KEYS: [&str; 3] = ["stiffness_n_per_m", "guide", "moves"];
-
 /// Reads a stiffness file for a robot with these joints.
 ///
 /// # Errors
@@ -83,7 +81,7 @@ pub(crate) fn read_given(
     catalogs: &Catalogs,
 ) -> Result<Vec<GivenJoint>, Faults> {
     let root = document.root();
-    let entries = root.object(&["joints"]).and_then(|object| object.required("joints"));
+    let entries = root.shaped(&ALL_JOINTS).and_then(|object| object.required("joints"));
     let given = entries.as_ref().and_then(|node| {
         let read: Vec<_> =
             node.entries()?.iter().map(|(name, n)| read_joint(name, n, joints, catalogs)).collect();
@@ -102,7 +100,7 @@ fn read_joint(name: &str, node: &Node, joints: &[MovingJoint], catalogs: &Catalo
     };
     let springs = match joint.slides {
         true => {
-            let (stiffness_n_per_m, guide, moves) = Prismatic::read_springs(&node.object(&SLIDE_KEYS)?)?;
+            let (stiffness_n_per_m, guide, moves) = Prismatic::read_springs(&node.shaped(&SLIDE)?)?;
             GivenSprings::Slide { stiffness_n_per_m, guide, moves }
         }
         false => read_hinge(node, catalogs)?,
@@ -111,7 +109,7 @@ fn read_joint(name: &str, node: &Node, joints: &[MovingJoint], catalogs: &Catalo
 }
 
 fn read_hinge(node: &Node, catalogs: &Catalogs) -> Option<GivenSprings> {
-    let object = node.object(&HINGE_KEYS)?;
+    let object = node.shaped(&HINGE)?;
     let text = |key| object.or(key, None, |n| n.string().map(|s| Some(s.to_string())));
     let (gear, motor) = (text("gear"), text("motor"));
     let curve = read_curve(&object, catalogs);

@@ -5,11 +5,13 @@
 //! parallel to the world's when all joint angles are zero. So every position, axis and inertia is converted to the
 //! root frame of the URDF at zero angles. The path from the root to the tip is the arm. Each moving joint on this
 //! path becomes a joint. Everything between two of them becomes one rigid link, which takes over the bodies of its
-//! URDF links. Side branches, which leave the path, are held at zero angle, and their bodies are added to the link on
+//! URDF links. Side branches, which leave the path, are held where they stand
+//! while the arm is at zero angles, and their bodies are added to the link on
 //! which they hang.
 //!
 //! A URDF has no stiffness. A joint that the stiffness file does not name is rigid.
 
+use super::free_name::FreeNames;
 use super::given::{GivenJoint, GivenSprings, MovingJoint};
 use super::report::ImportReport;
 use super::urdf_file::{UrdfTree, isometry, moves, slides, tensor};
@@ -19,10 +21,11 @@ use crate::arm::joint_law::Curve;
 use crate::arm::{Arm, Element, Joint, JointBodies, Link, LinkBody, Prismatic};
 use crate::input::json::{Fault, Faults};
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use urdf_rs::JointType;
 
-const GRAVITY_M_S2: f64 = 9.81;
+/// Gravity of an imported arm \[m/s²\], downwards along z. A URDF states none.
+pub(super) const GRAVITY_M_S2: f64 = 9.81;
 
 /// A robot of a URDF file, with the tip link that determines the arm.
 pub(crate) struct Robot<'a> {
@@ -144,6 +147,17 @@ impl<'a> Robot<'a> {
         Moves::Not(offset_rad)
     }
 
+    /// The joints of side branches that do not stand at zero, because they follow another joint with a constant, by name.
+    fn held_beside_way(&self) -> BTreeMap<&str, Held> {
+        let mimicking = self.tree.joints.iter().filter(|joint| moves(joint) && joint.mimic.is_some());
+        let held = |joint: &'_ urdf_rs::Joint| match self.motion_of(&joint.name) {
+            Moves::Not(at) => Held { at, follows: None },
+            Moves::Driven => Held::default(),
+            Moves::With(driver, factor, at) => Held { at, follows: Some((driver.to_string(), factor)) },
+        };
+        mimicking.map(|joint| (joint.name.as_str(), held(joint))).collect()
+    }
+
     /// The arm, with the elastic properties `given` at its joints, and the report of its import.
     pub(crate) fn arm(&self, given: &[GivenJoint]) -> (Arm, ImportReport) {
         let mut walk = Walk {
@@ -153,7 +167,8 @@ impl<'a> Robot<'a> {
             start_m: Vector3::zeros(),
             name: String::new(),
             bodies: Vec::new(),
-            taken: self.joints().into_iter().map(|joint| joint.name.to_string()).collect(),
+            held: self.held_beside_way(),
+            names: FreeNames::all_but(self.joints().into_iter().map(|joint| joint.name.to_string())),
             chain: Vec::new(),
             report: ImportReport::new(self.file, &self.tree.name, self.tip),
         };
@@ -180,9 +195,20 @@ impl<'a> Robot<'a> {
     }
 }
 
+/// Where a joint of a side branch is held.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Held {
+    /// Its angle \[rad\] or travel \[m\].
+    pub at: f64,
+    /// The joint of the arm that it follows in the robot, and the factor.
+    pub follows: Option<(String, f64)>,
+}
+
 /// The walk along the path from the root to the tip.
 struct Walk<'t> {
     tree: &'t UrdfTree,
+    /// Joints of side branches that do not stand at zero, by name.
+    held: BTreeMap<&'t str, Held>,
     /// Names of the URDF links on the path, without the root.
     on_way: BTreeSet<&'t str>,
     /// Frame in the world, at zero joint angles, of the URDF link that the walk has reached.
@@ -193,8 +219,8 @@ struct Walk<'t> {
     name: String,
     /// Bodies of the link of the arm that is being built. Their positions are measured from where the link begins.
     bodies: Vec<RigidBody>,
-    /// Names that elements of the arm already have.
-    taken: BTreeSet<String>,
+    /// Names that no element of the arm has yet.
+    names: FreeNames,
     chain: Vec<Element>,
     report: ImportReport,
 }
@@ -203,18 +229,9 @@ impl<'t> Walk<'t> {
     /// Begins a link of the arm with the URDF link `link` and the side branches that hang on it.
     fn begin(&mut self, link: &str) {
         self.start_m = self.at.translation.vector;
-        self.name = self.free_name(link);
+        // in a URDF a link and a joint may have the same name; in an arm no two elements may
+        self.name = self.names.take(link, "_link");
         self.lump(link, self.at, None);
-    }
-
-    /// A name for a link, made from `name`, that no other element has. In a URDF a link and a joint may have the same
-    /// name. In an arm no two elements may have the same name.
-    fn free_name(&mut self, name: &str) -> String {
-        let mut free = name.to_string();
-        while !self.taken.insert(free.clone()) {
-            free.push_str("_link");
-        }
-        free
     }
 
     /// Goes past a joint on the path to the tip, to the URDF link that is its child. `motion` says how the joint moves.
@@ -224,10 +241,7 @@ impl<'t> Walk<'t> {
         let child = joint.child.link.as_str();
         let (coupled, offset_rad) = match motion {
             Moves::Not(held_at) => {
-                match slides(joint) {
-                    true => self.at *= Translation3::from(axis.into_inner() * held_at),
-                    false => self.at *= UnitQuaternion::from_axis_angle(&axis, held_at),
-                }
+                self.at *= moved(joint, held_at);
                 self.report.joined(joint, &self.name, held_at);
                 return self.lump(child, self.at, None);
             }
@@ -270,14 +284,32 @@ impl<'t> Walk<'t> {
         let Some(found) = tree.link(link) else { return };
         let body = body_at(found, &at, &self.start_m);
         if let Some(joint) = by {
-            self.report.lumped(found, &self.name, joint);
+            let held = self.held.get(joint.name.as_str()).cloned().unwrap_or_default();
+            self.report.lumped(found, &self.name, joint, &held);
         }
         self.bodies.extend(body);
         for joint in tree.child_joints(link) {
             if !self.on_way.contains(joint.child.link.as_str()) {
-                self.lump(&joint.child.link, at * isometry(&joint.origin), Some(joint));
+                let held_at = self.held.get(joint.name.as_str()).map_or(0.0, |held| held.at);
+                self.lump(
+                    &joint.child.link,
+                    at * isometry(&joint.origin) * moved(joint, held_at),
+                    Some(joint),
+                );
             }
         }
+    }
+}
+
+/// The motion of a joint that stands at `at` \[rad or m\].
+fn moved(joint: &urdf_rs::Joint, at: f64) -> Isometry3<f64> {
+    if !moves(joint) {
+        return Isometry3::identity();
+    }
+    let axis = Unit::new_normalize(Vector3::from(joint.axis.xyz.0));
+    match slides(joint) {
+        true => Translation3::from(axis.into_inner() * at).into(),
+        false => Isometry3::from_parts(Translation3::identity(), UnitQuaternion::from_axis_angle(&axis, at)),
     }
 }
 

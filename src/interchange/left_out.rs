@@ -1,9 +1,10 @@
 //! Properties of an arm that a file cannot represent, each with its part of the tip deflection.
 
-use super::snapshot::Snapshot;
+use super::snapshot::{FileSprings, Snapshot};
 use crate::arm::LinkModel;
+use crate::arm::joint_torque::JointTorque;
 use crate::arm::load::LoadCase;
-use crate::arm::structure::{Piece, Structure};
+use crate::arm::structure::{JointPiece, Piece, Structure};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 
@@ -32,16 +33,32 @@ pub(crate) struct Remainder {
     /// The arm without the properties that were removed so far.
     pub structure: Structure,
     case: LoadCase,
+    /// The arm as it stands: with all loads, and without the compliances that were removed so far.
+    whole: Structure,
+    whole_case: LoadCase,
+    springs: FileSprings,
     tip_m: Vector3<f64>,
     /// The properties that were removed so far.
     pub left_out: Vec<LeftOut>,
 }
 
 impl Remainder {
-    /// The arm as it is in a case, before anything is removed.
-    pub(crate) fn new(structure: Structure, case: &LoadCase) -> Self {
+    /// The arm as it is in a case, before anything is removed. `springs` are those of the file.
+    pub(crate) fn new(structure: Structure, case: &LoadCase, springs: FileSprings) -> Self {
         let tip_m = Snapshot::new(structure.clone(), case, case.links).tip_m();
-        Self { structure, case: case.clone(), tip_m, left_out: Vec::new() }
+        let (whole, whole_case) = (structure.clone(), case.clone());
+        Self { structure, case: case.clone(), whole, whole_case, springs, tip_m, left_out: Vec::new() }
+    }
+
+    /// What remains, with the springs of the file and the link model `links`.
+    pub(crate) fn snapshot(&self, links: LinkModel) -> Snapshot {
+        let whole = Snapshot::new(self.whole.clone(), &self.whole_case, links);
+        Snapshot::new(self.structure.clone(), &self.case, links).with_springs(self.springs, &whole)
+    }
+
+    /// Displacement of the tip of what remains \[m\].
+    fn rest_m(&self) -> Vector3<f64> {
+        self.snapshot(self.case.links).tip_m()
     }
 
     /// Component of the displacement `part_m` \[m\] along the whole displacement of the tip, divided by the whole
@@ -53,13 +70,12 @@ impl Remainder {
         }
     }
 
-    /// Removes a property from the structure by the function `change`, and records how much of the tip deflection is
-    /// lost with it. `what`, `at` and `why` say what the property is, where it is and why it is removed.
-    fn remove(&mut self, what: &'static str, at: &str, why: &str, change: impl FnOnce(&mut Structure)) {
-        let before_m = Snapshot::new(self.structure.clone(), &self.case, self.case.links).tip_m();
-        change(&mut self.structure);
-        let after_m = Snapshot::new(self.structure.clone(), &self.case, self.case.links).tip_m();
-        let tip_share = self.share(&(before_m - after_m));
+    /// Removes a property by the function `change`, and records how much of the tip deflection is lost with it. `what`,
+    /// `at` and `why` say what the property is, where it is and why it is removed.
+    fn remove(&mut self, what: &'static str, at: &str, why: &str, change: impl FnOnce(&mut Self)) {
+        let before_m = self.rest_m();
+        change(self);
+        let tip_share = self.share(&(before_m - self.rest_m()));
         self.left_out.push(LeftOut { what, at: at.into(), why: why.into(), tip_share });
     }
 
@@ -67,7 +83,7 @@ impl Remainder {
     pub(crate) fn without_water(&mut self) {
         if self.structure.water.is_some() {
             let why = "the file has no water: buoyancy and added mass are missing";
-            self.remove("water", "arm", why, |structure| structure.water = None);
+            self.remove("water", "arm", why, |rest| rest.structure.water = None);
         }
     }
 
@@ -76,26 +92,39 @@ impl Remainder {
         let names: Vec<String> = self.structure.springs.iter().map(|spring| spring.name.clone()).collect();
         for name in names {
             let why = "the file has no springs that balance the arm: its joints hold their torque too";
-            self.remove("balance_spring", &name, why, |structure| {
-                structure.springs.retain(|spring| spring.name != name);
+            self.remove("balance_spring", &name, why, |rest| {
+                rest.structure.springs.retain(|spring| spring.name != name);
             });
         }
+    }
+
+    /// Removes, joint by joint, the torques that act in addition to weight and load, such as that of a counterbalance.
+    pub(crate) fn without_joint_torques(&mut self) {
+        let names = self.joints_that(|joint| !joint.torque.is_none());
+        for name in names {
+            let why =
+                "the file has no torque on a joint in addition to weight: its motor holds this torque too";
+            self.remove("joint_torque", &name, why, |rest| {
+                if let Some(joint) = rest.structure.joint_mut(&name) {
+                    joint.torque = JointTorque::default();
+                }
+            });
+        }
+    }
+
+    /// Names of the joints with a property.
+    fn joints_that(&self, has: impl Fn(&JointPiece) -> bool) -> Vec<String> {
+        self.structure.joints().filter(|joint| has(joint)).map(|joint| joint.name.clone()).collect()
     }
 
     /// Removes, joint by joint, that a joint turns with other joints because its motor sits inboard of them. Each joint
     /// is then turned by its own drive alone. This is for files that cannot state motors that sit elsewhere.
     pub(crate) fn without_turning_with_others(&mut self) {
-        let turned = self.structure.joints().filter(|joint| !joint.turns_with.is_empty());
-        let names: Vec<String> = turned.map(|joint| joint.name.clone()).collect();
-        for name in names {
+        for name in self.joints_that(|joint| !joint.turns_with.is_empty()) {
             let why = "the file has no motor that sits elsewhere: the joint does not turn with the joints that its belts cross";
-            self.remove("turns_with", &name, why, |structure| {
-                for piece in &mut structure.pieces {
-                    if let Piece::Joint(joint) = piece
-                        && joint.name == name
-                    {
-                        joint.turns_with.clear();
-                    }
+            self.remove("turns_with", &name, why, |rest| {
+                if let Some(joint) = rest.structure.joint_mut(&name) {
+                    joint.turns_with.clear();
                 }
             });
         }
@@ -122,31 +151,20 @@ impl Remainder {
 
     /// Removes the compliance of the link `name`. `why` is the reason that is recorded.
     pub(crate) fn without_flexible_link(&mut self, name: &str, why: &str) {
-        self.remove("link_compliance", name, why, |structure| {
-            for piece in &mut structure.pieces {
-                if let Piece::Link(link) = piece
-                    && link.name == name
-                    && let Some(beam) = &mut link.beam
-                {
-                    beam.flexibility = 0.0;
-                }
-            }
+        self.remove("link_compliance", name, why, |rest| {
+            stiffen(&mut rest.structure, name);
+            // a compliance carries no load, so the springs of the arm as it stands work where they did
+            stiffen(&mut rest.whole, name);
         });
     }
 
-    /// Removes the force and the moment at the tip, and returns the case without them. `why` is the reason that is
-    /// recorded.
-    pub(crate) fn without_tip_load(&mut self, why: &str) -> LoadCase {
-        let bare =
+    /// Removes the force and the moment at the tip. `why` is the reason that is recorded.
+    pub(crate) fn without_tip_load(&mut self, why: &str) {
+        let unloaded =
             LoadCase { tip_force_n: Vector3::zeros(), tip_moment_nm: Vector3::zeros(), ..self.case.clone() };
-        if bare != self.case {
-            let rest_m = Snapshot::new(self.structure.clone(), &bare, bare.links).tip_m();
-            let whole_m = Snapshot::new(self.structure.clone(), &self.case, self.case.links).tip_m();
-            let tip_share = self.share(&(whole_m - rest_m));
-            self.left_out.push(LeftOut { what: "tip_load", at: "tip".into(), why: why.into(), tip_share });
+        if unloaded != self.case {
+            self.remove("tip_load", "tip", why, |rest| rest.case = unloaded);
         }
-        self.case = bare;
-        self.case.clone()
     }
 
     /// Records all springs of joints, bearings and frames as left out, for files without springs. `why` is the reason
@@ -174,5 +192,17 @@ impl Remainder {
             })
             .collect();
         self.left_out.extend(out);
+    }
+}
+
+/// Makes the link `name` of a structure rigid.
+fn stiffen(structure: &mut Structure, name: &str) {
+    for piece in &mut structure.pieces {
+        if let Piece::Link(link) = piece
+            && link.name == name
+            && let Some(beam) = &mut link.beam
+        {
+            beam.flexibility = 0.0;
+        }
     }
 }

@@ -6,6 +6,8 @@
 //! replaced by its tangent at the load of the case. The rest position of the spring (`springref`) is chosen such that
 //! the spring deflects at this load as much as the curve does.
 
+use super::free_name::FreeNames;
+use super::motors::Motor;
 use super::snapshot::Snapshot;
 use super::tree::{Hinge, Node, Role, TreeOptions, mass_properties, tree};
 use super::xml::{Xml, numbers, triple};
@@ -13,23 +15,14 @@ use crate::arm::structure::JointAngle;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeMap;
 
-/// Mass \[kg\] of a body that has none, and moment of inertia \[kg m²\] that is added to the moments of every body.
-/// MuJoCo accepts no moving body without mass and inertia.
-const LEAST: f64 = 1e-9;
-
-/// Inertia at the joint that is assumed where the inertia of the rotor is not known \[kg m², or kg for a joint that
-/// slides\]. Without any inertia, motor and gear would be two hinges of one axis with nothing between them, and the
-/// mass matrix would be singular. The assumed inertia changes nothing while the motors are held.
-pub(crate) const STAND_IN_KGM2: f64 = 0.1;
-
-/// Inertia and torque of the motor of a joint.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Motor {
-    /// Inertia of rotor and gear input, referred to the joint \[kg m²\].
-    pub armature_kgm2: f64,
-    /// Peak torque of the motor, referred to the joint without losses \[N m\]; `None` if it is unknown.
-    pub peak_nm: Option<f64>,
-}
+/// Mass of a body that has none, relative to the mass of the arm. MuJoCo accepts no moving body without mass.
+const LEAST_MASS: f64 = 1e-10;
+/// Square of the radius of gyration that is added to the moments of every body \[m²\]: 0.03 mm. MuJoCo accepts no
+/// moving body without inertia. A body without mass has the moments of a tenth of the arm's mass.
+const LEAST_RADIUS2_M2: f64 = 1e-9;
+/// Armature of the hinge of a backlash, relative to the motor's. Without it, this hinge and that of the gear would have
+/// one axis and nothing between them, and the mass matrix would be singular.
+const PLAY_ARMATURE: f64 = 1e-3;
 
 /// An MJCF file, and whether MuJoCo must change inertias in it.
 pub(crate) struct Mjcf {
@@ -46,8 +39,10 @@ pub(crate) fn mjcf(
     options: &TreeOptions,
     motors: &BTreeMap<String, Motor>,
 ) -> Mjcf {
-    let nodes = tree(snapshot, options);
-    let balanced = nodes.iter().any(|node| !is_solid(node));
+    let mut nodes = tree(snapshot, options);
+    name_bodies(&mut nodes);
+    let least = Least::of(&nodes);
+    let balanced = nodes.iter().any(|node| !is_solid(node, &least));
     let case = &snapshot.case;
     let comment = format!(
         "{name}, case \"{}\": pose {}, payload {} kg at {:?} m from the tip. Torsion curves are tangents at the torques of this case",
@@ -75,7 +70,7 @@ pub(crate) fn mjcf(
     xml.open("worldbody", &[]);
     let mut before_m = Vector3::zeros();
     for node in &nodes {
-        body(&mut xml, node, &before_m, motors);
+        body(&mut xml, node, &before_m, &least, motors);
         before_m = node.origin_m;
     }
     let posed = snapshot.at_zero();
@@ -93,14 +88,20 @@ pub(crate) fn mjcf(
 
 /// Opens the XML element of a body. It stays open, because the bodies outboard of it are nested inside. `before_m` is
 /// the origin of the body that contains it \[m\].
-fn body(xml: &mut Xml, node: &Node, before_m: &Vector3<f64>, motors: &BTreeMap<String, Motor>) {
+fn body(
+    xml: &mut Xml,
+    node: &Node,
+    before_m: &Vector3<f64>,
+    least: &Least,
+    motors: &BTreeMap<String, Motor>,
+) {
     xml.open("body", &[("name", node.name.clone()), ("pos", triple(&(node.origin_m - before_m)))]);
     for hinge in &node.hinges {
         xml.leaf("joint", &joint(hinge, &node.origin_m, motors));
     }
     let (mass_kg, cg_m, inertia) = mass_properties(&node.inertia);
-    let (mass_kg, cg_m) = if mass_kg > 0.0 { (mass_kg, cg_m) } else { (LEAST, node.origin_m) };
-    let inertia = inertia + Matrix3::identity() * LEAST;
+    let inertia = inertia + least.inertia_kgm2(mass_kg);
+    let (mass_kg, cg_m) = if mass_kg > 0.0 { (mass_kg, cg_m) } else { (least.mass_kg, node.origin_m) };
     let full = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|at| inertia[at]);
     xml.leaf(
         "inertial",
@@ -146,17 +147,20 @@ fn joint(
             out.push(("stiffness", numbers(&[working.tangent_nm_per_rad()])));
             out.push(("springref", numbers(&[working.rest_rad()])));
         }
-        Role::Play(half_rad) => out.push(("range", numbers(&[-half_rad, half_rad]))),
+        Role::Play { half_rad, .. } => {
+            out.push(("range", numbers(&[-half_rad, half_rad])));
+            if let Some(motor) = motors.get(&hinge.element) {
+                out.push(("armature", numbers(&[PLAY_ARMATURE * motor.armature_kgm2])));
+            }
+        }
     }
     out
 }
 
-/// Writes the couplings of passive joints. Each is a tendon of fixed length, so that the joint follows the motor and
-/// the gear of its driving joints.
+/// Writes the couplings of passive joints. Each is a tendon of fixed length, so that the joint follows the motor, the
+/// backlash and the gear of its driving joints.
 fn couplings(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
     let driven = snapshot.case_joints();
-    let has_gear =
-        |joint: &str| nodes.iter().flat_map(|n| &n.hinges).any(|h| h.name == format!("{joint}.gear"));
     let passive: Vec<_> = snapshot.structure.joints().filter(|joint| !joint.is_driven()).collect();
     if passive.is_empty() {
         return;
@@ -168,9 +172,8 @@ fn couplings(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
         xml.leaf("joint", &[("joint", joint.name.clone()), ("coef", "1".into())]);
         for (index, factor) in terms {
             let driver = &driven[*index];
-            let geared = has_gear(driver).then(|| format!("{driver}.gear"));
-            for hinge in [Some(driver.to_string()), geared].into_iter().flatten() {
-                xml.leaf("joint", &[("joint", hinge), ("coef", numbers(&[-factor]))]);
+            for hinge in nodes.iter().flat_map(|node| &node.hinges).filter(|hinge| hinge.element == *driver) {
+                xml.leaf("joint", &[("joint", hinge.name.clone()), ("coef", numbers(&[-factor]))]);
             }
         }
         xml.close();
@@ -209,6 +212,8 @@ fn keyframes(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
         let of = |hinge: &Hinge| match hinge.role {
             Role::Motor => angle(&hinge.name),
             Role::Spring(working) if deflected => working.deflection_rad,
+            // the load of the gear pushes the backlash to its stop
+            Role::Play { half_rad, load_nm } if deflected && load_nm != 0.0 => half_rad.copysign(load_nm),
             _ => 0.0,
         };
         numbers(&nodes.iter().flat_map(|node| &node.hinges).map(of).collect::<Vec<_>>())
@@ -220,8 +225,34 @@ fn keyframes(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
 }
 
 /// Whether a solid can have the inertia of this body: no principal moment exceeds the sum of the other two.
-fn is_solid(node: &Node) -> bool {
-    let (_, _, inertia) = mass_properties(&node.inertia);
-    let moments = (inertia + Matrix3::identity() * LEAST).symmetric_eigenvalues();
+fn is_solid(node: &Node, least: &Least) -> bool {
+    let (mass_kg, _, inertia) = mass_properties(&node.inertia);
+    let moments = (inertia + least.inertia_kgm2(mass_kg)).symmetric_eigenvalues();
     2.0 * moments.max() <= moments.sum() * (1.0 + 1e-9)
+}
+
+/// Gives every body a name of its own. An element of an arm may be called `world` or `base`.
+fn name_bodies(nodes: &mut [Node]) {
+    let mut free = FreeNames::all_but(["world".to_string()]);
+    nodes.iter_mut().for_each(|node| node.name = free.take(&node.name, "_body"));
+}
+
+/// Mass and inertia that are too small to change anything, for bodies that have none.
+struct Least {
+    /// Mass of a body without mass \[kg\].
+    mass_kg: f64,
+}
+
+impl Least {
+    /// Those of an arm with these bodies.
+    fn of(nodes: &[Node]) -> Self {
+        let arm_kg: f64 = nodes.iter().map(|node| node.inertia[(0, 0)]).sum();
+        Self { mass_kg: LEAST_MASS * if arm_kg > 0.0 { arm_kg } else { 1.0 } }
+    }
+
+    /// Inertia that is added to that of a body of this mass \[kg m²\].
+    fn inertia_kgm2(&self, mass_kg: f64) -> Matrix3<f64> {
+        let mass_kg = if mass_kg > 0.0 { mass_kg } else { 0.1 * self.mass_kg / LEAST_MASS };
+        Matrix3::identity() * (LEAST_RADIUS2_M2 * mass_kg)
+    }
 }

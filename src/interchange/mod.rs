@@ -1,27 +1,35 @@
 //! Exchange with other tools: robots of URDF files become arms, and arms become models for finite elements,
 //! simulation and purchase.
 //!
-//! - Import: `import` makes an arm of the path from the root of a URDF file (`urdf_file`, read by the crate `urdf-rs`)
-//!   to a tip. `given` reads the stiffness of the joints, which a URDF does not have. `report` says what became of
+//! - Import: `import` makes an arm of the path from the root of a URDF file (`urdf_file`, read by the crate `urdf-rs`;
+//!   `urdf_place` finds the lines that the crate does not name)
+//!   to a tip. `given` reads the stiffness of the joints, which a URDF does not have; `keys` has the
+//!   keys of these files. `report` says what became of
 //!   every link and joint of the URDF.
 //! - Export: `export` writes an arm in a load case. `snapshot` has its springs at their working points, and `tree`
-//!   converts it to a chain of rigid bodies for `mjcf` and `urdf_out`. `calculix` converts it to solids, `bill` and
-//!   `design_table` to tables. `left_out` lists what a file cannot represent, each with its part of the tip deflection.
+//!   converts it to a chain of rigid bodies for `mjcf` and `urdf_out`. `motors` has what catalogs know of its drives. `calculix` converts it to solids, `bill` and
+//!   `design_table` to tables; `table_notes` says what these do not have. `left_out` lists what a file cannot represent, each with its part of the tip deflection.
 
 pub(crate) mod bill;
+mod bill_motors;
 pub(crate) mod calculix;
 mod csv_text;
 pub(crate) mod design_table;
 pub(crate) mod export;
+mod free_name;
 pub(crate) mod given;
 pub(crate) mod import;
+pub(crate) mod keys;
 pub(crate) mod left_out;
 pub(crate) mod mjcf;
+mod motors;
 pub(crate) mod report;
 pub(crate) mod snapshot;
+mod table_notes;
 pub(crate) mod tree;
 pub(crate) mod urdf_file;
 pub(crate) mod urdf_out;
+mod urdf_place;
 mod xml;
 
 use crate::arm::Arm;

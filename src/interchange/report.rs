@@ -2,6 +2,7 @@
 //! which joints are rigid because no stiffness is known.
 
 use super::given::GivenSprings;
+use super::import::Held;
 use super::urdf_file::{UrdfTree, moves, slides};
 use nalgebra::Isometry3;
 use serde_json::{Value, json};
@@ -112,15 +113,33 @@ impl ImportReport {
     }
 
     /// Records a link of a side branch, whose body is added to the link `onto` of the arm. `by` is the joint that holds
-    /// the link.
-    pub(super) fn lumped(&mut self, link: &Link, onto: &str, by: &Joint) {
+    /// the link, and `held` where it stands.
+    pub(super) fn lumped(&mut self, link: &Link, onto: &str, by: &Joint, held: &Held) {
         self.lumped.push(json!({
             "link": link.name, "onto": onto, "mass_kg": link.inertial.mass.value, "joint": by.name, "type": word(by),
         }));
-        let limits = &by.limit;
-        if moves(by) && by.joint_type != JointType::Continuous && (limits.lower > 0.0 || limits.upper < 0.0) {
+        let held_at = match (held.at == 0.0, slides(by)) {
+            (true, _) => "zero".into(),
+            (false, true) => format!("{} m", held.at),
+            (false, false) => format!("{} rad", held.at),
+        };
+        if let Some((driver, factor)) = &held.follows {
             self.guessed.push(format!(
-                "{}: beside the way to the tip, held at zero, which is outside its range of {} to {}",
+                "{}: beside the way to the tip, moves {factor} times as {driver} does in the robot, held at {held_at} here",
+                by.name
+            ));
+        } else if held.at != 0.0 {
+            self.guessed.push(format!(
+                "{}: beside the way to the tip, held at {held_at}, the constant of its <mimic>",
+                by.name
+            ));
+        }
+        let limits = &by.limit;
+        let has_range = limits.lower != limits.upper;
+        let is_outside = has_range && (held.at < limits.lower || held.at > limits.upper);
+        if moves(by) && by.joint_type != JointType::Continuous && is_outside {
+            self.guessed.push(format!(
+                "{}: beside the way to the tip, held at {held_at}, which is outside its range of {} to {}",
                 by.name, limits.lower, limits.upper
             ));
         }

@@ -3,6 +3,9 @@
 //! A torsion curve has no single stiffness. At the load of a case it has a *secant* stiffness (load over deflection),
 //! with which a linear program computes the right deflection, and a *tangent* stiffness, with which it computes the
 //! right frequencies.
+//!
+//! A file may lack loads that the arm has, such as that of a balance spring. The gears of the arm still work where all
+//! loads put them, so the tangents of a file are those of the arm as it stands.
 
 use crate::arm::LinkModel;
 use crate::arm::load::LoadCase;
@@ -11,7 +14,8 @@ use crate::arm::prismatic::{Moves, PrismaticPiece};
 use crate::arm::structure::{LinkPiece, Piece, Structure};
 use crate::mechanics::chain::{Chain, Compliance, Item, Posed};
 use crate::mechanics::prismatic::guide_name;
-use nalgebra::Vector3;
+use crate::mechanics::statics::Statics;
+use nalgebra::{DVector, Vector3};
 use serde_json::{Map, Value, json};
 
 /// Load below which a spring counts as unloaded \[N m\].
@@ -62,6 +66,34 @@ impl Working {
     pub(crate) fn rest_rad(&self) -> f64 {
         self.deflection_rad - self.load_nm / self.tangent_nm_per_rad()
     }
+
+    /// The working point, under another load \[N m\], of the linear spring that can replace this spring.
+    fn linear_under(&self, load_nm: f64) -> Self {
+        if self.is_rigid() {
+            return Self { load_nm, ..*self };
+        }
+        let tangent_rad_per_nm = 1.0 / self.tangent_nm_per_rad();
+        match tangent_rad_per_nm.is_finite() {
+            true => Self {
+                load_nm,
+                deflection_rad: self.rest_rad() + load_nm * tangent_rad_per_nm,
+                tangent_rad_per_nm,
+            },
+            // a deflection without load is no spring
+            false => Self { load_nm, ..*self },
+        }
+    }
+}
+
+/// The springs that a file has in place of torsion curves. Their tangents are those of the arm as it stands, with all
+/// its loads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum FileSprings {
+    /// One linear spring for each curve, with its tangent. Its position of rest is such that it deflects as much as the
+    /// curve under the loads of the arm as it stands.
+    Tangents,
+    /// The secant at the loads in the file for deflections, and the tangent for frequencies.
+    SecantsAndTangents,
 }
 
 /// An arm in a load case.
@@ -72,6 +104,8 @@ pub(crate) struct Snapshot {
     /// The structure of the arm.
     pub structure: Structure,
     chain: Chain,
+    /// Working points of the springs of a file; `None` if the springs follow their curves.
+    in_file: Option<Vec<Vec<Working>>>,
 }
 
 impl Snapshot {
@@ -79,7 +113,22 @@ impl Snapshot {
     /// states.
     pub(crate) fn new(structure: Structure, case: &LoadCase, links: LinkModel) -> Self {
         let chain = Chain::new(&structure, links);
-        Self { case: LoadCase { links, ..case.clone() }, structure, chain }
+        Self { case: LoadCase { links, ..case.clone() }, structure, chain, in_file: None }
+    }
+
+    /// This arm with the springs of a file. `whole` is the arm as it stands: it has the same elastic elements, and all
+    /// loads.
+    pub(crate) fn with_springs(self, springs: FileSprings, whole: &Snapshot) -> Self {
+        let joined = |(here, whole): (&Working, &Working)| match springs {
+            FileSprings::Tangents => whole.linear_under(here.load_nm),
+            FileSprings::SecantsAndTangents => {
+                Working { tangent_rad_per_nm: whole.tangent_rad_per_nm, ..*here }
+            }
+        };
+        let points = self.working_points();
+        let both = points.iter().zip(whole.working_points());
+        let in_file = both.map(|(here, whole)| here.iter().zip(&whole).map(joined).collect()).collect();
+        Self { in_file: Some(in_file), ..self }
     }
 
     /// The arm in the pose of the case.
@@ -94,7 +143,31 @@ impl Snapshot {
 
     /// Displacement of the tip in the case, from its position in the weightless arm, in world axes \[m\].
     pub(crate) fn tip_m(&self) -> Vector3<f64> {
-        self.posed().statics().tip_displacement_m
+        self.statics().tip_displacement_m
+    }
+
+    /// The static state of the arm in the case. With the springs of a file, its deflections and tangents are theirs.
+    fn statics(&self) -> Statics {
+        let posed = self.posed();
+        let mut statics = posed.statics();
+        let Some(points) = &self.in_file else { return statics };
+        for (i, element) in posed.elements().enumerate() {
+            // a link is linear, and its working points do not count the weight along it
+            if element.own.is_none() {
+                statics.deformations[i] = points[i].iter().map(|point| point.deflection_rad).collect();
+                statics.tangent_compliances[i] =
+                    points[i].iter().map(|point| point.tangent_rad_per_nm).collect();
+            }
+        }
+        let shape: Vec<f64> = statics.deformations.iter().flatten().copied().collect();
+        statics.tip_displacement_m = posed.tip_motion(&DVector::from_vec(shape));
+        statics
+    }
+
+    /// The lowest natural frequencies that another program should find \[Hz\]. There are fewer if fewer modes have
+    /// inertia.
+    pub(crate) fn frequencies_hz(&self) -> Vec<f64> {
+        self.posed().modes(&self.statics(), MODES).iter().map(|mode| mode.frequency_hz).collect()
     }
 
     /// The link with this index among the pieces; `None` if the piece is no link.
@@ -139,6 +212,9 @@ impl Snapshot {
     /// The working points (load, deflection and compliance) of the springs of all coordinates, as one list for each
     /// element, base to tip.
     pub(crate) fn working_points(&self) -> Vec<Vec<Working>> {
+        if let Some(in_file) = &self.in_file {
+            return in_file.clone();
+        }
         let posed = self.posed();
         let statics = posed.statics();
         let mut wrench = posed.tip_load();
@@ -176,17 +252,15 @@ impl Snapshot {
     /// The results that another program should compute for this arm: torques, displacement of the tip, and lowest
     /// natural frequencies.
     pub(crate) fn expected(&self) -> Value {
-        let posed = self.posed();
-        let statics = posed.statics();
+        let statics = self.statics();
         let torques: Map<String, Value> =
             statics.joint_torques_nm.iter().map(|(name, nm)| (name.clone(), json!(nm))).collect();
-        let modes: Vec<f64> = posed.modes(&statics, MODES).iter().map(|mode| mode.frequency_hz).collect();
         let forces: Map<String, Value> =
             statics.joint_forces_n.iter().map(|(name, n)| (name.clone(), json!(n))).collect();
         let mut out = json!({
             "joint_torque_nm": torques,
             "tip_displacement_m": statics.tip_displacement_m.as_slice(),
-            "frequencies_hz": modes,
+            "frequencies_hz": self.frequencies_hz(),
         });
         if !forces.is_empty() {
             out["joint_force_n"] = Value::Object(forces);

@@ -10,10 +10,11 @@
 //! `N` equal parts of the link: two hinges for bending, one hinge for twist, and three slides for shear and stretch.
 //! The error of the compliance falls with 1/N².
 
+use super::free_name::FreeNames;
 use super::snapshot::{Snapshot, Working};
 use crate::arm::LinkModel;
 use crate::arm::prismatic::PrismaticPiece;
-use crate::arm::structure::{Beam, LinkPiece};
+use crate::arm::structure::{Beam, LinkPiece, Piece};
 use crate::mechanics::beam::{line_stiffnesses, tube_inertia};
 use crate::mechanics::chain::{Compliance, ElasticElement, Item, OwnMass};
 use crate::mechanics::{Twist, angular, body_inertia, linear, stack};
@@ -22,6 +23,8 @@ use std::collections::BTreeMap;
 
 /// Radius with which a link without a section is drawn \[m\].
 const THIN_M: f64 = 0.02;
+/// Rounding error of an inertia about the centre of gravity, relative to that about the world's origin.
+const ROUNDING: f64 = 1e-13;
 /// Largest number of hinges of one body in MuJoCo.
 const MOST_HINGES: usize = 6;
 
@@ -32,8 +35,13 @@ pub(crate) enum Role {
     Motor,
     /// A spring acts on the hinge.
     Spring(Working),
-    /// The hinge turns freely within this half width \[rad\], which is the backlash of a gear.
-    Play(f64),
+    /// The hinge turns freely, as the backlash of a gear.
+    Play {
+        /// Half width of the range in which it turns \[rad\].
+        half_rad: f64,
+        /// Load of the gear \[N m\], which pushes it to one end of this range.
+        load_nm: f64,
+    },
 }
 
 /// One axis about which a body rotates relative to the body inboard of it, or along which it slides.
@@ -78,7 +86,21 @@ pub(crate) fn mass_properties(inertia: &Matrix6<f64>) -> (f64, Vector3<f64>, Mat
     let cg_m = Vector3::new(inertia[(1, 5)], -inertia[(0, 5)], inertia[(0, 4)]) / mass_kg;
     let cross = cg_m.cross_matrix();
     let about_cg = inertia.fixed_view::<3, 3>(3, 3) + mass_kg * cross * cross;
-    (mass_kg, cg_m, 0.5 * (about_cg + about_cg.transpose()))
+    let rounding_kgm2 = ROUNDING * inertia.fixed_view::<3, 3>(3, 3).amax();
+    (mass_kg, cg_m, without_rounding(0.5 * (about_cg + about_cg.transpose()), rounding_kgm2))
+}
+
+/// An inertia tensor without what is left of the difference of two larger ones: without a tensor that is no larger than
+/// this rounding error \[kg m²\], and without principal moments below zero.
+fn without_rounding(tensor: Matrix3<f64>, rounding_kgm2: f64) -> Matrix3<f64> {
+    if tensor.amax() <= rounding_kgm2 {
+        return Matrix3::zeros();
+    }
+    let least = tensor.symmetric_eigenvalues().min();
+    match least < 0.0 && least >= -rounding_kgm2 {
+        true => tensor - Matrix3::identity() * least,
+        false => tensor,
+    }
 }
 
 /// Options of the conversion of an arm to a tree.
@@ -96,7 +118,10 @@ pub(crate) struct TreeOptions {
 
 /// The rigid bodies of an arm, base to tip.
 pub(crate) fn tree(snapshot: &Snapshot, options: &TreeOptions) -> Vec<Node> {
-    let mut builder = Builder { options, nodes: Vec::new() };
+    let pieces = snapshot.structure.pieces.iter();
+    let joints =
+        pieces.filter(|piece| !matches!(piece, Piece::Link(_))).map(|piece| piece.name().to_string());
+    let mut builder = Builder { options, nodes: Vec::new(), free: FreeNames::all_but(joints) };
     builder.open("base", Vector3::zeros());
     let posed = snapshot.at_zero();
     let mut workings = snapshot.working_points().into_iter();
@@ -120,6 +145,8 @@ pub(crate) fn tree(snapshot: &Snapshot, options: &TreeOptions) -> Vec<Node> {
 struct Builder<'o> {
     options: &'o TreeOptions,
     nodes: Vec<Node>,
+    /// Names for hinges other than those of motors, which are called as their joints.
+    free: FreeNames,
 }
 
 impl Builder<'_> {
@@ -149,8 +176,10 @@ impl Builder<'_> {
         // a joint is in one body with its bearing or guide, whose name begins with the joint's
         let of_joint = [".bearing", ".guide"].iter().find_map(|end| element.name.strip_suffix(end));
         let node = of_joint.unwrap_or(&element.name).to_string();
+        // the first body is the ground, even if a joint has its name
+        let is_first = self.nodes.len() == 1;
         let last = self.last();
-        let shares = last.name == node && last.inertia == Matrix6::zeros();
+        let shares = !is_first && last.name == node && last.inertia == Matrix6::zeros();
         // a joint that turns may bring its motor and its backlash too
         let more = if slides { 1 } else { 2 };
         if !shares || last.hinges.len() + element.twists.len() > MOST_HINGES - more {
@@ -167,8 +196,10 @@ impl Builder<'_> {
             let motor = hinge(&element.twists[0], name.clone(), &name, element.at_m, Role::Motor);
             self.last().hinges.push(motor);
             if let Some(half_rad) = self.options.plays.get(&name).copied() {
-                let name = format!("{name}.backlash");
-                let play = hinge(&element.twists[0], name, &element.name, element.at_m, Role::Play(half_rad));
+                let name = self.free.take(&format!("{name}.backlash"), "_hinge");
+                let load_nm = workings.first().map_or(0.0, |working| working.load_nm);
+                let role = Role::Play { half_rad, load_nm };
+                let play = hinge(&element.twists[0], name, &element.name, element.at_m, role);
                 self.last().hinges.push(play);
             }
         }
@@ -181,6 +212,7 @@ impl Builder<'_> {
                 true => format!("{}.gear", element.name),
                 false => format!("{}_{}", element.name, i + 1),
             };
+            let name = self.free.take(&name, "_hinge");
             let spring = hinge(twist, name, &element.name, element.at_m, Role::Spring(*working));
             self.last().hinges.push(spring);
         }
@@ -221,7 +253,8 @@ impl Builder<'_> {
             let place = |xi: f64| own.root_m + along * (xi * length_m);
             if k > 0 {
                 self.open(&format!("{}.{k}", link.name), place(from));
-                let hinges = piece_hinges(link, beam, own, place(from), k, self.options);
+                let mut hinges = piece_hinges(link, beam, own, place(from), k, self.options);
+                hinges.iter_mut().for_each(|hinge| hinge.name = self.free.take(&hinge.name, "_hinge"));
                 self.last().hinges.extend(hinges);
             }
             let model = self.options.links;

@@ -3,6 +3,7 @@
 //! The text is parsed by the crate `urdf-rs`. What the crate does not check is checked here: duplicate and unknown
 //! names, links with two parents, loops, axes without a direction, and masses and inertias that no body can have.
 
+use super::urdf_place::{line_of_robot, no_numbers};
 use crate::input::json::{Fault, Faults};
 use crate::input::names::unfit_name;
 use nalgebra::{Isometry3, Matrix3, SymmetricEigen, Translation3, UnitQuaternion, Vector3};
@@ -11,6 +12,9 @@ use urdf_rs::{Joint, JointType, Link, Pose, Robot};
 
 /// Largest negative principal moment that counts as rounding, relative to the largest entry of the tensor.
 const ROUNDING: f64 = 1e-6;
+/// Largest negative principal moment that counts as rounding, relative to mass times squared distance of the centre of
+/// gravity. Programs compute the tensor of a body as the difference of two that are so large.
+const ROUNDING_AT_ORIGIN: f64 = 1e-12;
 
 /// A robot as a tree of links.
 #[derive(Debug, Clone)]
@@ -54,12 +58,17 @@ impl UrdfTree {
     pub(crate) fn read(file: &str, text: &str) -> Result<Self, Faults> {
         let fault = |name: &str, problem: String, hint: &str| Fault {
             file: file.into(),
-            line: line_of(text, name),
+            line: line_of(text, name).or_else(|| line_of_robot(text)),
             field: name.into(),
             problem,
             hint: hint.into(),
         };
         let robot: Robot = urdf_rs::read_from_string(text).map_err(|e| {
+            if let Some((line, wrong)) = no_numbers(text) {
+                let hint = "write numbers with a point, separated by spaces";
+                let problem = format!("is no list of numbers: {wrong}");
+                return Faults(vec![Fault { line: Some(line), ..fault("", problem, hint) }]);
+            }
             let hint = "the file must be plain URDF: expand macros first with `xacro FILE.xacro > FILE.urdf`";
             Faults(vec![Fault { line: None, ..fault("", format!("is no URDF: {e}"), hint) }])
         })?;
@@ -151,6 +160,31 @@ impl UrdfTree {
             let problem = format!("mimics \"{}\", which is no joint of the file", mimic.joint);
             out.push((joint.name.clone(), problem, "name a joint, or remove <mimic>"));
         }
+        let circle = self.mimics_from(joint);
+        // each circle is reported once, at its joint that comes first in the file
+        let first = self.joints.iter().find(|other| circle.contains(&other.name.as_str()));
+        if first.is_some_and(|first| first.name == joint.name) {
+            let way = [&circle[..], &[joint.name.as_str()]].concat();
+            let problem = format!("mimics itself: {}", way.join(" mimics "));
+            out.push((joint.name.clone(), problem, "remove the <mimic> of the joint that has a motor"));
+        }
+    }
+
+    /// The joints from `joint` along `<mimic>` back to itself; none if the joint does not mimic itself.
+    fn mimics_from<'t>(&'t self, joint: &'t Joint) -> Vec<&'t str> {
+        let mut way = vec![joint.name.as_str()];
+        let mut at = joint;
+        while let Some(mimic) = &at.mimic
+            && way.len() <= self.joints.len()
+        {
+            if mimic.joint == joint.name {
+                return way;
+            }
+            let Some(next) = self.joints.iter().find(|other| other.name == mimic.joint) else { break };
+            way.push(&next.name);
+            at = next;
+        }
+        Vec::new()
     }
 
     /// Checks that the links form a tree: exactly one link has no parent, all others have one, and every path leads
@@ -206,7 +240,8 @@ fn body_problems(link: &Link, out: &mut Vec<(String, String, &'static str)>) {
         return;
     }
     let least = SymmetricEigen::new(tensor).eigenvalues.min();
-    if least < -ROUNDING * tensor.amax() {
+    let at_origin = mass_kg * Vector3::from(link.inertial.origin.xyz.0).norm_squared();
+    if least < -(ROUNDING * tensor.amax()).max(ROUNDING_AT_ORIGIN * at_origin) {
         let problem = format!("has a negative principal moment of inertia, {least} kg m²");
         out.push((
             link.name.clone(),

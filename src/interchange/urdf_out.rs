@@ -3,6 +3,7 @@
 //! The separate file is the stiffness file that an import reads. An exported arm that is imported again has the same
 //! torques and, since its links are rigid, the same modes.
 
+use super::free_name::FreeNames;
 use super::snapshot::Snapshot;
 use super::tree::{Node, TreeOptions, mass_properties, tree};
 use super::xml::{Xml, numbers, triple};
@@ -11,48 +12,64 @@ use crate::arm::{Arm, Joint};
 use nalgebra::Vector3;
 use serde_json::{Map, Value, json};
 
+/// Mass of a link that has inertia and no mass, relative to the mass of the arm.
+const LEAST_MASS: f64 = 1e-9;
+
+/// A URDF file.
+pub(crate) struct Urdf {
+    /// The text of the file.
+    pub text: String,
+    /// Name of the link at the tip.
+    pub tip: String,
+}
+
 /// Writes an arm as URDF. The payload of the case is not included.
-pub(crate) fn urdf(arm: &Arm, snapshot: &Snapshot) -> String {
+pub(crate) fn urdf(arm: &Arm, snapshot: &Snapshot) -> Urdf {
     let nodes = tree(snapshot, &TreeOptions::default());
+    // readers differ in whether a link and a joint may have the same name
+    let joints = arm.joints().map(|joint| joint.name.clone());
+    let mut free = FreeNames::all_but(joints.chain(arm.prismatics().map(|joint| joint.name.clone())));
+    let names: Vec<String> =
+        nodes.iter().enumerate().map(|(i, node)| link_name(i, node, &mut free)).collect();
+    let (tip, tip_joint) = (free.take("tip", "_link"), free.take("tip_frame", "_joint"));
+    let least_kg = LEAST_MASS * nodes.iter().map(|node| node.inertia[(0, 0)]).sum::<f64>().max(LEAST_MASS);
     let comment = format!(
         "{}: rigid links and joints; frames are parallel at zero angles; stiffness.json has the stiffness of the joints",
         arm.name
     );
     let mut xml = Xml::new(&comment);
     xml.open("robot", &[("name", arm.name.clone())]);
-    for (i, node) in nodes.iter().enumerate() {
-        link(&mut xml, &link_name(i, node), node);
+    for (name, node) in names.iter().zip(&nodes) {
+        link(&mut xml, name, node, least_kg);
     }
     for (i, pair) in nodes.windows(2).enumerate() {
-        joint(
-            &mut xml,
-            snapshot,
-            (&link_name(i, &pair[0]), &pair[0]),
-            (&link_name(i + 1, &pair[1]), &pair[1]),
-        );
+        joint(&mut xml, snapshot, (&names[i], &pair[0]), (&names[i + 1], &pair[1]));
     }
-    if let Some((i, last)) = nodes.iter().enumerate().next_back() {
+    if let (Some(last), Some(name)) = (nodes.last(), names.last()) {
         let tip_m = snapshot.at_zero().tip_m - last.origin_m;
-        xml.leaf("link", &[("name", "tip".into())]);
-        xml.open("joint", &[("name", "tip_frame".into()), ("type", "fixed".into())]);
-        ends(&mut xml, &link_name(i, last), "tip", &tip_m);
+        xml.leaf("link", &[("name", tip.clone())]);
+        xml.open("joint", &[("name", tip_joint), ("type", "fixed".into())]);
+        ends(&mut xml, name, &tip, &tip_m);
         xml.close();
     }
-    xml.finish()
+    Urdf { text: xml.finish(), tip }
 }
 
 /// Name of the URDF link for a body, which must differ from the names of joints. `number` counts the bodies from the
 /// base.
-fn link_name(number: usize, node: &Node) -> String {
-    if number == 0 { "base".into() } else { format!("{}_link", node.name) }
+fn link_name(number: usize, node: &Node, free: &mut FreeNames) -> String {
+    let name = if number == 0 { "base".into() } else { format!("{}_link", node.name) };
+    free.take(&name, "_link")
 }
 
-fn link(xml: &mut Xml, name: &str, node: &Node) {
+/// Writes a link. One that has inertia and no mass gets the mass `least_kg` \[kg\], because a body has both.
+fn link(xml: &mut Xml, name: &str, node: &Node, least_kg: f64) {
     let name = [("name", name.to_string())];
     let (mass_kg, cg_m, inertia) = mass_properties(&node.inertia);
-    if mass_kg == 0.0 {
+    if mass_kg == 0.0 && inertia.amax() == 0.0 {
         return xml.leaf("link", &name);
     }
+    let (mass_kg, cg_m) = if mass_kg > 0.0 { (mass_kg, cg_m) } else { (least_kg, node.origin_m) };
     xml.open("link", &name);
     xml.open("inertial", &[]);
     xml.leaf("origin", &[("xyz", triple(&(cg_m - node.origin_m))), ("rpy", "0 0 0".into())]);

@@ -3,11 +3,14 @@
 //! A file states them: the `import.json` of a robot, or one that the user writes. If there is none, the average torque
 //! of the gear and the continuous torque of the motor are the limits, as far as the catalogs have them.
 
+use crate::arm::keys::POSITIVE_OR_NULL;
 use crate::arm::pose::Motion;
 use crate::arm::{Arm, Element, Joint};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::GearKind;
 use crate::input::json::{Document, Faults, Node, Object, closest};
+use crate::input::key::{Kind, Shape, optional, required};
+use crate::input::schema::FileKind;
 
 /// The largest torque or force that a joint may have at rest.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +25,71 @@ pub(crate) struct LoadLimit {
 
 const TORQUE: &str = "max_torque_nm";
 const FORCE: &str = "max_force_n";
+
+/// The format of a file with limits.
+pub(crate) const LIMITS_FILE: FileKind = FileKind {
+    name: "limits",
+    about: "What `armwright capacity --limits` takes: the largest torques and forces of joints. `import.json` is such a file.",
+    root: Kind::Object(&LIMITS),
+};
+
+static LIMITS: Shape = Shape {
+    name: "limits",
+    about: "Limits of joints at rest. An `import.json` has other keys besides, which are not read.",
+    keys: &[required("joints", Kind::List(&Kind::Object(&LIMIT)), "-", "The joints with limits.")],
+    rules: &[],
+    others: Some(&Kind::Anything),
+};
+
+static LIMIT: Shape = Shape {
+    name: "limit",
+    about: "The limit of a joint.",
+    keys: &[
+        required("name", Kind::Text, "-", "Name of the joint."),
+        optional(TORQUE, POSITIVE_OR_NULL, "N m", "none", "Largest torque at rest of a joint that turns."),
+        optional(
+            FORCE,
+            POSITIVE_OR_NULL,
+            "N",
+            "none",
+            "Largest force at rest along the travel of a prismatic joint.",
+        ),
+    ],
+    rules: &[],
+    others: Some(&Kind::Anything),
+};
+
+/// Checks a file of limits without its arm: every joint has a name, and every limit is above zero.
+///
+/// # Errors
+/// All faults of the file at once.
+pub(crate) fn check_limits(document: Document) -> Result<(), Faults> {
+    let root = document.root();
+    let checked = match root.value().get("joints") {
+        Some(_) => check_joints(&root),
+        None => {
+            root.fault("has no \"joints\"", "write {\"joints\": [{\"name\": \"j1\", \"max_torque_nm\": 87}]}")
+        }
+    };
+    document.finish(checked)
+}
+
+fn check_joints(root: &Node) -> Option<()> {
+    let all: Vec<Option<()>> = object(root, &[], true)?
+        .required("joints")?
+        .array()?
+        .iter()
+        .map(|node| {
+            let joint = object(node, &[], true)?;
+            joint.required("name")?.string()?;
+            let limits = [TORQUE, FORCE].into_iter().filter_map(|key| joint.optional(key));
+            let sound: Vec<Option<f64>> =
+                limits.filter(|node| !node.is_null()).map(|node| node.positive()).collect();
+            sound.into_iter().all(|limit| limit.is_some()).then_some(())
+        })
+        .collect();
+    all.into_iter().collect()
+}
 
 /// Reads the limits of joints from a file with `{"joints": [{"name": "j1", "max_torque_nm": 87}]}`, such as
 /// `import.json`. A prismatic joint has `max_force_n`. Joints without a number have no limit.

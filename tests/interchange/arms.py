@@ -125,6 +125,12 @@ def fixed_arms():
         joint("j2", [0, 1, 0], 2e5, 6.0), box("upper", [0.6, 0, 0], "aluminium", 0.12, 0.12, 0.006),
         joint("j3", [0, 1, 0], 1e5, 5.0), box("fore", [0.5, 0, 0], "aluminium", 0.1, 0.1, 0.005), *wrist()], gravity_m_s2=[1.5, -2.0, 9.3]),
         [case("hung", [10, 40, -60, 0, 20, 0], 4.0, tip_force_n=[20.0, -35.0, 50.0], tip_moment_nm=[3.0, -4.0, 2.0])]))
+    out.append(("balanced", arm("balanced", [
+        geared("j1", [0, 0, 1], 3e5, 60, 6.0), box("column", [0, 0, 0.3], "steel", 0.16, 0.16, 0.008),
+        geared("j2", [0, 1, 0], 2e5, 50, 6.0), box("upper", [0.6, 0, 0], "aluminium", 0.12, 0.12, 0.006),
+        geared("j3", [0, 1, 0], 1e5, 30, 5.0), box("fore", [0.5, 0, 0], "aluminium", 0.1, 0.1, 0.005), *wrist()],
+        [effect("joint_torque", "j3", offset_nm=-45)], springs=[{"name": "balancer", "joint": "j2", "stiffness_nm_per_rad": 90, "free_deg": -80}]),
+        [case("out", [10, 10, 20, 0, 20, 0], 4.0, tip_force_n=[20.0, 35.0, 50.0])]))
     return out
 
 

@@ -11,8 +11,11 @@ use std::fmt::Write;
 const GROUNDING_N_PER_M: f64 = 1e-3;
 /// Range of Poisson's ratio E / (2 G) - 1 within which E and G can belong to an isotropic material.
 const ISOTROPIC: std::ops::Range<f64> = -0.9..0.49;
-/// Number of natural frequencies to compute.
-const MODES: usize = 6;
+/// Equations that the solver of `ccx` for frequencies (ARPACK) needs for each of them, as tried with CalculiX 2.20.
+const EQUATIONS_PER_MODE: usize = 5;
+/// Spring of a node that adds an equation, and no frequency that matters \[N/m\]. With a mass of 1 kg it vibrates at
+/// 160 kHz.
+const FILLER_N_PER_M: f64 = 1e12;
 
 /// The analysis that a deck describes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,15 +24,6 @@ pub(crate) enum Step {
     Static,
     /// A modal analysis for natural frequencies, with tangent stiffnesses.
     Frequency,
-}
-
-/// Number of natural frequencies that the deck asks for. A model of hinges alone has few degrees of freedom, and the
-/// solver needs one more than the frequencies that it computes.
-pub(crate) fn modes(model: &Model) -> usize {
-    match model.solids.is_empty() {
-        false => MODES,
-        true => MODES.min(model.hinges.len().saturating_sub(1)),
-    }
 }
 
 /// The text of the input deck for the analysis `step` of a model.
@@ -46,7 +40,8 @@ pub(crate) fn deck(model: &Model, step: Step, heading: &str, gravity_m_s2: &Vect
     match step {
         Step::Static => static_step(&mut out, model, gravity_m_s2),
         Step::Frequency => {
-            let _ = writeln!(out, "*STEP\n*FREQUENCY\n{}\n*END STEP", modes(model));
+            fillers(&mut out, model, &mut element);
+            let _ = writeln!(out, "*STEP\n*FREQUENCY\n{}\n*END STEP", model.modes);
         }
     }
     out
@@ -154,6 +149,32 @@ fn constraints(out: &mut String, model: &Model) {
     }
     for (node, d) in &model.held {
         let _ = writeln!(out, "{}, {}, {}", node + 1, d + 1, d + 1);
+    }
+}
+
+/// Writes nodes that are not part of the arm, as many as the solver for frequencies lacks equations. A model of hinges
+/// alone has one equation for each hinge. `element` is the number of the last element of the deck.
+fn fillers(out: &mut String, model: &Model, element: &mut usize) {
+    let missing = match model.solids.is_empty() {
+        false => 0,
+        true => (EQUATIONS_PER_MODE * model.modes).saturating_sub(model.hinges.len()),
+    };
+    if missing > 0 {
+        let _ = writeln!(
+            out,
+            "** not of the arm: {missing} nodes at 160 kHz, because the solver needs {EQUATIONS_PER_MODE} equations per frequency"
+        );
+    }
+    for node in (model.nodes_m.len()..).take(missing) {
+        *element += 1;
+        let _ = writeln!(
+            out,
+            "*NODE, NSET=ALL\n{}, 0, 0, 0\n*ELEMENT, TYPE=MASS, ELSET=MASS{element}\n{element}, {}\n*MASS, ELSET=MASS{element}\n1",
+            node + 1,
+            node + 1
+        );
+        spring(out, element, node, 1, FILLER_N_PER_M);
+        let _ = writeln!(out, "*BOUNDARY\n{}, 2, 3", node + 1);
     }
 }
 

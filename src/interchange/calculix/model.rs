@@ -20,6 +20,9 @@ use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
 /// Coefficients of an equation below this value are dropped as rounding errors.
 const ROUNDING: f64 = 1e-12;
+/// Largest distance of the point masses that stand for a body with inertia and without mass \[m\]. Farther ones would
+/// have less mass, but the springs that hold them to the ground would hold the body.
+const FAR_M: f64 = 10.0;
 
 /// A term of an equation, or a load: index of the node, direction (0 to 2), coefficient.
 pub(crate) type Term = (usize, usize, f64);
@@ -67,6 +70,8 @@ pub(crate) struct Model {
     pub loads: Vec<Term>,
     /// Index of the node at the tip.
     pub tip: usize,
+    /// Number of natural frequencies to compute.
+    pub modes: usize,
     /// Names of elements with an inertia tensor that no solid can have, so that no point masses can represent this
     /// tensor.
     pub impossible: Vec<String>,
@@ -121,6 +126,10 @@ pub(crate) fn model(snapshot: &Snapshot) -> Model {
     let tip = builder.tied(posed.tip_m);
     builder.model.tip = tip;
     builder.tip_load(tip, &posed.tip_force_n, &posed.tip_moment_nm);
+    builder.model.modes = match builder.model.hinges.is_empty() && builder.model.solids.is_empty() {
+        true => 0,
+        false => snapshot.frequencies_hz().len(),
+    };
     builder.model
 }
 
@@ -170,6 +179,9 @@ impl Builder<'_> {
         for linkage in linkages {
             if let Some(driver) = self.model.hinges.iter().find(|hinge| hinge.name == linkage.driver) {
                 self.region.hinges.push((driver.node, passive.twists[0] * linkage.factor));
+                if passive.torque_nm != 0.0 {
+                    self.model.loads.push((driver.node, 0, passive.torque_nm * linkage.factor));
+                }
             }
         }
     }
@@ -184,19 +196,23 @@ impl Builder<'_> {
     fn rigid(&mut self, mass_kg: f64, cg_m: &Vector3<f64>, inertia_kgm2: &Matrix3<f64>, name: &str) {
         for (at_m, kg) in self.points(mass_kg, cg_m, inertia_kgm2, name) {
             let node = self.tied(at_m);
-            self.point_mass(node, kg);
+            self.point_mass(node, kg, mass_kg > 0.0);
         }
     }
 
-    fn point_mass(&mut self, node: usize, mass_kg: f64) {
+    /// Adds a point mass. Those of a body without mass, which has inertia alone, have no weight.
+    fn point_mass(&mut self, node: usize, mass_kg: f64, has_weight: bool) {
         self.model.masses.push((node, mass_kg));
+        if !has_weight {
+            return;
+        }
         let weight_n = self.down * (mass_kg * self.snapshot.structure.gravity_m_s2);
         let loads = (0..3).filter(|d| weight_n[*d] != 0.0).map(|d| (node, d, weight_n[d]));
         self.model.loads.extend(loads);
     }
 
     /// Point masses that together have the mass, centre of gravity and inertia of a body: one point, or two on each
-    /// principal axis.
+    /// principal axis. Those of a body without mass are so far away that they have little.
     fn points(
         &mut self,
         mass_kg: f64,
@@ -204,12 +220,13 @@ impl Builder<'_> {
         inertia_kgm2: &Matrix3<f64>,
         name: &str,
     ) -> Vec<(Vector3<f64>, f64)> {
-        if mass_kg == 0.0 {
-            return Vec::new();
-        }
         if inertia_kgm2.amax() == 0.0 {
-            return vec![(*cg_m, mass_kg)];
+            return if mass_kg == 0.0 { Vec::new() } else { vec![(*cg_m, mass_kg)] };
         }
+        let mass_kg = match mass_kg == 0.0 {
+            true => 1.5 * inertia_kgm2.trace() / FAR_M.powi(2),
+            false => mass_kg,
+        };
         let eigen = SymmetricEigen::new(*inertia_kgm2);
         let sum: f64 = eigen.eigenvalues.sum();
         if (0..3).any(|i| sum - 2.0 * eigen.eigenvalues[i] < -ROUNDING.sqrt() * sum) {
@@ -289,7 +306,7 @@ impl Builder<'_> {
                 s if s == last => self.tie(node),
                 s => self.average(node, link.first, &link.mesh.stations[s]),
             }
-            self.point_mass(node, kg);
+            self.point_mass(node, kg, body.mass_kg > 0.0);
         }
     }
 

@@ -1,0 +1,50 @@
+//! Where in a URDF file something is that the parser of the file refuses without a place.
+
+/// Attributes of a URDF whose values are numbers, separated by spaces.
+const NUMBERS: [&str; 17] = [
+    "xyz",
+    "rpy",
+    "value",
+    "ixx",
+    "ixy",
+    "ixz",
+    "iyy",
+    "iyz",
+    "izz",
+    "lower",
+    "upper",
+    "effort",
+    "velocity",
+    "multiplier",
+    "offset",
+    "friction",
+    "damping",
+];
+
+/// The first attribute of numbers that holds something else, with its line: `xyz="0,5 0 0"`.
+pub(super) fn no_numbers(text: &str) -> Option<(usize, String)> {
+    text.lines().enumerate().find_map(|(at, line)| {
+        let wrong = NUMBERS.iter().find_map(|key| {
+            let value = value_of(line, key)?;
+            let is_wrong = value.split_whitespace().any(|number| number.parse::<f64>().is_err());
+            is_wrong.then(|| format!("{key}=\"{value}\""))
+        });
+        wrong.map(|wrong| (at + 1, wrong))
+    })
+}
+
+/// The value of an attribute in a line; `None` if the line has no such attribute.
+fn value_of<'t>(line: &'t str, key: &str) -> Option<&'t str> {
+    let (at, _) = line.match_indices(key).find(|(at, _)| {
+        let begins = line[..*at].chars().next_back().is_some_and(char::is_whitespace);
+        begins && line[at + key.len()..].trim_start().starts_with('=')
+    })?;
+    let rest = line[at + key.len()..].trim_start().strip_prefix('=')?.trim_start();
+    let quote = rest.chars().next().filter(|c| matches!(c, '"' | '\''))?;
+    rest[1..].split(quote).next()
+}
+
+/// The line in which the robot begins.
+pub(super) fn line_of_robot(text: &str) -> Option<usize> {
+    text.lines().position(|line| line.contains("<robot")).map(|at| at + 1)
+}
