@@ -3,6 +3,7 @@
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
 use super::manifest::{MANIFESTS, hash, listed};
+use super::result_folder::complete;
 use super::schema::FILES;
 use crate::arm::case_keys::CASE;
 use crate::arm::{Arm, DrivenJoint, Motion, read_arm, read_arm_document, read_load_cases};
@@ -89,6 +90,12 @@ fn read_json(path: &Path) -> Option<Value> {
 }
 
 fn look(place: PathBuf, catalogs: &Catalogs) -> Found {
+    // a result whose writer died is completed first, as every reader does
+    if place.is_dir()
+        && let Err(failure) = complete(&place)
+    {
+        return Found { place, what: "unknown", outcome: Err(Problem::Unreadable(failure.to_string())) };
+    }
     let (what, outcome) =
         if place.is_dir() { look_at_folder(&place, catalogs) } else { look_at_file(&place, catalogs) };
     Found { place, what, outcome }
