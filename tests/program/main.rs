@@ -40,5 +40,6 @@ mod shards;
 mod slurm;
 mod starters;
 mod study_effects;
+mod survives;
 mod whole_results;
 mod words;
