@@ -18,8 +18,8 @@ const LONGEST_LINE: u64 = 1 << 20;
 pub(super) struct Begun {
     /// Folder of the shard.
     pub dir: PathBuf,
-    /// Number of the shard, and number of all shards; `None` if neither the state nor the name of the folder says it.
-    pub shard: Option<Shard>,
+    /// Number of the shard, and number of all shards.
+    pub shard: Shard,
     /// Whether a process is at work on it now.
     pub is_running: bool,
 }
@@ -35,8 +35,11 @@ pub(super) fn begun_in(folder: &Path, depth: usize) -> Result<Vec<Begun>, Failur
     }
     let state = unfinished_in(folder, "search");
     let is_running = is_being_written(folder);
-    if is_running || state.is_file() {
-        let shard = shard_of_state(&state).or_else(|| shard_of_name(folder));
+    // a folder of another search has neither, and may have shards in it
+    let shard = shard_of_state(&state).or_else(|| shard_of_name(folder));
+    if let Some(shard) = shard
+        && (is_running || state.is_file())
+    {
         return Ok(vec![Begun { dir: folder.to_path_buf(), shard, is_running }]);
     }
     let mut out = Vec::new();
@@ -65,11 +68,10 @@ fn shard_of_name(folder: &Path) -> Option<Shard> {
 impl Begun {
     /// A line of the list of shards.
     pub(super) fn to_text(&self) -> String {
-        let name = self.shard.map_or("?".into(), |shard| format!("{}/{}", shard.number, shard.of));
         let what = match self.is_running {
             true => "is running",
             false => "was stopped; the same command goes on from its state",
         };
-        format!("{name:>8}  {what}  {}\n", self.dir.display())
+        format!("{:>6}/{}  {what}  {}\n", self.shard.number, self.shard.of, self.dir.display())
     }
 }

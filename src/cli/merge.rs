@@ -217,7 +217,7 @@ pub(super) fn status(args: &StatusArgs) -> Result<String, Failure> {
         ));
     }
     out.push_str(&lines);
-    let running: Vec<Shard> = begun.iter().filter(|b| b.is_running).filter_map(|b| b.shard).collect();
+    let running: Vec<Shard> = begun.iter().filter(|b| b.is_running).map(|b| b.shard).collect();
     let is_running = |number: u32| running.contains(&Shard { number, of: shards.of });
     let missing = shards.missing_but(is_running);
     if !missing.is_empty() {

@@ -203,8 +203,9 @@ fn in_lines(say: impl Fn(Duration)) -> impl FnMut(Duration) {
 
 fn visited_line(total: u128, visited: u64, elapsed: Duration) -> String {
     let (done, total, elapsed_s) = (visited as f64, total as f64, elapsed.as_secs_f64());
-    let so_far =
-        format!("{elapsed_s:.0} s: {done:.3e} of {total:.3e} designs ({:.0} %)", 100.0 * done / total);
+    // a shard of a small study may have no designs
+    let percent = if total > 0.0 { 100.0 * done / total } else { 100.0 };
+    let so_far = format!("{elapsed_s:.0} s: {done:.3e} of {total:.3e} designs ({percent:.0} %)");
     if visited == 0 || elapsed_s == 0.0 {
         return so_far;
     }

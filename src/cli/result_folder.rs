@@ -225,8 +225,9 @@ fn roll_forward(folder: &Path) -> io::Result<()> {
             |folder: &Path| Earlier::read(folder, manifest).map_err(|e| io::Error::other(e.to_string()));
         let (new, old) = (read(&ready)?, read(folder)?);
         let moved: Vec<&String> = new.names().filter(|name| is_there(&ready.join(name))).collect();
+        new.names().try_for_each(|name| refuse_strange_parents(&ready, name))?;
         for name in moved.iter().copied().chain([&manifest.to_string()]) {
-            refuse_strange_parents(&ready, name).and_then(|()| refuse_strange_parents(folder, name))?;
+            refuse_strange_parents(folder, name)?;
             refuse_link(&ready.join(name)).map_err(|e| io::Error::other(e.to_string()))?;
         }
         let mut changed = BTreeSet::new();

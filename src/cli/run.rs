@@ -207,7 +207,7 @@ pub(super) fn run(
         let useless = args.options_of_a_search();
         if !useless.is_empty() {
             return Err(Failure::Usage(format!(
-                "{} is computed without a search, so {} mean nothing there; leave them away",
+                "{} is computed without a search; options that mean nothing there: {}; leave them away",
                 args.study,
                 useless.join(", ")
             )));

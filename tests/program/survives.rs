@@ -56,7 +56,7 @@ fn unfinished_work_is_not_reached_over_links() {
     let here = with_study();
     let victim = here.path().join("victim");
     fs::create_dir_all(victim.join("next")).expect("made");
-    let names = ["front.svg", "next/keep.txt", "mine.txt"];
+    let names = ["pick-lightest-arm.svg", "next/keep.txt", "mine.txt"];
     names.iter().for_each(|name| fs::write(victim.join(name), "mine").expect("written"));
     let untouched = |what: &str| {
         names.iter().for_each(|n| assert_eq!(fs::read(victim.join(n)).expect(what), b"mine", "{what}"));
