@@ -15,7 +15,7 @@ const EXHAUSTIVE: u32 = 24;
 const EXACT: u32 = 8;
 
 /// A study of two links and two joints with so many walls of each tube; its designs are visited in a second or so.
-pub(crate) fn study(name: &str, walls: u32) -> String {
+fn study(name: &str, walls: u32) -> String {
     let tube = |from: u32| -> Value {
         let walls: Vec<f64> = (0..walls).map(|n| 2.0 + 0.01 * f64::from(n)).collect();
         json!({"materials": ["Structural steel S355", "Aluminium 6061-T6"],
