@@ -6,15 +6,14 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let mut log = Log::default();
+    let mut log = Log::asked_by(std::env::args_os());
     let done = match Cli::try_parse() {
         Ok(cli) => {
             log = cli.log();
             without_panic(cli).and_then(|answer| print(&answer.text).map(|()| answer.exit))
         }
         Err(asked) if asked.use_stderr() => {
-            // wrong usage; if standard error cannot be written, the exit code is all that the user gets
-            let _ = asked.print();
+            log.wrong_usage(&asked);
             return ExitCode::from(Exit::Usage.code());
         }
         // help and version

@@ -7,6 +7,7 @@ use super::effect::channel::Channel;
 use super::effect::entry::Effect;
 use super::effect::servo_compliance;
 use super::element_keys::{read_axis, read_coupling, read_name};
+use super::element_names::check_names;
 use super::extras::read_extras;
 use super::file_keys::{ARM, EFFECT, JOINT, LINK, MATERIAL};
 use super::joint_law::{Curve, Windup};
@@ -14,7 +15,6 @@ use super::keys::WINDUP;
 use super::link_file::{DEFAULT_POISSON, NamedMaterial};
 use super::load::vector;
 use super::pieces::{elements_of, read_links};
-use super::pose::Motion;
 use super::prismatic::Prismatic;
 use super::prismatic_keys::PRISMATIC;
 use super::section::LinkMaterial;
@@ -438,37 +438,6 @@ fn check_effects(arm: &Arm, root: &Object) -> Option<()> {
         for fault in effect.faults(&structure) {
             sound = false;
             node.fault_below::<()>(&fault.field, fault.problem, &fault.hint);
-        }
-    }
-    sound.then_some(())
-}
-
-fn check_names(arm: &Arm, root: &Object) -> Option<()> {
-    let mut sound = true;
-    let names: Vec<&str> = arm.chain.iter().map(Element::name).collect();
-    let items = root.required("chain")?.array()?;
-    let chain: Vec<&Node> = items.iter().flat_map(|n| std::iter::repeat_n(n, elements_of(n))).collect();
-    for (i, name) in names.iter().enumerate() {
-        if names[..i].contains(name) {
-            chain[i]
-                .fault::<()>(format!("the name \"{name}\" is taken"), "give every element a name of its own");
-            sound = false;
-        }
-    }
-    let driven: Vec<String> = arm
-        .driven_joints()
-        .into_iter()
-        .filter(|joint| joint.motion == Motion::Turns)
-        .map(|joint| joint.name)
-        .collect();
-    for (element, node) in arm.chain.iter().zip(&chain) {
-        let Element::Joint(Joint { coupled: Some(terms), .. }) = element else { continue };
-        for (name, _) in terms.iter().filter(|(name, _)| !driven.contains(name)) {
-            node.fault::<()>(
-                format!("is coupled to \"{name}\", which is no driven joint that turns"),
-                &format!("driven joints: {}", driven.join(", ")),
-            );
-            sound = false;
         }
     }
     sound.then_some(())

@@ -15,6 +15,7 @@ pub(crate) mod body;
 pub(crate) mod case_keys;
 pub mod effect;
 pub(crate) mod element_keys;
+pub(crate) mod element_names;
 pub(crate) mod extras;
 pub(crate) mod file;
 pub(crate) mod file_keys;

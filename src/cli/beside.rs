@@ -2,6 +2,7 @@
 //! one fails.
 
 use super::manifest::Files;
+use super::stop::stop_if_wanted;
 use super::write::say;
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -22,6 +23,7 @@ impl Beside {
         // `make` only reads the results of the search, so a panic leaves nothing half changed behind
         let made = catch_unwind(AssertUnwindSafe(|| {
             fail_if_wanted(what);
+            stop_if_wanted(what);
             make()
         }));
         made.map_err(|panic| self.missing.push(format!("{what}: {}", words_of(&*panic)))).ok()

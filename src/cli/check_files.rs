@@ -4,6 +4,7 @@ use super::check_kinds::{kind_of, missing_keys, table_of};
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
 use super::manifest::{MANIFESTS, hash, listed};
+use super::result_folder::complete;
 use crate::arm::{Arm, DrivenJoint, Motion, read_arm, read_arm_document, read_load_cases};
 use crate::catalog::Catalogs;
 use crate::catalog::schema::CatalogFile;
@@ -90,6 +91,12 @@ fn read_json(path: &Path) -> Option<Value> {
 }
 
 fn look(place: PathBuf, catalogs: &Catalogs) -> Found {
+    // a result whose writer died is completed first, as every reader does
+    if place.is_dir()
+        && let Err(failure) = complete(&place)
+    {
+        return Found { place, what: "unknown", outcome: Err(Problem::Unreadable(failure.to_string())) };
+    }
     let (what, outcome) =
         if place.is_dir() { look_at_folder(&place, catalogs) } else { look_at_file(&place, catalogs) };
     Found { place, what, outcome }

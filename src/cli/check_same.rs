@@ -1,12 +1,15 @@
 //! Compares two folders of results, without the numbers that depend on the time and on the machine.
 
 use super::failure::Failure;
-use super::manifest::SHARD;
+use super::manifest::{MANIFESTS, RUN, SHARD, VERDICT};
+use super::result_folder::complete;
+use crate::report::whole_file::folder_of;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Keys of run.json that differ from run to run: times, the machine, and the hashes of files that contain times.
+/// Keys of run.json and shard.json that differ from run to run: times, the machine, and the hashes of files that contain
+/// times.
 const OF_A_RUN: [&str; 5] = ["elapsed_s", "designs_per_s", "threads", "platform", "files"];
 /// Marks around the text in summary.md and report.html that states how long a run took. The text between the marks is
 /// left out of the comparison, because it differs from run to run.
@@ -19,10 +22,16 @@ const COMMANDS: [&str; 5] =
 /// Compares the folders of results `a` and `b`. If both results are the same, returns a sentence that says so.
 ///
 /// # Errors
-/// The folders differ, with the names of the files that differ; or one of them cannot be read.
+/// The folders differ, with the names of the files that differ; or one of them cannot be read, or has no files.
 pub(super) fn same(a: &Path, b: &Path) -> Result<String, Failure> {
+    complete(a).and_then(|()| complete(b))?;
     let names = files_of(a)?;
     let others = files_of(b)?;
+    for (folder, names) in [(a, &names), (b, &others)] {
+        if names.is_empty() {
+            return Err(Failure::File(format!("{} has no files to compare", folder.display())));
+        }
+    }
     let mut faults = Vec::new();
     for name in names.union(&others) {
         match (names.contains(name), others.contains(name)) {
@@ -43,11 +52,12 @@ pub(super) fn same(a: &Path, b: &Path) -> Result<String, Failure> {
     }
 }
 
-/// Names of all files of a folder and of the folders in it. Names that begin with a dot are left out. Folders of
-/// shards are left out too, because each is a result by itself.
+/// Names of all files of a folder and of the folders in it. Names that begin with a dot are left out. In a folder that
+/// has a result, folders of shards are left out too, because each is a result by itself.
 fn files_of(folder: &Path) -> Result<BTreeSet<String>, Failure> {
     let mut names = BTreeSet::new();
     let mut open = vec![PathBuf::new()];
+    let is_result = MANIFESTS.iter().any(|manifest| folder.join(manifest).is_file());
     while let Some(inside) = open.pop() {
         let here = folder.join(&inside);
         for entry in fs_err::read_dir(&here).map_err(|e| Failure::File(e.to_string()))? {
@@ -57,7 +67,7 @@ fn files_of(folder: &Path) -> Result<BTreeSet<String>, Failure> {
                 continue;
             }
             match entry.path().is_dir() {
-                true if entry.path().join(SHARD).is_file() => {}
+                true if is_result && entry.path().join(SHARD).is_file() => {}
                 true => open.push(name),
                 false => drop(names.insert(name.to_string_lossy().into_owned())),
             }
@@ -69,16 +79,19 @@ fn files_of(folder: &Path) -> Result<BTreeSet<String>, Failure> {
 /// The bytes of the file `name`, without the parts that depend on the time, the machine and the name of the folder.
 fn neutral(folder: &Path, name: &str) -> Result<Vec<u8>, Failure> {
     let bytes = fs_err::read(folder.join(name)).map_err(|e| Failure::File(e.to_string()))?;
-    Ok(match name {
-        "run.json" => without_keys(bytes),
-        "summary.md" | "report.html" => without_timing(bytes, typed_as(folder).as_deref()),
+    let inside = folder_of(&folder.join(name));
+    // a folder of a campaign has results of studies in folders of their own
+    Ok(match Path::new(name).file_name().and_then(|name| name.to_str()) {
+        Some(RUN | SHARD) => without_keys(bytes, &OF_A_RUN),
+        Some(VERDICT) => without_keys(bytes, &["files"]),
+        Some("summary.md" | "report.html") => without_timing(bytes, typed_as(&inside).as_deref()),
         _ => bytes,
     })
 }
 
-fn without_keys(bytes: Vec<u8>) -> Vec<u8> {
+fn without_keys(bytes: Vec<u8>, keys: &[&str]) -> Vec<u8> {
     let Ok(Value::Object(mut run)) = serde_json::from_slice(&bytes) else { return bytes };
-    OF_A_RUN.iter().for_each(|key| drop(run.remove(*key)));
+    keys.iter().for_each(|key| drop(run.remove(*key)));
     Value::Object(run).to_string().into_bytes()
 }
 

@@ -3,10 +3,10 @@
 use super::compare_remarks::{remarks, said_by};
 use super::failure::Failure;
 use super::finished::front_of_material;
+use super::own_files::write_own;
 use super::result_folder::complete;
 use super::results::Results;
 use super::values::number_list;
-use super::write::write_all;
 use crate::report::compare::comparison::{Comparison, compare};
 use crate::report::compare::contender::Contender;
 use crate::report::compare::moved::moved;
@@ -82,7 +82,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<String, Failure> {
     let mut out = if args.json { json_text(&comparison) } else { comparison.to_text() };
     if let Some(dir) = &args.out {
         let inputs: Vec<&Path> = args.results.iter().map(PathBuf::as_path).collect();
-        write_all(dir, &files(&comparison, &loaded.contenders), &inputs)?;
+        write_own(dir, &files(&comparison, &loaded.contenders), &inputs)?;
         if !args.json {
             out.push_str(&format!(
                 "\nwritten to {}: compare.md, compare.csv, compare.svg, report.html\n",

@@ -3,8 +3,8 @@
 
 use super::failure::Failure;
 use super::finished::{catalogs_hash, pretty};
+use super::own_files::write_own;
 use super::results::Results;
-use super::write::write_all;
 use crate::arm::Arm;
 use crate::arm::load::LoadCase;
 use crate::catalog::Catalogs;
@@ -73,7 +73,7 @@ pub(super) fn run(args: &DesignArgs, catalogs: &Catalogs) -> Result<String, Fail
     let dir =
         args.out.clone().unwrap_or_else(|| args.results.join(format!("design-{}", file_name(&args.id))));
     let cases: Vec<Value> = cases.iter().map(|case| case.to_json(&arm.driven_joints())).collect();
-    write_all(
+    write_own(
         &dir,
         &[("arm.json".into(), pretty(&arm.to_json())), ("cases.json".into(), pretty(&json!(cases)))],
         &[],

@@ -3,9 +3,9 @@
 use super::design::resolve_design;
 use super::failure::Failure;
 use super::finished::pretty;
+use super::own_files::write_own;
 use super::pose_flags::PoseArgs;
 use super::values::{choice, numbers};
-use super::write::write_all;
 use crate::arm::file::read_arm;
 use crate::arm::load::{LoadCase, Payload, read_load_cases};
 use crate::arm::{Arm, JointModel, LinkModel};
@@ -87,7 +87,7 @@ pub(super) fn run(args: &ExportArgs, catalogs: &Catalogs) -> Result<String, Fail
     let mut files = exported.files.clone();
     files.push(("export.json".into(), pretty(&exported.to_json(&asked))));
     let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
-    write_all(&args.out, &files, &inputs)?;
+    write_own(&args.out, &files, &inputs)?;
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
     Ok(format!(
         "{}, case \"{}\"\n{}written to {}: {}\n",

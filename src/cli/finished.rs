@@ -7,6 +7,7 @@ use super::exit::Exit;
 use super::failure::Failure;
 use super::manifest::{Files, RUN};
 use super::progress::Progress;
+use super::stop::stop_if_wanted;
 use super::supplements::{Found, SupplementArgs};
 use crate::arm::effect::entry::Effect;
 use crate::catalog::Catalogs;
@@ -61,6 +62,8 @@ pub(super) struct Written {
     pub status: Status,
     /// Exit status with which the program ends.
     pub exit: Exit,
+    /// Whether only the front was written, because the user stopped the program.
+    pub is_front_only: bool,
     /// One line on how long the search took.
     pub timing: String,
     /// Optimality gap that was proved, as a fraction; 0 means that the front is whole. `None` for an exhaustive search,
@@ -78,7 +81,7 @@ pub(super) struct Written {
 }
 
 /// Text for `run.json` while only the front is written: the names of all files that are still missing.
-const NOTHING_ELSE: &str =
+pub(super) const NOTHING_ELSE: &str =
     "what goes with the front: budget.csv, summary.md, report.html, plots, ties and supplements";
 
 /// Name of the file with the front of one material. `file` is the short name of the material.
@@ -177,8 +180,10 @@ impl Finished<'_> {
         first.push((RUN.into(), pretty(&self.run_json(&summary, &[], &[NOTHING_ELSE.to_string()]))));
         let mut left_out = keep(&first)?;
         let (mut files, mut supplements, mut beside) = (first, Vec::new(), Beside::default());
+        stop_if_wanted("front");
         // a user who wants to stop gets the front at once, and nothing that takes longer
-        if !stop.load(Ordering::Relaxed) {
+        let is_front_only = stop.load(Ordering::Relaxed);
+        if !is_front_only {
             let (problem, catalogs) = (self.problem, self.catalogs);
             let budgets =
                 beside.make("budget.csv", || budgets(problem, self.whole, catalogs, &summary.overall));
@@ -203,6 +208,7 @@ impl Finished<'_> {
             terminal: terminal.unwrap_or_default() + &paragraphs,
             status: self.outcome.sweep.status,
             exit: Exit::Done,
+            is_front_only,
             timing: format!("{}\n", timing_words(&summary.facts)),
             gap: summary.facts.gap,
             is_whole: summary.facts.is_whole(),

@@ -7,7 +7,7 @@ use super::finished::catalogs_hash;
 use super::log::Log;
 use super::manifest::hash;
 use super::result_folder::{settle, unfinished_in};
-use super::search::stopped_by_signal;
+use super::stop::stopped_by_signal;
 use super::time_limit::time_limit;
 use super::unfinished::Unfinished;
 use crate::catalog::Catalogs;

@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use super::finished::pretty;
-use super::write::write_all;
+use super::own_files::write_own;
 use crate::catalog::Catalogs;
 use crate::input::json::{Document, Fault, Faults};
 use crate::interchange::given::{blank, read_given};
@@ -93,7 +93,7 @@ pub(super) fn run(args: &ImportArgs, catalogs: &Catalogs) -> Result<String, Fail
     }
     let inputs: Vec<_> =
         [Some(args.file.as_path()), args.stiffness.as_deref()].into_iter().flatten().collect();
-    write_all(&args.out, &files, &inputs)?;
+    write_own(&args.out, &files, &inputs)?;
     let out = args.out.display();
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
     let stiffness = stiffness.display();

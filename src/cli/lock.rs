@@ -2,6 +2,7 @@
 //! process ends, however it ends.
 
 use super::failure::Failure;
+use super::links::refuse_link;
 use std::fs::{File, TryLockError};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -18,10 +19,11 @@ impl Lock {
     /// taken over.
     ///
     /// # Errors
-    /// Another process has the lock, or the file cannot be written.
+    /// Another process has the lock, the file cannot be written, or it is a symbolic link.
     pub(super) fn take(path: &Path, folder: &Path) -> Result<Self, Failure> {
         let failure = |e: &std::io::Error| Failure::file(path, "write", e);
         loop {
+            refuse_link(path)?;
             let file = File::options()
                 .create(true)
                 .truncate(false)
@@ -36,7 +38,7 @@ impl Lock {
                 Err(TryLockError::Error(_)) => {}
             }
             // the process that had the lock may have removed the file after it was opened here and before it was
-            // locked
+            // locked, or another one may have put a link there; nothing is written before this is known
             if !is_the_file_at(&file, path) {
                 continue;
             }
@@ -45,6 +47,12 @@ impl Lock {
             let told = lock.file.set_len(0).and_then(|()| lock.file.write_all(text.as_bytes()));
             return told.map(|()| lock).map_err(|e| failure(&e));
         }
+    }
+
+    /// Whether a process has the lock that is the file at `path`. The lock is not taken.
+    pub(super) fn is_held(path: &Path) -> bool {
+        // a lock that is shared is refused exactly while a process has it for itself
+        File::open(path).is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
     }
 }
 
@@ -71,10 +79,10 @@ fn held(path: &Path, folder: &Path) -> Failure {
 fn is_the_file_at(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
     let place = |m: &std::fs::Metadata| (m.dev(), m.ino());
-    matches!((file.metadata(), std::fs::metadata(path)), (Ok(a), Ok(b)) if place(&a) == place(&b))
+    matches!((file.metadata(), std::fs::symlink_metadata(path)), (Ok(a), Ok(b)) if place(&a) == place(&b))
 }
 
 #[cfg(not(unix))]
 fn is_the_file_at(_: &File, path: &Path) -> bool {
-    path.exists()
+    path.exists() && !path.is_symlink()
 }

@@ -5,6 +5,7 @@ use super::failure::Failure;
 use super::write::say;
 use clap::ValueEnum;
 use serde_json::{Value, json};
+use std::ffi::OsString;
 use std::io::IsTerminal;
 
 /// The form of messages and progress.
@@ -34,6 +35,26 @@ impl Log {
     /// A log in the given form. If `is_quiet`, it prints errors only.
     pub(super) fn new(form: LogForm, is_quiet: bool) -> Self {
         Self { form, is_quiet }
+    }
+
+    /// The log that the words of a command line ask for, also if the command line is wrong otherwise.
+    pub fn asked_by(words: impl IntoIterator<Item = OsString>) -> Self {
+        let words: Vec<OsString> = words.into_iter().take_while(|word| word != "--").collect();
+        let is_json = words.iter().any(|word| word == "--log=json")
+            || words.windows(2).any(|pair| pair[0] == "--log" && pair[1] == "json");
+        Self::new(if is_json { LogForm::Json } else { LogForm::Text }, false)
+    }
+
+    /// Prints why a command line is wrong.
+    pub fn wrong_usage(self, why: &clap::Error) {
+        match self.form {
+            // if standard error cannot be written, the exit code is all that the user gets
+            LogForm::Text => drop(why.print()),
+            LogForm::Json => {
+                let text = why.render().to_string();
+                self.error(&Failure::Usage(text.trim().trim_start_matches("error: ").into()));
+            }
+        }
     }
 
     /// Whether progress is shown as a bar that is redrawn in place. Only a terminal can do this.

@@ -2,16 +2,18 @@
 //! found.
 
 use super::asked::Asked;
-use super::exit::{Answer, Exit};
+use super::begun::{Begun, begun_in};
+use super::exit::Answer;
 use super::failure::Failure;
 use super::finished::{Finished, FoundExactly, Written, catalogs_hash, count};
 use super::manifest::{RUN, SHARD};
 use super::result_folder::ResultFolder;
 use super::run::planned;
-use super::search::stopped_by_signal;
 use super::shard_files::{
-    CANDIDATES, COMMON, STUDY, folder_of, read_candidates_of, read_manifest, shards_in_all,
+    CANDIDATES, COMMON, DEEPEST, STUDY, folder_of, read_candidates_of, read_manifest, shards_in,
+    shards_in_all,
 };
+use super::stop::{refuse_if_stopped, stopped_by_signal};
 use super::supplements::SupplementArgs;
 use crate::catalog::Catalogs;
 use crate::exact::outcome::FoundInShard;
@@ -50,7 +52,8 @@ pub(crate) struct MergeArgs {
     supplements: SupplementArgs,
 }
 
-/// Lists the shards in a folder, and the commands that make those that are missing.
+/// Lists the shards in a folder: those that are finished, running or stopped, and the commands that make the missing
+/// ones. The exit code is 0 also if some are missing; merge ends with 10 then, and writes nothing.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: armwright status parts")]
 pub(crate) struct StatusArgs {
@@ -108,7 +111,7 @@ pub(super) fn merge(
         dir.display(),
         written.timing
     );
-    Ok(Answer { text, exit: Exit::Done })
+    Ok(Answer { text, exit: written.exit })
 }
 
 /// Everything that is needed to join shards, except the shards themselves.
@@ -141,7 +144,9 @@ impl Joining<'_> {
             *self;
         let extent = Extent { deadline: None, gap: shards.gap(), near: args.supplements.slack() };
         let found = shards.found(study)?;
-        let found = joined_exactly(study, catalogs, &found, stopped_by_signal(), extent)
+        let found = joined_exactly(study, catalogs, &found, stopped_by_signal(), extent);
+        refuse_if_stopped()?;
+        let found = found
             .map_err(|why| Failure::Check(format!("the shards do not cover the designs once: {why}")))?;
         self.refuse_nothing(found.outcome.sweep.status)?;
         let ExactStudy { study: part, outcome, boxes, gap, near, ties_listed } = &found;
@@ -168,14 +173,29 @@ impl Joining<'_> {
     }
 
     fn keep(&self, finished: &Finished) -> Result<Written, Failure> {
+        refuse_if_stopped()?;
         let folder = ResultFolder::open(self.dir, RUN, &planned(&self.asked.study))?;
-        finished.keep(&self.args.supplements, stopped_by_signal(), &|files| folder.publish(files))
+        let written =
+            finished.keep(&self.args.supplements, stopped_by_signal(), &|files| folder.publish(files))?;
+        Ok(written.after_search())
     }
 }
 
 /// Executes `status`.
 pub(super) fn status(args: &StatusArgs) -> Result<String, Failure> {
-    let shards = Shards::read(&args.shards)?;
+    let (mut finished, mut begun) = (Vec::new(), Vec::new());
+    for folder in &args.shards {
+        let here = begun_in(folder, DEEPEST)?;
+        if here.is_empty() || !shards_in(folder, DEEPEST)?.is_empty() {
+            finished.push(folder.clone());
+        }
+        begun.extend(here);
+    }
+    let lines: String = begun.iter().map(Begun::to_text).collect();
+    if finished.is_empty() {
+        return Ok(format!("no shard is finished yet\n{lines}"));
+    }
+    let shards = Shards::read(&finished)?;
     let mut out = format!(
         "{} of {} shards of {} designs\n",
         shards.by_number.len(),
@@ -196,7 +216,10 @@ pub(super) fn status(args: &StatusArgs) -> Result<String, Failure> {
             found.dir.display()
         ));
     }
-    let missing = shards.missing();
+    out.push_str(&lines);
+    let running: Vec<Shard> = begun.iter().filter(|b| b.is_running).map(|b| b.shard).collect();
+    let is_running = |number: u32| running.contains(&Shard { number, of: shards.of });
+    let missing = shards.missing_but(is_running);
     if !missing.is_empty() {
         out.push_str(&format!("missing; run\n  {}\n", missing.join("\n  ")));
     }
@@ -228,8 +251,14 @@ impl Shards {
 
     /// The commands that compute the missing shards.
     fn missing(&self) -> Vec<String> {
+        self.missing_but(|_| false)
+    }
+
+    /// The commands that compute the missing shards, without those whose number `is_left_out`.
+    fn missing_but(&self, is_left_out: impl Fn(u32) -> bool) -> Vec<String> {
         let Some(like) = self.by_number.values().next() else { return Vec::new() };
-        let numbers = (1..=self.of).filter(|number| !self.by_number.contains_key(number));
+        let is_missing = |number: &u32| !self.by_number.contains_key(number) && !is_left_out(*number);
+        let numbers = (1..=self.of).filter(is_missing);
         numbers.map(|number| like.command_of(number)).collect()
     }
 

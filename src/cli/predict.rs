@@ -1,8 +1,9 @@
 //! `armwright predict`: adds the value that the model predicts to every reading.
 
 use super::failure::Failure;
+use super::own_files::write_recognized;
 use super::result_folder::complete;
-use super::write::{say, write_file};
+use super::write::say;
 use crate::catalog::Catalogs;
 use crate::reconcile::predict_files::{Files, predict_files};
 use crate::report::whole_file::folder_of;
@@ -27,7 +28,7 @@ pub(crate) struct PredictArgs {
     /// The campaign.json that says how the readings were taken.
     #[arg(long, value_name = "FILE")]
     pub campaign: PathBuf,
-    /// File to write; default: standard output.
+    /// File to write; default: standard output. An earlier prediction is replaced, any other file is not.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
 }
@@ -47,8 +48,14 @@ pub(crate) fn run(args: &PredictArgs, catalogs: &Catalogs) -> Result<String, Fai
         say(&remark);
         return Ok(found.csv);
     };
-    let inputs = [&args.arm, &args.readings, &args.campaign].into_iter().chain(&found.other_arms);
+    let inputs = [&args.arm, &args.readings, &args.campaign].into_iter();
+    let inputs = inputs.chain(&found.other_arms).chain(&found.of_campaign);
     let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
-    write_file(out, found.csv.as_bytes(), &inputs)?;
+    let name = out.file_name().map(|name| name.to_string_lossy().into_owned());
+    let name = name.ok_or_else(|| Failure::Usage(format!("{} is no name of a file", out.display())))?;
+    // an earlier prediction has the same columns, and readings lack those of the model
+    let header = found.csv.lines().next().unwrap_or_default();
+    let is_prediction = |_: &str, there: &[u8]| there.starts_with(format!("{header}\n").as_bytes());
+    write_recognized(&folder_of(out), &[(name, found.csv.clone().into_bytes())], &inputs, is_prediction)?;
     Ok(format!("{remark}written to {}\n", out.display()))
 }

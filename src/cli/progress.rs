@@ -8,7 +8,7 @@ use crate::report::number::percent_rounded;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
 use std::fs::File;
-use std::io::Write;
+use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -17,6 +17,8 @@ use std::time::{Duration, Instant};
 const LOOK_EVERY: Duration = Duration::from_millis(50);
 /// Time between two lines of text that show the progress.
 const LINE_EVERY: Duration = Duration::from_secs(10);
+/// Largest number of bytes of a line of the record.
+const LONGEST_LINE: u64 = 4096;
 /// Time between two lines of the record. A line is added earlier if the optimality gap changes.
 const RECORD_EVERY: Duration = Duration::from_secs(1);
 
@@ -67,12 +69,19 @@ pub(super) struct Record {
 }
 
 impl Record {
-    /// Starts an empty record. An existing file of this name is replaced.
+    /// Opens a record. If `goes_on`, lines are added to an earlier record of this name. Otherwise it is replaced.
     ///
     /// # Errors
-    /// The file cannot be written.
-    pub(super) fn create(path: &Path) -> Result<Self, Failure> {
-        let file = File::create(path).map_err(|e| Failure::file(path, "create", &e))?;
+    /// The file cannot be written, or it is something else than a record.
+    pub(super) fn open(path: &Path, goes_on: bool) -> Result<Self, Failure> {
+        if !may_be_record(path).map_err(|e| Failure::file(path, "read", &e))? {
+            return Err(Failure::Usage(format!(
+                "{} is no record of progress and would be overwritten; choose another file for --progress",
+                path.display()
+            )));
+        }
+        let file = File::options().create(true).write(true).append(goes_on).truncate(!goes_on).open(path);
+        let file = file.map_err(|e| Failure::file(path, "create", &e))?;
         Ok(Self { path: path.to_path_buf(), file })
     }
 
@@ -87,6 +96,22 @@ impl Record {
             .write_all(format!("{line}\n").as_bytes())
             .map_err(|e| Failure::file(&self.path, "write", &e))
     }
+}
+
+/// Whether a record may be written to a path: nothing is there, or an earlier record, or something that is no regular
+/// file, such as a pipe.
+fn may_be_record(path: &Path) -> std::io::Result<bool> {
+    if !path.is_file() {
+        return Ok(true);
+    }
+    let mut first = String::new();
+    let read = BufReader::new(File::open(path)?.take(LONGEST_LINE)).read_line(&mut first);
+    let is_line = || {
+        let line: Value = serde_json::from_str(&first).unwrap_or_default();
+        ["elapsed_s", "designs", "boxes_open"].iter().all(|key| line.get(key).is_some())
+    };
+    // a first line that is not text is no line of a record
+    Ok(read.is_ok() && (first.is_empty() || is_line()))
 }
 
 /// Shows and records the progress of a search from its start.
@@ -178,8 +203,9 @@ fn in_lines(say: impl Fn(Duration)) -> impl FnMut(Duration) {
 
 fn visited_line(total: u128, visited: u64, elapsed: Duration) -> String {
     let (done, total, elapsed_s) = (visited as f64, total as f64, elapsed.as_secs_f64());
-    let so_far =
-        format!("{elapsed_s:.0} s: {done:.3e} of {total:.3e} designs ({:.0} %)", 100.0 * done / total);
+    // a shard of a small study may have no designs
+    let percent = if total > 0.0 { 100.0 * done / total } else { 100.0 };
+    let so_far = format!("{elapsed_s:.0} s: {done:.3e} of {total:.3e} designs ({percent:.0} %)");
     if visited == 0 || elapsed_s == 0.0 {
         return so_far;
     }

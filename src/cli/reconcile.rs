@@ -10,6 +10,7 @@ use super::manifest::{Files, VERDICT, hash, listed};
 use super::rerun::{CHANGES, Rerun, rerun};
 use super::result_folder::ResultFolder;
 use super::search::SearchArgs;
+use super::stop::unless_stopped;
 use super::write::refuse_inputs;
 use crate::catalog::Catalogs;
 use crate::reconcile::readings::campaign::Campaign;
@@ -24,6 +25,7 @@ use clap::Args;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Arguments of `reconcile`.
 #[derive(Debug, Args)]
@@ -93,7 +95,9 @@ pub(crate) fn run(
     {
         return Ok(text.into());
     }
-    let outcome = reconcile(&campaign);
+    let campaign = Arc::new(campaign);
+    let fitted = Arc::clone(&campaign);
+    let outcome = unless_stopped(move || reconcile(&fitted))?;
     let (mut files, terminal) = keep(&campaign, (&outcome, &hash_of_catalogs), &folder)?;
     let mut text = format!("{}{terminal}", narrow(&outcome.to_text()));
     let mut exit = Exit::Done;

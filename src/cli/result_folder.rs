@@ -7,6 +7,7 @@
 
 use super::exit::Exit;
 use super::failure::Failure;
+use super::links::{has_strange_parent, is_there, refuse_link, refuse_strange_parents};
 use super::lock::Lock;
 use super::manifest::{Earlier, Files, MANIFESTS, sealed};
 use super::unfinished::{ENDING, remove};
@@ -37,14 +38,15 @@ impl ResultFolder {
     /// is made if it is missing. Work that an earlier process left unfinished is completed or removed.
     ///
     /// # Errors
-    /// Another process writes the folder, the folder cannot be written, or it has files with some of the names
-    /// `planned` that are not part of an earlier result.
+    /// Another process writes the folder, the folder cannot be written, its unfinished work is reached over a symbolic
+    /// link, or it has files with some of the names `planned` that are not part of an earlier result.
     pub(super) fn open(
         folder: &Path,
         manifest: &'static str,
         planned: &[impl AsRef<str>],
     ) -> Result<Self, Failure> {
         let state = folder.join(STATE);
+        refuse_links(&state)?;
         create_folder(&state).map_err(|e| Failure::file(folder, "create", &e))?;
         // the value is made first, so that empty folders are removed again if anything fails from here on
         let mut out = Self { folder: folder.to_path_buf(), manifest, lock: None };
@@ -168,12 +170,19 @@ pub(super) fn unfinished_in(folder: &Path, name: &str) -> PathBuf {
     folder.join(STATE).join(format!("{name}{ENDING}"))
 }
 
+/// Whether a process is writing the folder at the moment.
+pub(super) fn is_being_written(folder: &Path) -> bool {
+    Lock::is_held(&folder.join(STATE).join(LOCK))
+}
+
 /// Completes a result whose writer died after the new result began to count. A reader calls this function first.
 ///
 /// # Errors
-/// Another process is writing the folder at the moment, or the folder cannot be written.
+/// Another process is writing the folder at the moment, the folder cannot be written, or its unfinished work is reached
+/// over a symbolic link.
 pub(super) fn complete(folder: &Path) -> Result<(), Failure> {
     let state = folder.join(STATE);
+    refuse_links(&state)?;
     let (mut waits, wait) = READER_WAITS;
     while state.join("ready").exists() {
         match Lock::take(&state.join(LOCK), folder) {
@@ -196,8 +205,15 @@ pub(super) fn complete(folder: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Refuses unfinished work that is reached over a symbolic link. `state` is the folder for it.
+fn refuse_links(state: &Path) -> Result<(), Failure> {
+    let inside = [LOCK, "next", "ready"].map(|name| state.join(name));
+    refuse_link(state).and_then(|()| inside.iter().try_for_each(|path| refuse_link(path)))
+}
+
 /// Moves the files of the new result to their places. Files that were moved before are not in `.armwright/ready` any
-/// more. Therefore the function can be interrupted at any point and repeated.
+/// more. Therefore the function can be interrupted at any point and repeated. Nothing is moved if a symbolic link would
+/// have to be followed.
 fn roll_forward(folder: &Path) -> io::Result<()> {
     let ready = folder.join(STATE).join("ready");
     if !ready.exists() {
@@ -208,8 +224,14 @@ fn roll_forward(folder: &Path) -> io::Result<()> {
         let read =
             |folder: &Path| Earlier::read(folder, manifest).map_err(|e| io::Error::other(e.to_string()));
         let (new, old) = (read(&ready)?, read(folder)?);
+        let moved: Vec<&String> = new.names().filter(|name| is_there(&ready.join(name))).collect();
+        new.names().try_for_each(|name| refuse_strange_parents(&ready, name))?;
+        for name in moved.iter().copied().chain([&manifest.to_string()]) {
+            refuse_strange_parents(folder, name)?;
+            refuse_link(&ready.join(name)).map_err(|e| io::Error::other(e.to_string()))?;
+        }
         let mut changed = BTreeSet::new();
-        for name in new.names().filter(|name| ready.join(name).exists()) {
+        for name in moved {
             let target = folder.join(name);
             create_folder(&folder_of(&target))?;
             rename(&ready.join(name), &target)?;
@@ -246,18 +268,6 @@ fn is_foreign(folder: &Path, name: &str, earlier: &Earlier, manifest: &str) -> b
     let path = folder.join(name);
     let is_folder = path.is_dir() && !path.is_symlink();
     has_strange_parent(folder, name) || is_folder || is_there(&path) && !earlier.has(name, manifest)
-}
-
-/// Whether the path of a file leads over something that is not a real folder, such as a symbolic link.
-fn has_strange_parent(folder: &Path, name: &str) -> bool {
-    let parents = Path::new(name).ancestors().skip(1).filter(|parent| !parent.as_os_str().is_empty());
-    let mut parents = parents.map(|parent| folder.join(parent));
-    parents.any(|parent| is_there(&parent) && (parent.is_symlink() || !parent.is_dir()))
-}
-
-/// Whether anything exists at a path; a broken symbolic link counts too.
-fn is_there(path: &Path) -> bool {
-    path.symlink_metadata().is_ok()
 }
 
 /// Removes a folder for unfinished work if it exists. Symbolic links in it are not followed.

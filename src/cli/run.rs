@@ -13,6 +13,7 @@ use super::result_folder::{ResultFolder, unfinished_in};
 use super::search::{SearchArgs, With, search};
 use super::shard::{run_shard, shard_of};
 use super::shard_files::{CANDIDATES, STUDY, folder_of};
+use super::stop::refuse_if_stopped;
 use super::supplements::{FILES, SupplementArgs};
 use super::write::{is_same_file, refuse_overwriting};
 use crate::catalog::Catalogs;
@@ -23,6 +24,7 @@ use crate::report::html::document::DocumentPage;
 use crate::report::html::render::PLOTS;
 use crate::report::section::Figure;
 use crate::report::table::Table;
+use crate::report::whole_file;
 use crate::report::words::{TERMINAL, wrap};
 use crate::search::sweep::{Shard, Status};
 use crate::study::definition::Study;
@@ -58,7 +60,8 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "KG", value_parser = mass_limit)]
     mass_max_kg: Option<f64>,
     /// Record the progress of the search in a file, a JSON object a line: elapsed_s, designs, gap, front_size,
-    /// boxes_open. There is a line every second and whenever the gap falls; null stands for what is not known
+    /// boxes_open. There is a line every second and whenever the gap falls; null stands for what is not known. A search
+    /// that goes on adds to its record; a file that is no record is not replaced
     #[arg(long, value_name = "FILE")]
     progress: Option<PathBuf>,
     /// Search part M of N of the designs only, and write what it found for `armwright merge`. The parts can run one
@@ -96,10 +99,7 @@ impl RunArgs {
     /// One of these files is an input and would be changed.
     fn planned(&self, dir: &Path, asked: &Asked) -> Result<Vec<String>, Failure> {
         let study = Path::new(&self.study);
-        let inputs = [Some(study), self.effects.as_deref()];
-        let inputs: Vec<&Path> = inputs.into_iter().flatten().collect();
-        let record = self.progress.as_slice();
-        refuse_overwriting(record, &inputs)?;
+        self.refuse_record_over_input()?;
         let own = dir.join("study.json");
         let is_same = is_same_file(study, &own);
         let stays = is_same && std::fs::read(&own).is_ok_and(|bytes| bytes == asked.text.as_bytes());
@@ -110,6 +110,48 @@ impl RunArgs {
             )));
         }
         Ok(planned(&asked.study).into_iter().filter(|name| !stays || name != "study.json").collect())
+    }
+
+    /// Refuses a record of progress in place of an input or of a file of a result.
+    ///
+    /// # Errors
+    /// The file for the record is such a file.
+    fn refuse_record_over_input(&self) -> Result<(), Failure> {
+        let inputs = [Some(Path::new(&self.study)), self.effects.as_deref()];
+        let inputs: Vec<&Path> = inputs.into_iter().flatten().collect();
+        refuse_overwriting(self.progress.as_slice(), &inputs)
+    }
+
+    /// The record of progress, if the user asks for one. `planned` are the names of the files that the run will write
+    /// to the folder `dir`, and `unfinished` is the state of a search that was stopped, if it is there.
+    ///
+    /// # Errors
+    /// The record would be in the place of another file, or cannot be written.
+    fn record(&self, dir: &Path, planned: &[String], unfinished: &Path) -> Result<Option<Record>, Failure> {
+        let Some(path) = &self.progress else { return Ok(None) };
+        let is_planned =
+            path.file_name().is_some_and(|name| planned.iter().any(|planned| name == planned.as_str()));
+        if is_planned && is_same_file(&whole_file::folder_of(path), dir) {
+            return Err(Failure::Usage(format!(
+                "{} is the place of a file of the result; choose another file for --progress",
+                path.display()
+            )));
+        }
+        let goes_on = unfinished.is_file() && !self.search.is_fresh();
+        Record::open(path, goes_on).map(Some)
+    }
+
+    /// The options that the user gives and that have no meaning for a study of the paper, which is not searched.
+    fn options_of_a_search(&self) -> Vec<&'static str> {
+        let own = [
+            ("--effects", self.effects.is_some()),
+            ("--mass-max-kg", self.mass_max_kg.is_some()),
+            ("--progress", self.progress.is_some()),
+            ("--shard", self.shard.is_some()),
+            ("--incumbents", !self.incumbents.is_empty()),
+        ];
+        let all = own.into_iter().chain(self.search.given()).chain(self.supplements.given());
+        all.filter(|(_, is_given)| *is_given).map(|(name, _)| name).collect()
     }
 
     /// Name of the folder of results if the user gives none. It names the study, the mass limit and whether there are
@@ -151,7 +193,7 @@ fn up_to_mass(
 /// Reads a mass limit \[kg\].
 fn mass_limit(text: &str) -> Result<f64, String> {
     let kg = text.parse::<f64>().ok().filter(|kg| kg.is_finite() && *kg > 0.0);
-    kg.ok_or_else(|| "a mass above zero, in kilograms".into())
+    kg.ok_or_else(|| "a finite mass above zero, in kilograms".into())
 }
 
 /// Runs `armwright run`: writes the result, and returns the text to print.
@@ -162,6 +204,14 @@ pub(super) fn run(
     log: Log,
 ) -> Result<Answer, Failure> {
     if NAMES.contains(&args.study.as_str()) {
+        let useless = args.options_of_a_search();
+        if !useless.is_empty() {
+            return Err(Failure::Usage(format!(
+                "{} is computed without a search; options that mean nothing there: {}; leave them away",
+                args.study,
+                useless.join(", ")
+            )));
+        }
         return run_paper(args, catalogs).map(Answer::from);
     }
     let asked = args.asked(catalogs)?;
@@ -170,12 +220,12 @@ pub(super) fn run(
     }
     let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(args.folder(&asked.study)));
     let planned = args.planned(&dir, &asked)?;
-    let record = args.progress.as_deref().map(Record::create).transpose()?;
     // if the folder cannot be written, the run fails now and not after the search
     let folder = ResultFolder::open(&dir, RUN, &planned)?;
+    let unfinished = &unfinished_in(&dir, "search");
+    let record = args.record(&dir, &planned, unfinished)?;
     let (how, supplements, record) = (&args.search, &args.supplements, record.as_ref());
     let keep = |files: &[(String, Vec<u8>)]| folder.publish(files);
-    let unfinished = &unfinished_in(&dir, "search");
     let with = With { catalogs, overlay, dir: &dir, keep: &keep, unfinished, how, supplements, record, log };
     let written = search(&asked, &with);
     folder.settle(written.as_ref().map(|written| written.exit))?;
@@ -209,11 +259,13 @@ fn run_part(
     words.extend(overlay.into_iter().flat_map(|dir| ["--catalogs".into(), dir.display().to_string()]));
     let shards = Path::new("results").join(args.folder(&asked.study)).join("shards");
     let dir = args.out.clone().unwrap_or_else(|| folder_of(&shards, shard));
-    let record = args.progress.as_deref().map(Record::create).transpose()?;
-    let (how, supplements, record) = (&args.search, &args.supplements, record.as_ref());
-    let folder = ResultFolder::open(&dir, SHARD, &[SHARD, CANDIDATES, STUDY])?;
-    let keep = |files: &[(String, Vec<u8>)]| folder.publish(files);
+    args.refuse_record_over_input()?;
+    let planned = [SHARD, CANDIDATES, STUDY].map(String::from);
+    let folder = ResultFolder::open(&dir, SHARD, &planned)?;
     let unfinished = &unfinished_in(&dir, "search");
+    let record = args.record(&dir, &planned, unfinished)?;
+    let (how, supplements, record) = (&args.search, &args.supplements, record.as_ref());
+    let keep = |files: &[(String, Vec<u8>)]| folder.publish(files);
     let with = With { catalogs, overlay, dir: &dir, keep: &keep, unfinished, how, supplements, record, log };
     let answer = run_shard(asked, (shard, &args.incumbents), words, &with);
     folder.settle(answer.as_ref().map(|answer| answer.exit))?;
@@ -227,6 +279,7 @@ fn run_paper(args: &RunArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let folder = ResultFolder::open(&dir, RUN, &planned)?;
     let started = Instant::now();
     let output = crate::paper::run::run(&args.study, catalogs).map_err(|e| Failure::Usage(e.to_string()))?;
+    refuse_if_stopped()?;
     let run = json!({
         "schema_version": 1,
         "study": args.study,

@@ -1,12 +1,14 @@
 //! Searches a study: chooses the method, and stops when the user asks for it.
 
 use super::asked::Asked;
+use super::beside::say_missing;
 use super::exit::Exit;
 use super::failure::Failure;
-use super::finished::{Finished, FoundExactly, Keep, Written, catalogs_hash};
+use super::finished::{Finished, FoundExactly, Keep, NOTHING_ELSE, Written, catalogs_hash};
 use super::log::Log;
 use super::manifest::hash;
 use super::progress::{Record, Watch};
+use super::stop::stopped_by_signal;
 use super::supplements::SupplementArgs;
 use super::time_limit::time_limit;
 use super::unfinished::Unfinished;
@@ -24,7 +26,6 @@ use crate::study::tolerance::part;
 use clap::{Args, ValueEnum};
 use serde_json::{Value, json};
 use std::path::Path;
-use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -127,9 +128,18 @@ impl SearchArgs {
         self.fresh
     }
 
+    /// The names of the options on method, time limit and gap, and whether the user gives each.
+    pub(super) fn given(&self) -> [(&'static str, bool); 3] {
+        [
+            ("--search", self.search.is_some()),
+            ("--gap", self.gap.is_some()),
+            ("--time-limit", self.time_limit.is_some()),
+        ]
+    }
+
     /// Whether the user gives none of the options on method, time limit and gap.
     pub(crate) fn is_default(&self) -> bool {
-        self.search.is_none() && self.time_limit.is_none() && self.gap.is_none()
+        self.given().iter().all(|(_, is_given)| !is_given)
     }
 }
 
@@ -239,9 +249,23 @@ fn visit_all(asked: &Asked, with: &With) -> Result<Written, Failure> {
     };
     let finished = Finished::visit(asked, (&problem, &outcome), elapsed_s, (catalogs, overlay), dir);
     let written = finished.keep(supplements, stop, keep)?;
-    // if the user stops the program after the search, the files in addition to the front are not written
-    let exit = if stop.load(Ordering::Relaxed) { Exit::Interrupted } else { exit };
-    Ok(Written { exit, ..written })
+    Ok(match exit {
+        Exit::Done => written.after_search(),
+        exit => Written { exit, ..written },
+    })
+}
+
+impl Written {
+    /// This result of a search that ended by itself. If the user stopped the program before the files in addition to the
+    /// front were made, a warning says so, and the exit status is that of a stopped program.
+    pub(super) fn after_search(self) -> Self {
+        if !self.is_front_only {
+            return self;
+        }
+        let again = "the program was stopped after the search; the same command writes the rest";
+        say_missing(&[format!("{NOTHING_ELSE}: {again}")]);
+        Self { exit: Exit::Interrupted, ..self }
+    }
 }
 
 /// A text on how many designs were visited before the search was stopped.
@@ -249,22 +273,6 @@ fn stopped_words(outcome: &StudyOutcome) -> String {
     let sweep = &outcome.sweep;
     let done = u128::from(sweep.designs_evaluated) + sweep.designs_excluded;
     format!("stopped after {done} of {} designs", sweep.designs_total)
-}
-
-/// A flag that is set when the user wants to stop the program. Code that reacts to the flag and continues must clear
-/// it, because a second signal while the flag is set ends the program at once.
-pub(super) fn stopped_by_signal() -> &'static AtomicBool {
-    static STOP: AtomicBool = AtomicBool::new(false);
-    static HANDLER: Once = Once::new();
-    HANDLER.call_once(|| {
-        // on systems without signal handling, a signal ends the program
-        let _ = ctrlc::set_handler(|| {
-            if STOP.swap(true, Ordering::Relaxed) {
-                std::process::exit(Failure::Interrupted(String::new()).exit_code().into());
-            }
-        });
-    });
-    &STOP
 }
 
 /// Searches a study by the exact method, which does not visit every design.
@@ -311,14 +319,16 @@ fn search_exactly(asked: &Asked, with: &With) -> Result<Written, Failure> {
             if how.time_limit.is_some() {
                 written.terminal.push_str(&finishing_words(finishing.elapsed()));
             }
-            if is_interrupted {
+            let is_partial = outcome.sweep.status == Status::Partial;
+            if is_interrupted && is_partial {
                 log.note("stopped; the front so far is written without summary, page and plots, and the same command goes on");
+                written.exit = Exit::Interrupted;
+            } else {
+                written = written.after_search();
             }
-            written.exit = match outcome.sweep.status {
-                _ if stop.load(Ordering::Relaxed) => Exit::Interrupted,
-                Status::Partial => Exit::Partial,
-                _ => Exit::Done,
-            };
+            if is_partial && written.exit == Exit::Done {
+                written.exit = Exit::Partial;
+            }
             written.terminal.push_str(&certificate_words(boxes, gap, written.proved_to_mass_kg));
             Ok(written)
         }

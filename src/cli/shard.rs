@@ -7,8 +7,9 @@ use super::failure::Failure;
 use super::finished::{catalogs_hash, count, pretty};
 use super::manifest::{SHARD, hash};
 use super::progress::Watch;
-use super::search::{With, stopped_by_signal};
+use super::search::With;
 use super::shard_files::{CANDIDATES, COMMON, STUDY, read_candidates_of, read_manifest, shards_in_all};
+use super::stop::stopped_by_signal;
 use crate::exact::Known;
 use crate::exact::outcome::FoundInShard;
 use crate::search::sweep::{Shard, Status};
@@ -23,7 +24,11 @@ use std::sync::atomic::AtomicBool;
 
 /// Reads a shard from the command line: `M/N`, the number of the part and the number of all parts.
 pub(super) fn shard_of(text: &str) -> Result<Shard, String> {
-    let fault = || "a part and the number of parts, such as 2/16, with 1 for the first part".to_string();
+    let fault = || {
+        format!(
+            "a part and the number of parts, such as 2/16, with 1 for the first part and at most {MOST_SHARDS} parts"
+        )
+    };
     let (number, of) = text.split_once('/').ok_or_else(fault)?;
     let [number, of] = [number, of].map(|word| word.trim().parse::<u32>());
     match (number, of) {
@@ -62,7 +67,9 @@ pub(super) fn run_shard(
         "shard": [shard.number, shard.of],
         "command": words,
     });
-    if let Some(words) = already_done(with.dir, &manifest) {
+    if !with.how.is_fresh()
+        && let Some(words) = already_done(with.dir, &manifest)
+    {
         return Ok(words.into());
     }
     let (searched, elapsed_s) = match method {

@@ -70,23 +70,31 @@ pub(super) fn shards_in_all(folders: &[PathBuf]) -> Result<Vec<PathBuf>, Failure
 }
 
 /// Number of levels of subfolders that are searched for shards.
-const DEEPEST: usize = 3;
+pub(super) const DEEPEST: usize = 3;
 
 /// The folders of the shards in `folder`, in the order of their names. If `folder` is itself a shard, it is the only
 /// one. `depth` is the number of levels of subfolders that are searched.
-fn shards_in(folder: &Path, depth: usize) -> Result<Vec<PathBuf>, Failure> {
+pub(super) fn shards_in(folder: &Path, depth: usize) -> Result<Vec<PathBuf>, Failure> {
     if folder.join(SHARD).is_file() {
         return Ok(vec![folder.to_path_buf()]);
     }
+    let mut out = Vec::new();
+    for folder in folders_inside(folder)?.iter().filter(|_| depth > 0) {
+        out.extend(shards_in(folder, depth - 1)?);
+    }
+    Ok(out)
+}
+
+/// The folders in a folder, in the order of their names.
+///
+/// # Errors
+/// The folder cannot be read.
+pub(super) fn folders_inside(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let entries = fs_err::read_dir(folder).map_err(|e| Failure::File(e.to_string()))?;
     let mut inside: Vec<PathBuf> =
         entries.flatten().map(|entry| entry.path()).filter(|p| p.is_dir()).collect();
     inside.sort();
-    let mut out = Vec::new();
-    for folder in inside.iter().filter(|_| depth > 0) {
-        out.extend(shards_in(folder, depth - 1)?);
-    }
-    Ok(out)
+    Ok(inside)
 }
 
 /// Reads the manifest of a shard and checks that its files are those that it names.

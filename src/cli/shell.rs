@@ -2,7 +2,7 @@
 //! the description of the command line.
 
 use super::failure::Failure;
-use super::write::write_all;
+use super::own_files::write_recognized;
 use clap::{Args, Command};
 use clap_complete::Shell;
 use clap_mangen::Man;
@@ -49,7 +49,9 @@ pub(super) fn man(args: &ManArgs, command: Command) -> Result<String, Failure> {
     command.build();
     let mut pages = Vec::new();
     add_pages(&command, NAME, &mut pages)?;
-    write_all(&args.out, &pages, &[])?;
+    // manual pages are put into folders that are packed and shared, so no list of files is written there
+    let is_page = |_: &str, there: &[u8]| String::from_utf8_lossy(there).contains("\n.TH armwright");
+    write_recognized(&args.out, &pages, &[], is_page)?;
     Ok(format!("{} pages written to {}\n", pages.len(), args.out.display()))
 }
 

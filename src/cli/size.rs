@@ -2,7 +2,7 @@
 //! rejected.
 
 use super::failure::Failure;
-use super::write::write_all;
+use super::own_files::write_own;
 use crate::catalog::Catalogs;
 use crate::report::tube::section_size;
 use crate::report::words::{TERMINAL, wrap};
@@ -68,7 +68,7 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failur
     let json = serde_json::to_string_pretty(&rows).expect("rows of numbers and strings serialize");
     if let Some(dir) = &args.out {
         let files = [("sizing.json", &json), ("sizing.txt", &text)];
-        write_all(
+        write_own(
             dir,
             &files.map(|(name, text)| (name.to_string(), text.as_bytes().to_vec())),
             &[Path::new(&args.study)],

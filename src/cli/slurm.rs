@@ -22,7 +22,8 @@ use std::path::{Path, PathBuf};
 pub(crate) struct SlurmArgs {
     /// A built-in study or a study file
     study: String,
-    /// Number of shards
+    /// Number of shards. Slurm refuses arrays of more than MaxArraySize - 1 tasks, which is 1000 unless slurm.conf says
+    /// otherwise; the script of a larger one says so
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_SHARDS)))]
     shards: u32,
     /// How the front is searched for. Default: exact with --gap, else exhaustive
@@ -64,6 +65,7 @@ pub(super) fn run(args: &SlurmArgs, catalogs: &Catalogs, overlay: Option<&Path>)
         )
     };
     let search = words_of(args.search, args.gap);
+    let limit = if shards > MOST_TASKS { array_words(shards) } else { String::new() };
     let (mut first, mut after, mut told, mut incumbents) = Default::default();
     if let Some(gap) = args.gap_first {
         let wide = words_of(Some(SearchMethod::Exact), Some(gap));
@@ -88,7 +90,7 @@ pub(super) fn run(args: &SlurmArgs, catalogs: &Catalogs, overlay: Option<&Path>)
         r#"#!/bin/sh
 # Submits {shards} shards of a study and a job that joins them. Run it in the folder from which the study is named.
 # Each batch script ends in exec: signals reach armwright, and Slurm sees its exit code.
-set -eu
+{limit}set -eu
 {first}shards=$(sbatch --parsable{after} <<'SHARDS'
 {shard}
 SHARDS
@@ -100,6 +102,19 @@ MERGE
 echo "{told}shards $shards, merge $merge"
 "#
     ))
+}
+
+/// The largest number of tasks in an array if `slurm.conf` does not set `MaxArraySize`, which is then 1001 and one more
+/// than the largest index (<https://slurm.schedmd.com/slurm.conf.html>).
+const MOST_TASKS: u32 = 1000;
+
+/// Lines of a script that say which setting of Slurm its array needs.
+fn array_words(shards: u32) -> String {
+    let least = shards + 1;
+    format!(
+        "# Slurm must allow an array of so many tasks: MaxArraySize of at least {least}, where the default is 1001. It says\n\
+         # what it has with: scontrol show config | grep MaxArraySize\n"
+    )
 }
 
 /// The words that ask for a search, each with a blank before it.

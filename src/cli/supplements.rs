@@ -95,9 +95,14 @@ impl SupplementArgs {
         Ok(out)
     }
 
+    /// The names of the options, and whether the user gives each.
+    pub(super) fn given(&self) -> [(&'static str, bool); 2] {
+        [("--tolerance", self.tolerance.is_some()), ("--within", self.within.is_some())]
+    }
+
     /// Whether the user asks for neither scatter nor near designs.
     pub(super) fn is_default(&self) -> bool {
-        self.tolerance.is_none() && self.within.is_none()
+        self.given().iter().all(|(_, is_given)| !is_given)
     }
 
     /// A sentence on why there is no list of near designs; empty if the user asks for none.

@@ -3,6 +3,7 @@
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
 use super::log::{Log, LogForm};
+use super::stop::listen;
 use super::{
     analyze, capacity, catalog, check, compare, design, export, front, import, merge, new, predict,
     reconcile, schema, shell, size, slurm,
@@ -85,6 +86,33 @@ enum Verb {
     Catalog(catalog::CatalogArgs),
 }
 
+impl Verb {
+    /// Whether the verb looks at the flag that a signal sets. `None` if it writes nothing, so that a signal may end it at
+    /// any moment.
+    fn stops(&self) -> Option<bool> {
+        match self {
+            Verb::Run(_) | Verb::Front(_) | Verb::Merge(_) | Verb::Reconcile(_) => Some(true),
+            Verb::Size(_)
+            | Verb::Compare(_)
+            | Verb::Design(_)
+            | Verb::Export(_)
+            | Verb::Import(_)
+            | Verb::Man(_)
+            | Verb::New(_)
+            | Verb::Predict(_) => Some(false),
+            Verb::Studies
+            | Verb::Capacity(_)
+            | Verb::Analyze(_)
+            | Verb::Status(_)
+            | Verb::Slurm(_)
+            | Verb::Check(_)
+            | Verb::Schema(_)
+            | Verb::Completions(_)
+            | Verb::Catalog(_) => None,
+        }
+    }
+}
+
 impl Cli {
     /// The log for messages and progress, in the form that the user asks for.
     pub fn log(&self) -> Log {
@@ -107,6 +135,9 @@ pub fn run(cli: Cli) -> Result<Answer, Failure> {
         return Err(Failure::Internal(e.to_string()));
     }
     let log = cli.log();
+    if let Some(looks) = cli.verb.stops() {
+        listen(looks, log);
+    }
     let overlay = cli.catalogs.as_deref();
     let catalogs = Catalogs::load(overlay).map_err(Failure::catalog);
     let text = match cli.verb {

@@ -3,7 +3,7 @@
 use super::predict::{predict, unplaced};
 use super::readings::campaign::{Statement, read_statement};
 use super::readings::placement::{Placed, Placement};
-use super::readings::source::Source;
+use super::readings::source::{DEFAULT_FILES, Source};
 use super::readings::table::Table;
 use crate::arm::effect::channel::Channel;
 use crate::arm::file::read_arm;
@@ -32,6 +32,8 @@ pub struct Prediction {
     pub remark: Option<String>,
     /// Paths of the other arms on the same trunk, which were read too.
     pub other_arms: Vec<PathBuf>,
+    /// Paths of all files that the campaign may have, whether or not the prediction needed them.
+    pub of_campaign: Vec<PathBuf>,
 }
 
 /// Adds the model's prediction to every reading of the readings file.
@@ -47,7 +49,17 @@ pub fn predict_files(files: &Files, catalogs: &Catalogs) -> Result<Prediction, I
     }
     let csv = predict(&arms, &statement, table(files.readings, &statement)?)?;
     let remark = unplaced(&arms, &table(files.readings, &statement)?);
-    Ok(Prediction { csv, remark, other_arms })
+    let of_campaign = of_campaign(files.campaign, &statement);
+    Ok(Prediction { csv, remark, other_arms, of_campaign })
+}
+
+/// Paths of the arm files and readings of the campaign with the statement `statement` in the file `campaign`.
+fn of_campaign(campaign: &Path, statement: &Statement) -> Vec<PathBuf> {
+    let folder = campaign.parent().unwrap_or(Path::new(""));
+    let named = Channel::ALL.into_iter().filter_map(|channel| statement.source(channel).file);
+    let arms = std::iter::once(&statement.arm_file).chain(&statement.other_arm_files).cloned();
+    let readings = DEFAULT_FILES.map(String::from).into_iter().chain(named).chain(["record.csv".into()]);
+    arms.chain(readings).map(|name| folder.join(name)).collect()
 }
 
 fn json_of(file: &Path) -> Value {

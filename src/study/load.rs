@@ -15,6 +15,10 @@ fn study_text(name: &str) -> Result<(String, String), Refusal> {
         return Ok((format!("{name} (built in)"), text.to_string()));
     }
     let path = Path::new(name);
+    if crate::paper::names::NAMES.contains(&name) {
+        let words = "is a study of the paper, which is computed without a search: `armwright run` has it, no other verb";
+        return Err(Refusal::Unknown(format!("{name} {words}")));
+    }
     match fs_err::read_to_string(path) {
         Ok(text) => Ok((name.to_string(), text)),
         Err(_) if !name.contains(['/', '.']) => {

@@ -38,6 +38,7 @@ pub(crate) mod omissions;
 pub(crate) mod outcome;
 pub(crate) mod page;
 pub(crate) mod pick_poses;
+mod piece_names;
 pub(crate) mod pose_search;
 pub mod question;
 mod rail_keys;

@@ -18,6 +18,7 @@ use super::keys::{CONSTRAINTS, JOINT, LINK, MODELS, STUDY};
 use super::linkages::drivers_are_inboard;
 use super::motion::{ramp_remark, read_duty, read_motion};
 use super::omissions::{actuators_remark, omissions};
+use super::piece_names::check_names;
 use super::rail_keys::{OF_CATALOG_DRIVE, PRISMATIC};
 use super::rails::read_rail_drive;
 use super::range::{check_poses, read_range};
@@ -134,7 +135,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
 /// Reads the name of a study. It must have a letter or a digit, because the folder of results is named after it.
 fn read_study_name(node: &Node) -> Option<String> {
     match node.string()? {
-        name if name.chars().any(|c| c.is_ascii_alphanumeric()) => Some(name.to_string()),
+        name if name.chars().any(|c| c.is_alphanumeric()) => Some(name.to_string()),
         name => node
             .fault(format!("\"{name}\" is no name"), "give letters or digits: results are written under it"),
     }
@@ -281,7 +282,7 @@ fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePi
     let repeated = items.into_iter().zip(counts).flat_map(|(n, count)| std::iter::repeat_n(n, count));
     let items: Vec<Node> = repeated.collect();
     number_materials(&mut pieces);
-    unique_names(node, &pieces)?;
+    check_names(node, &pieces)?;
     drivers_are_inboard(&items, &pieces)?;
     let mut transmissions = transmissions.into_iter();
     let driven = pieces.iter().zip(&items).enumerate().filter_map(|(number, (piece, node))| match piece {
@@ -291,16 +292,6 @@ fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePi
     let driven = driven.collect();
     place_transmissions(&mut pieces, driven, open.catalogs)?;
     Some(pieces)
-}
-
-fn unique_names(node: &Node, pieces: &[SpacePiece]) -> Option<()> {
-    let names: Vec<&str> = pieces.iter().map(SpacePiece::name).collect();
-    match (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
-        Some(i) => {
-            node.fault(format!("has two pieces named \"{}\"", names[i]), "give every piece a name of its own")
-        }
-        None => Some(()),
-    }
 }
 
 /// Reads a joint that turns, and its transmission; `None` in the place of the transmission if no key of the joint

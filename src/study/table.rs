@@ -1,6 +1,7 @@
 //! A front as a table, with every choice, objective and margin of every design.
 
 use super::outcome::{Front, Judged};
+use super::piece_names::{choice_columns, has_parts, joint_columns};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::GearKind;
 use crate::report::front_table::FrontTable;
@@ -34,36 +35,16 @@ pub(crate) fn front_table_with(
 fn columns(problem: &ArmProblem, catalogs: &Catalogs) -> Vec<String> {
     let mut out = vec!["design_id".to_string()];
     for piece in &problem.space().pieces {
-        match piece {
-            SpacePiece::Choice(choice) => out.extend(
-                ["material", "shape", "width_mm", "height_mm", "wall_mm", "profile"]
-                    .map(|what| format!("{}_{what}", choice.name)),
-            ),
-            SpacePiece::Joint(joint) if has_parts(&joint.drive) => {
-                out.extend(["gear", "motor"].map(|what| format!("{}_{what}", joint.name)));
-            }
-            SpacePiece::Prismatic(slide) if slide.drive.is_some() => {
-                out.extend(["gear", "motor"].map(|what| format!("{}_{what}", slide.joint.name)));
-            }
-            _ => {}
-        }
+        out.extend(choice_columns(piece));
     }
     out.extend(["tip_deflection_mm", "mass_kg", "lowest_mode_hz", "tie_group"].map(String::from));
     for (i, piece) in problem.space().pieces.iter().enumerate() {
         if problem.sized_joint(i).is_some() || problem.fixed_drive(i, catalogs).is_some() {
-            out.extend(JOINT_COLUMNS.map(|what| format!("{}_{what}", piece.name())));
+            out.extend(joint_columns(piece));
         }
     }
     out.extend(["stress_safety_factor", "material_cost_eur", "extras_mass_kg"].map(String::from));
     out
-}
-
-/// Columns of every joint that has a gear and a motor.
-const JOINT_COLUMNS: [&str; 6] =
-    ["margin", "binds", "bearing_margin", "motor_rms_margin", "input_rpm", "critical_rpm"];
-
-fn has_parts(drive: &DriveChoice) -> bool {
-    !matches!(drive, DriveChoice::Given { gear: None, motor: None, .. })
 }
 
 fn row(

@@ -43,5 +43,6 @@ mod shards;
 mod slurm;
 mod starters;
 mod study_effects;
+mod survives;
 mod whole_results;
 mod words;

@@ -48,7 +48,7 @@ fn files(folder: &Path) -> BTreeSet<String> {
     out
 }
 
-fn copy(from: &Path, to: &Path) {
+pub(crate) fn copy(from: &Path, to: &Path) {
     for name in files(from) {
         let target = to.join(&name);
         fs::create_dir_all(target.parent().expect("a folder")).expect("made");

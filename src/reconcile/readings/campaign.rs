@@ -79,7 +79,8 @@ pub struct Statement {
     pub positions: PositionsSpec,
     /// What is stated about each record against time.
     pub records: Vec<RecordSpec>,
-    arm_file: String,
+    /// File of the measured arm.
+    pub(crate) arm_file: String,
     /// Files of other arms on the same trunk, in the folder of `campaign.json`.
     pub other_arm_files: Vec<String>,
     /// File and columns of each channel, in the order of [`Channel::ALL`]; `None` if nothing is stated.
