@@ -3,15 +3,12 @@
 //! In an arm such a motor is a body of the element that carries it, with the mass of the motor, or of motor and gear. It
 //! is recognized by this mass.
 
-use super::bill::{Row, bodies_of, bought, which_mass};
+use super::bill_rows::{ROUNDING, Row, bodies_of, bought, which_mass};
 use crate::arm::{Arm, Joint};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::{Gear, GearKind, GearMass};
 use crate::catalog::motor::Motor;
 use nalgebra::Matrix3;
-
-/// Relative difference of two masses that counts as rounding.
-const ROUNDING: f64 = 1e-9;
 
 /// A motor that sits elsewhere than its joint.
 pub(super) struct Elsewhere {

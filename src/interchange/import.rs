@@ -13,7 +13,7 @@
 
 use super::free_name::FreeNames;
 use super::given::{GivenJoint, GivenSprings, MovingJoint};
-use super::report::ImportReport;
+use super::report::{Held, ImportReport};
 use super::urdf_file::{UrdfTree, isometry, moves, slides, tensor};
 use crate::arm::body::RigidBody;
 use crate::arm::extras::Extras;
@@ -193,15 +193,6 @@ impl<'a> Robot<'a> {
         report.mass_kg = arm.mass_kg();
         (arm, report)
     }
-}
-
-/// Where a joint of a side branch is held.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Held {
-    /// Its angle \[rad\] or travel \[m\].
-    pub at: f64,
-    /// The joint of the arm that it follows in the robot, and the factor.
-    pub follows: Option<(String, f64)>,
 }
 
 /// The walk along the path from the root to the tip.

@@ -12,6 +12,7 @@
 
 pub(crate) mod bill;
 mod bill_motors;
+mod bill_rows;
 pub(crate) mod calculix;
 mod csv_text;
 pub(crate) mod design_table;

@@ -2,11 +2,19 @@
 //! which joints are rigid because no stiffness is known.
 
 use super::given::GivenSprings;
-use super::import::Held;
 use super::urdf_file::{UrdfTree, moves, slides};
 use nalgebra::Isometry3;
 use serde_json::{Value, json};
 use urdf_rs::{Joint, JointType, Link};
+
+/// Where a joint of a side branch is held.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Held {
+    /// Its angle \[rad\] or travel \[m\].
+    pub at: f64,
+    /// The joint of the arm that it follows in the robot, and the factor.
+    pub follows: Option<(String, f64)>,
+}
 
 /// The report of an import.
 #[derive(Debug, Clone, PartialEq)]
