@@ -200,33 +200,41 @@ fn to_calculix(asked: &Asked) -> Export {
         ));
     }
     out.notes.extend(working_points_note(&out.left_out));
+    out.notes.extend(solids_notes(asked, links, &model.impossible));
+    out
+}
+
+/// Remarks on what solids with rigid end faces do otherwise than the links of an arm. `impossible` names bodies whose
+/// inertia no solid has.
+fn solids_notes(asked: &Asked, links: LinkModel, impossible: &[String]) -> Vec<String> {
+    let mut out = Vec::new();
     let open = asked
         .arm
         .links()
         .filter(|link| matches!(&link.body, LinkBody::Tube { section: Section::IBeam { .. }, .. }));
     let open: Vec<&str> = open.map(|link| link.name.as_str()).collect();
     if !open.is_empty() && links == LinkModel::Full {
-        out.notes.push(format!(
+        out.push(format!(
             "rigid end faces hold the warping of open sections, so that they twist less than expected: {}",
             open.join(", ")
         ));
     }
     let runs = links_in_pieces(asked.arm);
     if !runs.is_empty() && links == LinkModel::Full {
-        out.notes.push(format!(
+        out.push(format!(
             "links that follow each other have a rigid face between them, which holds the cross-section in shape; for a taper of \
              12 pieces this costs 2 % of the tip's displacement and 3 % of frequencies: {}",
             runs.join(", ")
         ));
     }
     if asked.case.links == LinkModel::Bending {
-        out.notes.push(
+        out.push(
             "solids shear, twist and stretch: expected is the full model of links, not bending alone".into(),
         );
     }
-    if !model.impossible.is_empty() {
-        let names = model.impossible.join(", ");
-        out.notes.push(format!(
+    if !impossible.is_empty() {
+        let names = impossible.join(", ");
+        out.push(format!(
             "no solid has the inertia of a body, which is exported as near as point masses can: {names}"
         ));
     }

@@ -21,7 +21,7 @@ use crate::reconcile::readings::rows::PositionRow;
 use crate::reconcile::select::lack_of_fit::LackOfFit;
 use crate::reconcile::verdict::files::CORRECTED_FILE;
 use crate::reconcile::verdict::judgement::{does_not_predict, too_many_alternatives};
-use crate::reconcile::verdict::outcome::{Evidence, Located, Outcome, ReadingResidual, Verdict};
+use crate::reconcile::verdict::outcome::{Calibrated, Evidence, Located, Outcome, ReadingResidual, Verdict};
 use crate::reconcile::verdict::stage::Stage;
 use crate::reconcile::verdict::{caution, correct};
 use serde_json::{Value, json};
@@ -49,18 +49,10 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let lack_of_fit = found.lack_of_fit(campaign);
     let competitors: Vec<Vec<(usize, Fitted)>> =
         (0..found.fitted.effects.len()).map(|i| found.competitors(i)).collect();
-    let compliant = (0..found.fitted.effects.len())
-        .map(|i| found.with_session_instead(campaign, i, found.finding(i, &competitors[i])));
-    let uneven = found.transmissions.iter().map(|&joint| found.transmission_finding(joint));
-    let dependent = found.named_dependences.iter().map(|&k| found.dependence_finding(k));
-    let findings: Vec<Finding> = compliant.chain(dependent).chain(uneven).collect();
+    let findings = found.findings(campaign, &competitors);
     let (verdict, mut reasons) = found.verdict(campaign, &lack_of_fit, &findings);
-    reasons.extend(found.session_sentences(campaign));
     let adjusted = found.adjusted(&found.fitted);
-    reasons.extend(caution::beyond_tolerance(found.tolerances(), &adjusted));
-    reasons.extend(found.moved_zeros());
-    reasons.extend(found.still_joints());
-    reasons.extend(found.other_convention(campaign));
+    reasons.extend(found.remarks(campaign, &adjusted));
     let next_tests = found.next_tests(campaign, verdict, &lack_of_fit, &competitors);
     // a model that predicts held-out poses far better is useful even if something else is missing
     let [before, after] = found.before_and_after();
@@ -115,6 +107,28 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
 }
 
 impl Positions {
+    /// Findings for all effects of the model. `competitors` has, for each compliance, the candidates that would fit as
+    /// well in its place.
+    fn findings(&self, campaign: &Campaign, competitors: &[Vec<(usize, Fitted)>]) -> Vec<Finding> {
+        let compliant = competitors.iter().enumerate();
+        let compliant =
+            compliant.map(|(i, own)| self.with_session_instead(campaign, i, self.finding(i, own)));
+        let dependent = self.named_dependences.iter().map(|&k| self.dependence_finding(k));
+        let uneven = self.transmissions.iter().map(|&joint| self.transmission_finding(joint));
+        compliant.chain(dependent).chain(uneven).collect()
+    }
+
+    /// Sentences on what was assumed or adjusted: sessions, factors beyond their tolerance (of those in `adjusted`), zeros
+    /// that moved far, joints that stood still, and another convention of the file.
+    fn remarks(&self, campaign: &Campaign, adjusted: &[Calibrated]) -> Vec<String> {
+        let mut out = self.session_sentences(campaign);
+        out.extend(caution::beyond_tolerance(self.tolerances(), adjusted));
+        out.extend(self.moved_zeros());
+        out.extend(self.still_joints());
+        out.extend(self.other_convention(campaign));
+        out
+    }
+
     fn verdict(&self, campaign: &Campaign, left: &LackOfFit, findings: &[Finding]) -> (Verdict, Vec<String>) {
         let count = campaign.positions.len();
         if count < FEWEST {
