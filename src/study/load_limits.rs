@@ -222,9 +222,9 @@ mod tests {
             r#"{"joints": [{"name": "z", "max_torque_nm": 5}, {"name": "Wrist", "max_torque_nm": 5},
             {"name": "wrist", "max_torque": 5}, {"name": "wrist", "max_torque_nm": -5}, {"max_torque_nm": 5}]}"#,
         );
-        let said = faults.expect_err("six faults").to_string();
+        let said = faults.expect_err("five faults").to_string();
         for words in [
-            "6 faults",
+            "5 faults",
             "joints[0].max_torque_nm: the joint \"z\" slides; give its max_force_n",
             "the arm has no joint \"Wrist\"; did you mean \"wrist\"? joints of gantry: z, wrist",
             "joints[2].max_torque: unknown key; did you mean \"max_torque_nm\"?",
