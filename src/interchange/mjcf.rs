@@ -8,7 +8,7 @@
 
 use super::free_name::FreeNames;
 use super::motors::Motor;
-use super::snapshot::Snapshot;
+use super::snapshot::{Snapshot, Working};
 use super::tree::{Hinge, Node, Role, TreeOptions, mass_properties, tree};
 use super::xml::{Xml, numbers, triple};
 use crate::arm::structure::JointAngle;
@@ -20,9 +20,10 @@ const LEAST_MASS: f64 = 1e-10;
 /// Square of the radius of gyration that is added to the moments of every body \[m²\]: 0.03 mm. MuJoCo accepts no
 /// moving body without inertia. A body without mass has the moments of a tenth of the arm's mass.
 const LEAST_RADIUS2_M2: f64 = 1e-9;
-/// Armature of the hinge of a backlash, relative to the motor's. Without it, this hinge and that of the gear would have
-/// one axis and nothing between them, and the mass matrix would be singular.
+/// Least armature of the hinge of a backlash, relative to the motor's.
 const PLAY_ARMATURE: f64 = 1e-3;
+/// Time step that the file states \[s\].
+const STEP_S: f64 = 1e-4;
 
 /// An MJCF file, and whether MuJoCo must change inertias in it.
 pub(crate) struct Mjcf {
@@ -64,7 +65,7 @@ pub(crate) fn mjcf(
         &[
             ("gravity", triple(&gravity)),
             ("integrator", "implicitfast".into()),
-            ("timestep", "0.0001".into()),
+            ("timestep", numbers(&[STEP_S])),
         ],
     );
     xml.open("worldbody", &[]);
@@ -147,14 +148,22 @@ fn joint(
             out.push(("stiffness", numbers(&[working.tangent_nm_per_rad()])));
             out.push(("springref", numbers(&[working.rest_rad()])));
         }
-        Role::Play { half_rad, .. } => {
+        Role::Play { half_rad, gear } => {
             out.push(("range", numbers(&[-half_rad, half_rad])));
-            if let Some(motor) = motors.get(&hinge.element) {
-                out.push(("armature", numbers(&[PLAY_ARMATURE * motor.armature_kgm2])));
-            }
+            let motor_kgm2 = motors.get(&hinge.element).map_or(0.0, |motor| motor.armature_kgm2);
+            out.push(("armature", numbers(&[play_armature_kgm2(motor_kgm2, &gear)])));
         }
     }
     out
+}
+
+/// Armature of the hinge of a backlash \[kg m²\]. Without one, this hinge and that of the gear would have one axis and
+/// nothing between them, and the mass matrix would be singular. With a very small one, it would vibrate on the spring of
+/// the gear faster than the time step can follow: an explicit step of `h` is stable up to an angular frequency of `2/h`,
+/// and half of that is permitted. `motor_kgm2` is the armature of the motor, `gear` the spring of the gear.
+fn play_armature_kgm2(motor_kgm2: f64, gear: &Working) -> f64 {
+    let steady_kgm2 = if gear.is_rigid() { 0.0 } else { gear.tangent_nm_per_rad() * STEP_S * STEP_S };
+    steady_kgm2.max(PLAY_ARMATURE * motor_kgm2)
 }
 
 /// Writes the couplings of passive joints. Each is a tendon of fixed length, so that the joint follows the motor, the
@@ -213,7 +222,9 @@ fn keyframes(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
             Role::Motor => angle(&hinge.name),
             Role::Spring(working) if deflected => working.deflection_rad,
             // the load of the gear pushes the backlash to its stop
-            Role::Play { half_rad, load_nm } if deflected && load_nm != 0.0 => half_rad.copysign(load_nm),
+            Role::Play { half_rad, gear } if deflected && gear.load_nm != 0.0 => {
+                half_rad.copysign(gear.load_nm)
+            }
             _ => 0.0,
         };
         numbers(&nodes.iter().flat_map(|node| &node.hinges).map(of).collect::<Vec<_>>())

@@ -25,7 +25,7 @@ const MODES: usize = 6;
 
 /// The working point of one spring: its load, its deflection and its compliance at the load of a case. A spring belongs
 /// to one coordinate of an elastic element, such as the torsion of a joint or the tilt of a bearing.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Working {
     /// Generalized force on the coordinate \[N m\]. For a coordinate that slides, it is a force \[N\]. The deflection
     /// is then in m and the compliance in m/N.

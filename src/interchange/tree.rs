@@ -39,8 +39,8 @@ pub(crate) enum Role {
     Play {
         /// Half width of the range in which it turns \[rad\].
         half_rad: f64,
-        /// Load of the gear \[N m\], which pushes it to one end of this range.
-        load_nm: f64,
+        /// The spring of the gear, whose load pushes it to one end of this range.
+        gear: Working,
     },
 }
 
@@ -197,8 +197,7 @@ impl Builder<'_> {
             self.last().hinges.push(motor);
             if let Some(half_rad) = self.options.plays.get(&name).copied() {
                 let name = self.free.take(&format!("{name}.backlash"), "_hinge");
-                let load_nm = workings.first().map_or(0.0, |working| working.load_nm);
-                let role = Role::Play { half_rad, load_nm };
+                let role = Role::Play { half_rad, gear: workings.first().copied().unwrap_or_default() };
                 let play = hinge(&element.twists[0], name, &element.name, element.at_m, role);
                 self.last().hinges.push(play);
             }

@@ -92,7 +92,8 @@ mod tests {
     use serde_json::json;
 
     fn faults(names: [&str; 2], link: &str) -> Option<String> {
-        let joint = |name: &str| json!({"type": "joint", "name": name, "axis": [0, 1, 0], "drive": "first_fit"});
+        let joint =
+            |name: &str| json!({"type": "joint", "name": name, "axis": [0, 1, 0], "drive": "first_fit"});
         let study = json!({"name": "two joints", "payload": {"mass_kg": 1}, "drives": {"gear_series": ["CSG"]},
             "motion": {"tip_speed_m_s": 0.8, "ramp_time_s": 0.25, "life_h": 10000}, "poses": [{"pose_deg": [0, 0]}], "chain": [
             joint(names[0]), {"type": "link", "name": link, "vector_m": [0.3, 0, 0], "mass_kg": 1}, joint(names[1])]});

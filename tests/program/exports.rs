@@ -211,8 +211,11 @@ fn a_backlash_has_an_armature_a_stop_and_moves_what_follows() {
     let (record, out) = export(folder.path(), &playing_arm(), &["mjcf", "--backlash"]);
     let xml = text(&out, "arm.xml");
     let of = |name: &str, key: &str| attribute(&xml, name, key).parse::<f64>().expect("a number");
-    close(of("lift.backlash", "armature"), of("lift", "armature") / 1e3, 1e-9);
-    assert!(notes(&record).contains("thousandth"), "{record}");
+    // on the spring of the gear it turns by at most a radian of its vibration in a time step of 0.1 ms
+    let steady_kgm2 = of("lift.gear", "stiffness") * 1e-8;
+    let least_kgm2 = of("lift", "armature") / 1e3;
+    close(of("lift.backlash", "armature"), steady_kgm2.max(least_kgm2), 1e-9);
+    assert!(notes(&record).contains("lift") && notes(&record).contains("small armature"), "{record}");
     let coupling =
         xml.split("level.coupling").nth(1).expect("a tendon").split("</fixed>").next().expect("its end");
     for joint in ["lift", "lift.backlash", "lift.gear"] {
@@ -278,7 +281,7 @@ fn names_that_the_files_use_themselves_are_no_trouble() {
     let links = robot.links.iter().map(|link| link.name.clone());
     let names: Vec<String> = links.chain(robot.joints.iter().map(|joint| joint.name.clone())).collect();
     assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len(), "{names:?}");
-    assert!(notes(&record).contains("\"tip_link_link\""), "{record}");
+    assert!(notes(&record).contains("tip_link_link"), "{record}");
     // it comes back with the joints that it had
     let [file, back] = ["urdf/arm.urdf", "back"].map(|name| folder.path().join(name).display().to_string());
     let output = armwright(&["import", &file, "--tip", "tip_link_link", "--out", &back]);
@@ -411,7 +414,7 @@ fn check_and_schema_know_the_files_of_imports_and_exports() {
         ("csv/design.csv", "design table"),
         ("back/import.json", "import"),
         ("back/stiffness.json", "stiffness of an import"),
-        ("limits.json", "torque limits"),
+        ("limits.json", "limits of joints"),
         ("urdf", "export"),
         ("back", "arm"),
     ];

@@ -2,9 +2,9 @@
 //! deflection, zeros of joints that moved far, and joints that stood still.
 
 use super::analysis::Positions;
+use super::dependence::{Dependence, parameter};
 use super::fitted::Fitted;
 use super::kinematics::Number;
-use super::nominal::{Dependence, parameter};
 use crate::arm::Arm;
 use crate::reconcile::model::estimate::{Estimate, Finding};
 use crate::reconcile::verdict::correct::calibrate;

@@ -2,12 +2,12 @@
 //! errors, effect by effect.
 
 use super::align;
+use super::dependence::Dependence;
 use super::fit::fit;
 use super::fitted::{Fitted, Sample};
 use super::kinematics::{Geometry, Number, Pose, number_groups};
 use super::loads::{CompliantPlace, Loads, candidates};
 use super::moved::{Boundary, Kind};
-use super::nominal::Dependence;
 use super::play;
 use super::points::{Point, points};
 use super::tree::Tree;

@@ -173,7 +173,7 @@ pub(crate) struct Geometry {
     vectors_m: Vec<Vector3<f64>>,
     mounts: Vec<Rotation3<f64>>,
     angles: Vec<Option<JointAngle>>,
-    /// The number of each dependence of the nominal deflection ([`Dependence`](super::nominal::Dependence)); 0 for the
+    /// The number of each dependence of the nominal deflection ([`Dependence`](super::dependence::Dependence)); 0 for the
     /// nominal arm.
     pub dependences: Vec<f64>,
     arms: Vec<Vec<usize>>,

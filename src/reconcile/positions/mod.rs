@@ -7,7 +7,7 @@
 //!   equations (`normal`), and `springs` keeps the compliances physically possible.
 //! - [`analysis`] is the whole analysis. `sessions` finds sessions, `boundary` judges each boundary between two of them
 //!   (`moved`), and `standing` finds where the arm stands in each session. `search` finds compliances,
-//!   `nominal` stiffnesses, moduli and masses other than stated, and `transmission` joints with a transmission error.
+//!   `nominal` stiffnesses, moduli and masses other than stated (`dependence`), and `transmission` joints with a transmission error.
 //! - `setups` brings the positions of several campaigns into one frame.
 //! - `conventions` asks whether the file was written by another convention, `structure` tests the errors that are left,
 //!   `next_test` proposes what to measure, and [`outcome`] reaches the verdict.
@@ -18,6 +18,7 @@ pub(crate) mod align;
 pub(crate) mod analysis;
 pub(crate) mod boundary;
 pub(crate) mod conventions;
+pub(crate) mod dependence;
 pub(crate) mod fit;
 pub(crate) mod fitted;
 pub(crate) mod kinematics;
