@@ -359,15 +359,18 @@ impl Analysis<'_> {
     /// Sentences on the structure that the best model leaves in the residuals. They name no effect of the library.
     fn left_over(&self) -> Vec<String> {
         let mut out = units::other_signs(self.forward);
-        let sentences = self.lack_of_fit.sentences_beyond_scatter();
-        if sentences.is_empty() && self.lack_of_fit.chi2_per_dof > 1.0 {
+        let beyond = self.lack_of_fit.sentences_beyond_scatter();
+        let declared = self.lack_of_fit.sentences();
+        if beyond.is_empty() && !declared.is_empty() {
             out.push(format!(
-                "the readings scatter {:.1} times as much as declared, and this scatter follows nothing that was asked: is \
-                 their standard deviation in the files right?",
+                "the readings scatter {:.1} times as much as declared. If this is their noise, they follow nothing that was \
+                 asked, and sigma in the files is too small. If sigma is right, they do:",
                 self.lack_of_fit.chi2_per_dof.sqrt()
             ));
+            out.extend(declared);
+        } else {
+            out.extend(beyond);
         }
-        out.extend(sentences);
         out.push(format!(
             "the best model leaves {:.2} times the declared variance; no effect of the library explains the rest",
             self.lack_of_fit.chi2_per_dof
