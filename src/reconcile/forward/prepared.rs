@@ -12,6 +12,7 @@ use crate::arm::effect::subject::Subject;
 use crate::arm::joint_law::Curve;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::DMatrix;
+use std::sync::OnceLock;
 
 /// A campaign prepared for fitting: its data, and what does not depend on fitted parameters.
 pub struct Forward {
@@ -37,6 +38,8 @@ pub struct Forward {
     pub largest_payload_kg: f64,
     /// The smallest stated payload above zero \[kg\]; infinite if there is none.
     pub lightest_payload_kg: f64,
+    /// For each driven joint, the change of every reading by an angle whose zero is off; empty until it is asked for.
+    pub(crate) zero_columns: OnceLock<Vec<Vec<f64>>>,
     /// Whether some static or modal reading has a temperature.
     pub has_temperatures: bool,
 }
@@ -71,6 +74,7 @@ impl Forward {
             starts,
             groups: groups.names,
             payload_density_kg_m3: campaign.statement.payload_density_kg_m3,
+            zero_columns: OnceLock::new(),
             has_temperatures: campaign.statics.iter().any(|r| r.temperature_c.is_some())
                 || campaign.modal.iter().any(|r| r.temperature_c.is_some()),
             largest_payload_kg: payloads_kg.iter().copied().fold(0.0, f64::max),
@@ -101,6 +105,8 @@ impl Forward {
     /// Renumbers the modes of frequency lists from which a mode is missing, by comparison with the frequencies of an
     /// arm with these coefficients. Returns a sentence for each list that was changed.
     pub fn find_missed_modes(&mut self, coefficients: &Coefficients) -> Vec<String> {
+        // the modes of the readings change
+        self.zero_columns = OnceLock::new();
         let mut out = Vec::new();
         for (i, test) in self.modal.iter_mut().enumerate() {
             if let Some(mode) = test.find_missed_mode(&self.layout, coefficients, &self.data) {

@@ -1,9 +1,11 @@
 //! Laws of joint angles whose zero is off: every pose of the campaign is another one than stated.
 
 use super::{Builder, Law};
+use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::prepared::Forward;
+use rayon::prelude::*;
 
-/// Half of the difference in angle over which the readings are compared \[deg\].
+/// Angle over which the readings are compared \[deg\].
 const STEP_DEG: f64 = 0.1;
 /// The angle that counts as the full size of the law \[deg\].
 const FULL_SIZE_DEG: f64 = 30.0;
@@ -12,33 +14,38 @@ impl Builder<'_> {
     /// For each driven joint, the law that its angle is another than stated, by the same amount in every pose.
     pub(super) fn zero_laws(&self) -> Vec<Law> {
         let names = self.campaign.arm.driven_joint_names();
-        let law = |(index, name): (usize, &&str)| Law {
+        let columns = self.forward.zero_columns.get_or_init(|| self.zero_columns(names.len()));
+        let law = |(name, column): (&&str, &Vec<f64>)| Law {
             what: format!("an angle of {name} whose zero is off"),
             effect: None,
-            columns: vec![self.zero_column(index)],
+            columns: vec![column.clone()],
         };
-        names.iter().enumerate().map(law).collect()
+        names.iter().zip(columns).map(law).collect()
     }
 
-    /// The change of every reading, in its unit, by an angle of the driven joint number `index` that is off in every pose,
-    /// per full size.
-    fn zero_column(&self, index: usize) -> Vec<f64> {
-        let [more, less] = [STEP_DEG, -STEP_DEG].map(|off_deg| self.readings_turned_by(index, off_deg));
-        let per_step = FULL_SIZE_DEG / (2.0 * STEP_DEG);
-        more.iter().zip(&less).map(|(more, less)| per_step * (more - less)).collect()
+    /// For each of the first `joints` driven joints, the change of every reading of the nominal arm, in its unit, by an
+    /// angle that is off in every pose, per full size. All poses have to be prepared anew, so this is computed once and
+    /// about the nominal arm, and not for every fit.
+    fn zero_columns(&self, joints: usize) -> Vec<Vec<f64>> {
+        let nominal = self.forward.coefficients(&self.forward.nominal);
+        let stated = self.readings_turned_by(0, 0.0, &nominal);
+        let per_step = FULL_SIZE_DEG / STEP_DEG;
+        let column = |index: usize| {
+            let turned = self.readings_turned_by(index, STEP_DEG, &nominal);
+            turned.iter().zip(&stated).map(|(turned, stated)| per_step * (turned - stated)).collect()
+        };
+        (0..joints).into_par_iter().map(column).collect()
     }
 
     /// The predicted readings if the angle of the driven joint number `index` is larger by `off_deg` in every pose.
-    fn readings_turned_by(&self, index: usize, off_deg: f64) -> Vec<f64> {
+    fn readings_turned_by(&self, index: usize, off_deg: f64, coefficients: &Coefficients) -> Vec<f64> {
         let mut campaign = self.campaign.clone();
         campaign.statics.iter_mut().for_each(|row| row.pose_deg[index] += off_deg);
         campaign.modal.iter_mut().for_each(|row| row.pose_deg[index] += off_deg);
-        let coefficients = &self.fit.point.coefficients;
         let mut forward = Forward::new(&campaign);
         for (turned, stated) in forward.modal.iter_mut().zip(&self.forward.modal) {
             turned.modes.clone_from(&stated.modes);
         }
-        forward.refresh(coefficients);
         forward.predict(coefficients)
     }
 }
