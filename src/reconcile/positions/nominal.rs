@@ -12,6 +12,7 @@ use super::fitted::{Fitted, Sample};
 use super::kinematics::Number;
 use super::loads::{CompliantPlace, Loads};
 use super::search::{FULL_FITS, TIE};
+use crate::arm::effect::subject::Subject;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -25,9 +26,17 @@ impl Positions {
     /// Computes how the nominal deflection depends on stiffnesses, moduli and masses, and frees those that calibration
     /// adjusts within tolerance. An arm that is rigid in its file does not deflect, so that nothing changes.
     pub(super) fn free_tolerances(&mut self, campaign: &Campaign) {
+        let stated_m = self.deflections_m(campaign, &|_| {});
+        if stated_m.iter().all(|by| by.norm() <= NOTHING_M) {
+            return;
+        }
         let all = dependences(campaign);
-        let columns: Vec<Vec<Vector3<f64>>> =
-            all.iter().map(|dependence| self.changes_m(campaign, dependence)).collect();
+        // change of the deflection per unit of the number, in the level frame
+        let changes_m = |dependence: &Dependence| -> Vec<Vector3<f64>> {
+            let changed_m = self.deflections_m(campaign, &|subject| dependence.change(STEP, subject));
+            changed_m.iter().zip(&stated_m).map(|(changed, stated)| (changed - stated) / STEP).collect()
+        };
+        let columns: Vec<Vec<Vector3<f64>>> = all.iter().map(changes_m).collect();
         let is_seen = |column: &[Vector3<f64>]| column.iter().any(|by| by.norm() > NOTHING_M);
         let (dependences, columns): (Vec<Dependence>, Vec<Vec<Vector3<f64>>>) =
             all.into_iter().zip(columns).filter(|(_, column)| is_seen(column)).unzip();
@@ -45,18 +54,11 @@ impl Positions {
         }
     }
 
-    /// For each sample, the change of its nominal deflection per unit of the number of a dependence, in the level frame
-    /// \[m\].
-    fn changes_m(&self, campaign: &Campaign, dependence: &Dependence) -> Vec<Vector3<f64>> {
-        let geometry = &self.fitted.geometry;
-        let of = |x: f64| {
-            Loads::changed(campaign, &self.tree, geometry, &[], &|subject| dependence.change(x, subject))
-        };
-        let [more, less] = [of(STEP), of(0.0)];
+    /// For each sample, the deflection of the nominal arm after the change `change`, in the level frame \[m\].
+    fn deflections_m(&self, campaign: &Campaign, change: &dyn Fn(&mut Subject)) -> Vec<Vector3<f64>> {
+        let loads = Loads::changed(campaign, &self.tree, &self.fitted.geometry, &[], change);
         let rows = self.samples.par_iter().zip(&campaign.positions);
-        let change =
-            |(s, row): (&Sample, _)| (more.known_m(row, s.point) - less.known_m(row, s.point)) / STEP;
-        rows.map(change).collect()
+        rows.map(|(sample, row)| loads.known_m(row, sample.point)).collect()
     }
 
     /// Price of an effect on the nominal deflection \[ln of the likelihood\]: the rise of the logarithm of the
