@@ -7,6 +7,27 @@ use crate::input::key::{Key, Kind, Rule, Shape, optional, required};
 /// A list of bodies of a prismatic joint.
 const PRISMATIC_BODIES: Kind = Kind::List(&Kind::Object(&PRISMATIC_BODY));
 
+/// The stiffness of the drive along the travel.
+pub(crate) const DRIVE_STIFFNESS: Key = required(
+    "stiffness_n_per_m",
+    POSITIVE_OR_NULL,
+    "N/m",
+    "Stiffness of the drive along the travel; null is rigid.",
+);
+
+/// The stiffnesses of the guide.
+pub(crate) const GUIDE_STIFFNESSES: Key =
+    optional("guide", Kind::Object(&GUIDE), "N m/rad", "rigid", "Stiffnesses of the guide.");
+
+/// Whether the guide travels.
+pub(crate) const MOVES: Key = optional(
+    "moves",
+    Kind::Word(&["carriage", "ram"]),
+    "-",
+    "\"carriage\"",
+    "Whether the springs of the guide travel (carriage) or stay (ram).",
+);
+
 /// Index in [`KEYS`] of the key for the stiffness of the drive.
 pub(crate) const STIFFNESS: usize = 3;
 
@@ -20,20 +41,9 @@ pub(crate) const KEYS: [Key; 9] = [
         "-",
         "Direction of the travel in the frame moved by the joints before it; its length does not matter.",
     ),
-    required(
-        "stiffness_n_per_m",
-        POSITIVE_OR_NULL,
-        "N/m",
-        "Stiffness of the drive along the travel; null is rigid.",
-    ),
-    optional("guide", Kind::Object(&GUIDE), "N m/rad", "rigid", "Stiffnesses of the guide."),
-    optional(
-        "moves",
-        Kind::Word(&["carriage", "ram"]),
-        "-",
-        "\"carriage\"",
-        "Whether the springs of the guide travel (carriage) or stay (ram).",
-    ),
+    DRIVE_STIFFNESS,
+    GUIDE_STIFFNESSES,
+    MOVES,
     optional("mass_kg", Kind::NonNegative, "kg", "0", "What travels: a point at the moved point."),
     optional("fixed_mass_kg", Kind::NonNegative, "kg", "0", "What stays: a point where the joint begins."),
     optional("bodies", PRISMATIC_BODIES, "-", "[]", "Rigid parts with centre and inertia."),

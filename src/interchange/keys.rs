@@ -1,9 +1,8 @@
 //! The keys of the files of an import: the stiffness file, which users write, and `import.json`, which the program writes.
 
-use crate::arm::keys::POSITIVE_OR_NULL;
-use crate::arm::prismatic_keys::{GUIDE, KEYS as PRISMATIC_KEYS};
+use crate::arm::prismatic_keys::{DRIVE_STIFFNESS, GUIDE_STIFFNESSES, MOVES};
 use crate::arm::shared_keys::{GEAR, MOTOR, OUTPUT_BEARING, STIFFNESS, TORSION_CURVE, WHICH_GEAR_MASS};
-use crate::input::key::{Kind, Rule, SCHEMA_ADDRESS, Shape, optional, required};
+use crate::input::key::{Kind, Rule, SCHEMA_ADDRESS, Shape, required};
 use crate::input::schema::FileKind;
 
 /// The format of a stiffness file.
@@ -51,16 +50,7 @@ pub(super) static HINGE: Shape = Shape::new(
 pub(super) static SLIDE: Shape = Shape::new(
     "joint that slides",
     "A joint that slides.",
-    &[
-        required(
-            "stiffness_n_per_m",
-            POSITIVE_OR_NULL,
-            "N/m",
-            "Stiffness of the drive along the travel; null is rigid.",
-        ),
-        optional("guide", Kind::Object(&GUIDE), "N m/rad", "rigid", "Stiffnesses of the guide."),
-        PRISMATIC_KEYS[5],
-    ],
+    &[DRIVE_STIFFNESS, GUIDE_STIFFNESSES, MOVES],
     &[],
 );
 

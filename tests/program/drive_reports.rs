@@ -1,22 +1,12 @@
 //! What `size`, the page and the bill of materials say of drives: forces of joints that slide with their units, the mass
 //! that goes inward, and messages that name all that is missing.
 
+use crate::drives::folder;
 use crate::links::armwright;
 use serde_json::{Value, json};
 use std::path::Path;
 
 const GRAVITY_M_S2: f64 = 9.81;
-
-/// A folder with a study and own catalogs in `parts`.
-fn folder(study: &Value, files: &[(&str, &str)]) -> tempfile::TempDir {
-    let here = tempfile::tempdir().expect("a temporary folder");
-    std::fs::write(here.path().join("study.json"), study.to_string()).expect("written");
-    std::fs::create_dir(here.path().join("parts")).expect("a folder");
-    for (name, text) in files {
-        std::fs::write(here.path().join("parts").join(name), text).expect("written");
-    }
-    here
-}
 
 /// What a command says, without line breaks.
 fn said(here: &Path, args: &[&str], code: i32) -> String {

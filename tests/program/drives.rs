@@ -22,7 +22,7 @@ const ACTUATORS: &str = "model,ratio,rated_torque_nm,peak_torque_nm,rated_speed_
     ACT-X,100,110,220,15,25,,3.0,52000,150000,200,a test,verified\n";
 
 /// A folder with a study and own catalogs in `parts`.
-fn folder(study: &Value, files: &[(&str, &str)]) -> tempfile::TempDir {
+pub fn folder(study: &Value, files: &[(&str, &str)]) -> tempfile::TempDir {
     let here = tempfile::tempdir().expect("a temporary folder");
     std::fs::write(here.path().join("study.json"), study.to_string()).expect("written");
     std::fs::create_dir(here.path().join("parts")).expect("a folder");
