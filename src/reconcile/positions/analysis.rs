@@ -250,6 +250,15 @@ impl Positions {
         self.free_tolerances(campaign);
     }
 
+    /// This model without those of its numbers for which `is_gone` is true. It is not fitted again.
+    pub(super) fn without_numbers(&self, is_gone: impl Fn(&Number) -> bool) -> Self {
+        let mut out = self.clone();
+        let kept = self.numbers.iter().zip(&self.fitted.moved).filter(|(number, _)| !is_gone(number));
+        out.fitted.moved = kept.map(|(_, moved)| *moved).collect();
+        out.numbers.retain(|number| !is_gone(number));
+        out
+    }
+
     /// Fits the current model again to all samples (measured positions), starting from its present values.
     pub(super) fn refit(&mut self) {
         let all: Vec<&Sample> = self.samples.iter().collect();

@@ -4,7 +4,7 @@
 use super::analysis::Positions;
 use super::fit::fit;
 use super::fitted::Sample;
-use super::kinematics::{Number, Placing};
+use super::kinematics::Placing;
 use super::moved::{Boundary, Kind, Moved};
 use crate::reconcile::fit::stats::median;
 use crate::reconcile::readings::campaign::Campaign;
@@ -160,16 +160,16 @@ impl Positions {
     /// The model without the session boundary with index `index`, fitted again: the rows on both sides of it are one
     /// session.
     fn without_session(&self, index: usize) -> Self {
-        let mut out = self.clone();
+        let gone = self.sessions[index].earlier.numbers();
+        let Some((_, after)) = self.labels(&self.sessions[index]) else {
+            let mut out = self.clone();
+            out.sessions.remove(index);
+            return out;
+        };
+        let mut out = self.without_numbers(|number| gone.contains(number));
         let boundary = out.sessions.remove(index);
-        let Some((_, after)) = self.labels(&boundary) else { return out };
         let all = out.samples.len();
         boundary.earlier.relabel(&mut out.samples, all, after);
-        let gone = boundary.earlier.numbers();
-        let kept = |n: &&Number| !gone.contains(n);
-        let moved = self.numbers.iter().zip(&self.fitted.moved);
-        out.fitted.moved = moved.filter(|(n, _)| kept(n)).map(|(_, moved)| *moved).collect();
-        out.numbers.retain(|n| kept(&n));
         let samples: Vec<&Sample> = out.samples.iter().collect();
         out.fitted = fit(&samples, &out.numbers, &out.fitted.effects, &out.fitted);
         out

@@ -106,12 +106,8 @@ impl Positions {
 
     /// The model without the effect number `k` on the nominal deflection, fitted again.
     fn without_dependence(&self, k: usize) -> Self {
-        let mut out = self.clone();
-        let kept = |n: &Number| *n != Number::Effect(k);
-        let moved = self.numbers.iter().zip(&self.fitted.moved).filter(|(n, _)| kept(n));
-        out.fitted.moved = moved.map(|(_, moved)| *moved).collect();
+        let mut out = self.without_numbers(|number| *number == Number::Effect(k));
         out.fitted.geometry.dependences[k] = 0.0;
-        out.numbers.retain(kept);
         out.named_dependences.retain(|named| *named != k);
         out.refit();
         out

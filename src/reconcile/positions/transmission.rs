@@ -67,12 +67,8 @@ impl Positions {
     /// Indices of the other driven joints whose transmission error, in place of that of `joint`, would fit the
     /// positions as well.
     pub(crate) fn transmission_competitors(&self, joint: usize) -> Vec<usize> {
-        let mut without = self.clone();
-        let kept = |n: &Number| !matches!(n, Number::Transmission(j, _) if *j == joint);
-        without.fitted.moved =
-            self.numbers.iter().zip(&self.fitted.moved).filter(|(n, _)| kept(n)).map(|(_, m)| *m).collect();
+        let mut without = self.without_numbers(|n| matches!(n, Number::Transmission(j, _) if *j == joint));
         without.fitted.geometry.transmissions_rad[joint] = [0.0; 4];
-        without.numbers.retain(kept);
         without.transmissions.retain(|j| *j != joint);
         without.refit();
         let tried = without.best_transmissions().into_iter();
