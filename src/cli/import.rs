@@ -4,7 +4,7 @@ use super::failure::Failure;
 use super::finished::pretty;
 use super::own_files::write_own;
 use crate::catalog::Catalogs;
-use crate::input::json::{Document, Fault, Faults};
+use crate::input::json::{Document, read_text};
 use crate::interchange::given::{blank, read_given};
 use crate::interchange::import::Robot;
 use clap::Args;
@@ -31,27 +31,6 @@ pub(crate) struct ImportArgs {
     /// Folder for arm.json and import.json
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-}
-
-/// The text of a URDF file.
-///
-/// # Errors
-/// The file cannot be read, or it is not in UTF-8.
-fn read_text(path: &Path) -> Result<String, Failure> {
-    let bytes = fs_err::read(path).map_err(|e| Failure::File(e.to_string()))?;
-    String::from_utf8(bytes).map_err(|e| {
-        let before = &e.as_bytes()[..e.utf8_error().valid_up_to()];
-        let line = before.iter().filter(|byte| **byte == b'\n').count() + 1;
-        let byte = e.as_bytes().get(before.len()).copied().unwrap_or_default();
-        Failure::Input(Faults(vec![Fault {
-            file: path.display().to_string(),
-            line: Some(line),
-            field: String::new(),
-            problem: format!("is not in UTF-8: the byte {byte:#04x} begins no character"),
-            hint: "save the file in UTF-8; a file in Latin-1 is converted by `iconv -f latin1 -t utf8`"
-                .into(),
-        }]))
-    })
 }
 
 /// Name of the file with the stiffness of all joints, which an import without one writes to be filled in.

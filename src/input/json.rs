@@ -6,6 +6,7 @@
 
 pub use super::lines::LineCounter;
 
+use super::encoding::{NotUtf8, decode};
 use super::key::Shape;
 use super::names::visible;
 use super::path::join;
@@ -79,6 +80,24 @@ pub enum InputError {
     Faulty(#[from] Faults),
 }
 
+/// Reads a text file.
+///
+/// # Errors
+/// [`InputError::Unreadable`] if the file cannot be read, [`InputError::Faulty`] if it is not in UTF-8.
+pub(crate) fn read_text(path: &Path) -> Result<String, InputError> {
+    let file = path.display().to_string();
+    let bytes =
+        std::fs::read(path).map_err(|source| InputError::Unreadable { file: file.clone(), source })?;
+    let in_file = |wrong: NotUtf8| Fault {
+        file,
+        line: Some(wrong.line),
+        field: String::new(),
+        problem: wrong.problem,
+        hint: wrong.hint.into(),
+    };
+    Ok(decode(bytes).map_err(|wrong| Faults(vec![in_file(wrong)]))?)
+}
+
 /// The text of one JSON file, its parsed value, and the faults found in it so far.
 ///
 /// ```
@@ -104,9 +123,7 @@ impl Document {
     /// [`InputError::Unreadable`] if the file is missing, [`InputError::Faulty`] if it is not JSON.
     pub fn read(path: &Path) -> Result<Self, InputError> {
         let file = path.display().to_string();
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| InputError::Unreadable { file: file.clone(), source })?;
-        Ok(Self::parse(&file, &text)?)
+        Ok(Self::parse(&file, &read_text(path)?)?)
     }
 
     /// Parses JSON text. `file` is the name that is used in messages.

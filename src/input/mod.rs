@@ -2,6 +2,7 @@
 
 pub(crate) mod csv;
 pub(crate) mod duplicates;
+pub(crate) mod encoding;
 pub(crate) mod json;
 pub(crate) mod key;
 pub(crate) mod lines;

@@ -241,7 +241,7 @@ impl<'t> Walk<'t> {
         };
         self.end_link();
         let springs = given.iter().find(|given| given.name == joint.name).map(|given| &given.springs);
-        self.report.joint(joint, springs, coupled.as_deref());
+        self.report.joint(joint, springs, coupled.as_deref(), offset_rad);
         let in_world = Unit::new_normalize(self.at.rotation * axis.into_inner());
         self.chain.push(match slides(joint) {
             true => Element::Prismatic(slide(&joint.name, in_world, springs)),

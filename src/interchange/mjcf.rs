@@ -25,10 +25,13 @@ const PLAY_ARMATURE: f64 = 1e-3;
 /// Time step that the file states \[s\].
 const STEP_S: f64 = 1e-4;
 
-/// An MJCF file, and whether MuJoCo must change inertias in it.
+/// An MJCF file, and what the reader must know of it.
 pub(crate) struct Mjcf {
     /// The text of the file.
     pub text: String,
+    /// Passive joints with a spring, whose own hinges have an armature that the arm does not have, each with the
+    /// armature \[kg m²; kg if it slides\].
+    pub passive_armatures: Vec<(String, f64)>,
     /// Whether some body has an inertia that no solid can have, so that MuJoCo must change it.
     pub balanced: bool,
 }
@@ -42,6 +45,8 @@ pub(crate) fn mjcf(
 ) -> Mjcf {
     let mut nodes = tree(snapshot, options);
     name_bodies(&mut nodes);
+    let passive_armatures = passive_armatures(snapshot, &nodes);
+    let armatures = armatures_kgm2(motors, &passive_armatures);
     let least = Least::of(&nodes);
     let balanced = nodes.iter().any(|node| !is_solid(node, &least));
     let case = &snapshot.case;
@@ -71,7 +76,7 @@ pub(crate) fn mjcf(
     xml.open("worldbody", &[]);
     let mut before_m = Vector3::zeros();
     for node in &nodes {
-        body(&mut xml, node, &before_m, &least, motors);
+        body(&mut xml, node, &before_m, &least, &armatures);
         before_m = node.origin_m;
     }
     let posed = snapshot.at_zero();
@@ -84,7 +89,36 @@ pub(crate) fn mjcf(
     couplings(&mut xml, snapshot, &nodes);
     actuators(&mut xml, snapshot, motors);
     keyframes(&mut xml, snapshot, &nodes);
-    Mjcf { text: xml.finish(), balanced }
+    Mjcf { text: xml.finish(), passive_armatures, balanced }
+}
+
+/// Armatures of the passive joints that have a spring, by name \[kg m²; kg if the joint slides\]. The hinge that
+/// follows the driving joints and that of the spring have one axis and nothing between them. The passive joint has no
+/// motor, and without an armature the mass matrix would be singular.
+fn passive_armatures(snapshot: &Snapshot, nodes: &[Node]) -> Vec<(String, f64)> {
+    let hinges = || nodes.iter().flat_map(|node| &node.hinges);
+    let passive = snapshot.structure.joints().filter(|joint| !joint.is_driven());
+    let with_spring = passive.filter_map(|joint| {
+        let own = hinges().find(|hinge| hinge.name == joint.name)?;
+        let spring = hinges().find_map(|hinge| match hinge.role {
+            // the springs of a bearing have other axes
+            Role::Spring(working) if hinge.element == joint.name && is_along(hinge, own) => Some(working),
+            _ => None,
+        })?;
+        Some((joint.name.clone(), play_armature_kgm2(0.0, &spring)))
+    });
+    with_spring.collect()
+}
+
+/// Whether two hinges have the same axis.
+fn is_along(hinge: &Hinge, other: &Hinge) -> bool {
+    hinge.slides == other.slides && hinge.axis.dot(&other.axis).abs() > 1.0 - 1e-9
+}
+
+/// Armatures by name of the joint \[kg m²; kg if it slides\], of joints with a motor and of passive joints.
+fn armatures_kgm2(motors: &BTreeMap<String, Motor>, passive: &[(String, f64)]) -> BTreeMap<String, f64> {
+    let of_motors = motors.iter().map(|(name, motor)| (name.clone(), motor.armature_kgm2));
+    of_motors.chain(passive.iter().cloned()).collect()
 }
 
 /// Opens the XML element of a body. It stays open, because the bodies outboard of it are nested inside. `before_m` is
@@ -94,11 +128,11 @@ fn body(
     node: &Node,
     before_m: &Vector3<f64>,
     least: &Least,
-    motors: &BTreeMap<String, Motor>,
+    armatures: &BTreeMap<String, f64>,
 ) {
     xml.open("body", &[("name", node.name.clone()), ("pos", triple(&(node.origin_m - before_m)))]);
     for hinge in &node.hinges {
-        xml.leaf("joint", &joint(hinge, &node.origin_m, motors));
+        xml.leaf("joint", &joint(hinge, &node.origin_m, armatures));
     }
     let (mass_kg, cg_m, inertia) = mass_properties(&node.inertia);
     let inertia = inertia + least.inertia_kgm2(mass_kg);
@@ -130,7 +164,7 @@ fn body(
 fn joint(
     hinge: &Hinge,
     origin_m: &Vector3<f64>,
-    motors: &BTreeMap<String, Motor>,
+    armatures: &BTreeMap<String, f64>,
 ) -> Vec<(&'static str, String)> {
     let mut out = vec![
         ("name", hinge.name.clone()),
@@ -140,8 +174,8 @@ fn joint(
     ];
     match hinge.role {
         Role::Motor => {
-            if let Some(motor) = motors.get(&hinge.name) {
-                out.push(("armature", numbers(&[motor.armature_kgm2])));
+            if let Some(armature_kgm2) = armatures.get(&hinge.name) {
+                out.push(("armature", numbers(&[*armature_kgm2])));
             }
         }
         Role::Spring(working) => {
@@ -150,7 +184,7 @@ fn joint(
         }
         Role::Play { half_rad, gear } => {
             out.push(("range", numbers(&[-half_rad, half_rad])));
-            let motor_kgm2 = motors.get(&hinge.element).map_or(0.0, |motor| motor.armature_kgm2);
+            let motor_kgm2 = armatures.get(&hinge.element).copied().unwrap_or_default();
             out.push(("armature", numbers(&[play_armature_kgm2(motor_kgm2, &gear)])));
         }
     }
@@ -212,22 +246,30 @@ fn actuators(xml: &mut Xml, snapshot: &Snapshot, motors: &BTreeMap<String, Motor
 /// frequencies and torques; in the second they are deflected by the load of the case.
 fn keyframes(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
     let (driven, pose) = (snapshot.case_joints(), snapshot.pose_si());
-    let angle = |name: &str| {
-        let passive = snapshot.structure.joints().find(|joint| joint.name == name);
-        let entry = driven.iter().position(|joint| joint == name).map(|at| pose[at]);
-        entry.or(passive.map(|joint| joint.angle.of(&pose))).unwrap_or_default()
+    let hinges = || nodes.iter().flat_map(|node| &node.hinges);
+    let drive = |hinge: &Hinge, deflected: bool| match hinge.role {
+        Role::Motor => driven.iter().position(|joint| *joint == hinge.name).map_or(0.0, |at| pose[at]),
+        Role::Spring(working) if deflected => working.deflection_rad,
+        // the load of the gear pushes the backlash to its stop
+        Role::Play { half_rad, gear } if deflected && gear.load_nm != 0.0 => half_rad.copysign(gear.load_nm),
+        _ => 0.0,
+    };
+    // a passive joint follows the outputs of its driving joints: motor, backlash and gear
+    let follow = |terms: &[(usize, f64)], deflected: bool| -> f64 {
+        let output = |joint: &String| {
+            hinges().filter(|hinge| hinge.element == *joint).map(|hinge| drive(hinge, deflected)).sum::<f64>()
+        };
+        terms.iter().map(|(index, factor)| factor * output(&driven[*index])).sum()
     };
     let position = |deflected: bool| {
-        let of = |hinge: &Hinge| match hinge.role {
-            Role::Motor => angle(&hinge.name),
-            Role::Spring(working) if deflected => working.deflection_rad,
-            // the load of the gear pushes the backlash to its stop
-            Role::Play { half_rad, gear } if deflected && gear.load_nm != 0.0 => {
-                half_rad.copysign(gear.load_nm)
-            }
-            _ => 0.0,
+        let of = |hinge: &Hinge| match snapshot.structure.joints().find(|joint| joint.name == hinge.name) {
+            Some(joint) => match &joint.angle {
+                JointAngle::Coupled(terms) => follow(terms, deflected),
+                JointAngle::Driven(_) => drive(hinge, deflected),
+            },
+            None => drive(hinge, deflected),
         };
-        numbers(&nodes.iter().flat_map(|node| &node.hinges).map(of).collect::<Vec<_>>())
+        numbers(&hinges().map(of).collect::<Vec<_>>())
     };
     xml.open("keyframe", &[]);
     xml.leaf("key", &[("name", "pose".into()), ("qpos", position(false))]);

@@ -55,12 +55,13 @@ impl ImportReport {
     }
 
     /// Records a joint of the arm. `springs` are the elastic properties that the stiffness file states for it; `None`
-    /// if it states none.
+    /// if it states none. `offset` is the constant of a joint that follows another one \[rad, or m if it slides\].
     pub(super) fn joint(
         &mut self,
         joint: &Joint,
         springs: Option<&GivenSprings>,
         coupled: Option<&[(String, f64)]>,
+        offset: f64,
     ) {
         let stiffness = match springs.map(GivenSprings::is_rigid) {
             None => "rigid: not given",
@@ -78,9 +79,10 @@ impl ImportReport {
             _ => (finite(joint.limit.lower), finite(joint.limit.upper)),
         };
         if let Some((driver, factor)) = coupled.and_then(|terms| terms.first()) {
-            let offset_deg = joint.mimic.as_ref().and_then(|mimic| mimic.offset).unwrap_or(0.0).to_degrees();
+            let (offset, unit) =
+                if slides(joint) { (1e3 * offset, "mm") } else { (offset.to_degrees(), "deg") };
             self.guessed.push(format!(
-                "{}: a passive joint, {factor} times {driver}; its offset of {offset_deg} deg is in the zero position",
+                "{}: a passive joint, {factor} times {driver}; its offset of {offset} {unit} is in the zero position",
                 joint.name
             ));
         }

@@ -3,7 +3,7 @@
 //! The text is parsed by the crate `urdf-rs`. What the crate does not check is checked here: duplicate and unknown
 //! names, links with two parents, loops, axes without a direction, and masses and inertias that no body can have.
 
-use super::urdf_place::{line_of_robot, no_numbers};
+use super::urdf_place::{cut_off_at, line_of_robot, no_numbers};
 use crate::input::json::{Fault, Faults};
 use crate::input::names::unfit_name;
 use nalgebra::{Isometry3, Matrix3, SymmetricEigen, Translation3, UnitQuaternion, Vector3};
@@ -68,6 +68,11 @@ impl UrdfTree {
                 let hint = "write numbers with a point, separated by spaces";
                 let problem = format!("is no list of numbers: {wrong}");
                 return Faults(vec![Fault { line: Some(line), ..fault("", problem, hint) }]);
+            }
+            if let Some(last) = cut_off_at(text) {
+                let hint = "save the whole file again; it ends with </robot>";
+                let problem = "is empty or cut off: no </robot> ends it".to_string();
+                return Faults(vec![Fault { line: Some(last), ..fault("", problem, hint) }]);
             }
             let hint = "the file must be plain URDF: expand macros first with `xacro FILE.xacro > FILE.urdf`";
             Faults(vec![Fault { line: None, ..fault("", format!("is no URDF: {e}"), hint) }])
@@ -154,6 +159,11 @@ impl UrdfTree {
                 "give <axis xyz=\"0 0 1\"/>",
             ));
         }
+        pose_problems(&joint.name, &joint.origin, out);
+        let mimic_numbers = joint.mimic.iter().flat_map(|mimic| [mimic.multiplier, mimic.offset]).flatten();
+        if mimic_numbers.into_iter().any(|number| !number.is_finite()) {
+            out.push((joint.name.clone(), "has a multiplier or an offset that is no number".into(), ""));
+        }
         if let Some(mimic) = &joint.mimic
             && !self.joints.iter().any(|other| other.name == mimic.joint)
         {
@@ -224,8 +234,24 @@ impl UrdfTree {
     }
 }
 
+/// Largest distance that an origin may have \[m\]. A larger one is in another unit, or a mistake.
+const FARTHEST_M: f64 = 1e4;
+
+/// Checks that an `<origin>` has a position and angles of a size that robots have.
+fn pose_problems(name: &str, origin: &Pose, out: &mut Vec<(String, String, &'static str)>) {
+    let (xyz, rpy) = (origin.xyz.0, origin.rpy.0);
+    if xyz.iter().chain(&rpy).any(|number| !number.is_finite()) {
+        let problem = format!("has an origin that is no number: xyz {xyz:?}, rpy {rpy:?}");
+        out.push((name.to_string(), problem, "give lengths in metres and angles in radians"));
+    } else if let Some(far_m) = xyz.iter().find(|number| number.abs() > FARTHEST_M) {
+        let problem = format!("has an origin {far_m} m away; at most {FARTHEST_M} m are read");
+        out.push((name.to_string(), problem, "give lengths in metres"));
+    }
+}
+
 /// Checks that the mass and the principal moments of a body are not negative.
 fn body_problems(link: &Link, out: &mut Vec<(String, String, &'static str)>) {
+    pose_problems(&link.name, &link.inertial.origin, out);
     let mass_kg = link.inertial.mass.value;
     if !(mass_kg >= 0.0 && mass_kg.is_finite()) {
         out.push((
@@ -237,6 +263,9 @@ fn body_problems(link: &Link, out: &mut Vec<(String, String, &'static str)>) {
     let tensor = tensor(link);
     if tensor.iter().any(|entry| !entry.is_finite()) {
         out.push((link.name.clone(), "has an inertia that is no number".into(), ""));
+        return;
+    }
+    if link.inertial.origin.xyz.0.iter().any(|number| !number.is_finite()) {
         return;
     }
     let least = SymmetricEigen::new(tensor).eigenvalues.min();

@@ -44,6 +44,13 @@ fn value_of<'t>(line: &'t str, key: &str) -> Option<&'t str> {
     rest[1..].split(quote).next()
 }
 
+/// The last line of a text that is cut off: it has no `<robot>`, or one that nothing ends. `None` if it is whole.
+pub(super) fn cut_off_at(text: &str) -> Option<usize> {
+    let is_other = text.contains('<') && !text.contains("<robot");
+    let is_whole = text.contains("</robot") || is_other;
+    (!is_whole).then(|| text.lines().count().max(1))
+}
+
 /// The line in which the robot begins.
 pub(super) fn line_of_robot(text: &str) -> Option<usize> {
     text.lines().position(|line| line.contains("<robot")).map(|at| at + 1)

@@ -6,7 +6,7 @@ use super::named::named;
 use super::read::read_study;
 use super::refusal::Refusal;
 use crate::catalog::Catalogs;
-use crate::input::json::Document;
+use crate::input::json::{Document, InputError, read_text};
 use std::path::Path;
 
 /// The text of the study `name`, built in or from a file, and the name of the study in messages.
@@ -19,7 +19,7 @@ fn study_text(name: &str) -> Result<(String, String), Refusal> {
         let words = "is a study of the paper, which is computed without a search: `armwright run` has it, no other verb";
         return Err(Refusal::Unknown(format!("{name} {words}")));
     }
-    match fs_err::read_to_string(path) {
+    match read_text(path) {
         Ok(text) => Ok((name.to_string(), text)),
         Err(_) if !name.contains(['/', '.']) => {
             let known = crate::study::names();
@@ -27,6 +27,7 @@ fn study_text(name: &str) -> Result<(String, String), Refusal> {
                 .map_or(String::new(), |n| format!("; did you mean {n}?"));
             Err(Refusal::Unknown(format!("no study is called \"{name}\"{near}; known: {}", known.join(", "))))
         }
+        Err(InputError::Faulty(faults)) => Err(Refusal::Faulty(faults)),
         Err(error) => Err(Refusal::Unreadable(error.to_string())),
     }
 }

@@ -4,7 +4,7 @@
 use super::source::Source;
 use super::spreadsheet::{is_spreadsheet, read_sheet};
 use crate::input::csv::{Csv, Record, is_repeated, other_separators};
-use crate::input::json::{Fault, InputError, closest};
+use crate::input::json::{Fault, InputError, closest, read_text};
 use crate::input::names::{unfit_cell, unfit_name};
 use std::cell::RefCell;
 use std::path::Path;
@@ -42,9 +42,7 @@ impl Table {
     /// The file cannot be read.
     pub fn read(path: &Path) -> Result<Self, InputError> {
         let file = path.display().to_string();
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| InputError::Unreadable { file: file.clone(), source })?;
-        Ok(Self::parse(&file, &text))
+        Ok(Self::parse(&file, &read_text(path)?))
     }
 
     /// Reads a CSV file or a sheet of a spreadsheet, and gives its columns the names of this program. `source` names

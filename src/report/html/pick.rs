@@ -215,12 +215,18 @@ impl PickedArm {
                 name: s.piece.clone(),
                 at: (view.place(&s.at_m), view.place(&s.moved_m)),
                 axis: (!across).then(|| view.place(&axis)),
+                slides: false,
             })
+        });
+        // a joint that slides is where its travel ends
+        let slides = self.arm.prismatics().filter_map(|joint| {
+            let at = own(&joint.name).last().copied()?;
+            Some(Pivot { name: joint.name.clone(), at, axis: None, slides: true })
         });
         let tip = line.last().map_or(Vector3::zeros(), |s| s.moved_m);
         ArmSketch {
             tubes: ways.chain(tubes).collect(),
-            pivots: pivots.collect(),
+            pivots: pivots.chain(slides).collect(),
             payload: (solved.case.payload.mass_kg > 0.0)
                 .then(|| (view.place(&solved.payload_m), view.place(&tip))),
             springs: self.springs(solved.case, view),

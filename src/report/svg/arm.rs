@@ -1,9 +1,9 @@
 //! A drawing of an arm to scale, with its deformation exaggerated by a stated factor.
 //!
 //! Links have their length and outer size to scale. Joints are symbols: a circle if the axis is perpendicular to
-//! the drawing, a bar along the axis if it lies in the plane.
+//! the drawing, a bar along the axis if it lies in the plane, a square if the joint slides.
 
-use super::draw::{FONT_PX, INK, NOTE_PX, escape, head, line, px, text, text_px};
+use super::draw::{CHARACTER, FONT_PX, INK, NOTE_PX, escape, head, line, px, text, text_px, wrap};
 use crate::report::number::shortest;
 use std::fmt::Write;
 
@@ -30,6 +30,8 @@ pub(crate) struct Pivot {
     pub at: (Place, Place),
     /// Direction of the joint's axis in the plane; `None` if the axis is perpendicular to it.
     pub axis: Option<Place>,
+    /// Whether the joint slides along its axis, instead of turning about it.
+    pub slides: bool,
 }
 
 /// A drawing of an arm in a pose.
@@ -59,7 +61,11 @@ pub(crate) struct ArmSketch {
 
 const MARGIN_PX: f64 = 44.0;
 const TOP_PX: f64 = 40.0;
-const FOOT_PX: f64 = 56.0;
+/// Height below the arm for the scale bar, without the rows of the caption \[px\].
+const FOOT_PX: f64 = 40.0;
+/// Distance of the left edge to the scale bar and the caption \[px\].
+const EDGE_PX: f64 = 16.0;
+const CAPTION_ROW_PX: f64 = 16.0;
 
 impl ArmSketch {
     /// A factor, rounded, by which displacements are exaggerated so that the largest one looks about a tenth as large
@@ -87,7 +93,8 @@ impl ArmSketch {
         let room = self.width_px - 2.0 * MARGIN_PX;
         let (wide, tall) = ((high.0 - low.0).max(1e-6), (high.1 - low.1).max(1e-6));
         let scale = (room / wide).min(0.62 * room / tall);
-        let height = TOP_PX + tall * scale + FOOT_PX + 26.0;
+        let caption = self.caption_rows();
+        let height = TOP_PX + tall * scale + FOOT_PX + CAPTION_ROW_PX * caption.len() as f64 + 26.0;
         let left = (self.width_px - wide * scale) / 2.0;
         let at = |p: Place| (left + (p.0 - low.0) * scale, TOP_PX + 12.0 + (high.1 - p.1) * scale);
         let mut out = head(&self.title, &self.description, self.width_px, height);
@@ -108,7 +115,7 @@ impl ArmSketch {
         self.springs.iter().for_each(|(from, to)| coil(&mut out, at(*from), at(*to)));
         self.pivots(&mut out, scale, &at);
         self.payload(&mut out, &at);
-        self.foot(&mut out, scale, height);
+        self.foot(&mut out, scale, height, &caption);
         out.push_str("</svg>\n");
         out
     }
@@ -153,6 +160,13 @@ impl ArmSketch {
         for pivot in &self.pivots {
             let (x, y) = at(displaced(pivot.at, self.factor));
             match pivot.axis {
+                _ if pivot.slides => {
+                    let (left, top) = (px(x - 7.0), px(y - 7.0));
+                    let _ = writeln!(
+                        out,
+                        "<rect x=\"{left}\" y=\"{top}\" width=\"14\" height=\"14\" fill=\"#FFFFFF\" stroke=\"{INK}\" stroke-width=\"2\"/>"
+                    );
+                }
                 None => {
                     let _ = writeln!(
                         out,
@@ -200,15 +214,16 @@ impl ArmSketch {
     }
 
     /// Draws the scale bar, the direction of gravity and the caption.
-    fn foot(&self, out: &mut String, scale: f64, height: f64) {
+    fn foot(&self, out: &mut String, scale: f64, height: f64, caption: &[String]) {
         let bar_m =
             [2.0, 1.0, 0.5, 0.2, 0.1, 0.05, 0.02].into_iter().find(|m| m * scale < 0.3 * self.width_px);
         let bar_m = bar_m.unwrap_or(0.01);
-        let y = height - 34.0;
-        let end = 16.0 + bar_m * scale;
+        let caption_px = CAPTION_ROW_PX * caption.len() as f64;
+        let y = height - caption_px - 18.0;
+        let end = EDGE_PX + bar_m * scale;
         let _ = writeln!(
             out,
-            "<path d=\"M16 {0}v6H{1}v-6\" fill=\"none\" stroke=\"{INK}\" stroke-width=\"1.4\"/>",
+            "<path d=\"M{EDGE_PX} {0}v6H{1}v-6\" fill=\"none\" stroke=\"{INK}\" stroke-width=\"1.4\"/>",
             px(y - 3.0),
             px(end)
         );
@@ -224,7 +239,15 @@ impl ArmSketch {
             );
             text(out, (x - 8.0, y - 6.0), "end", &small, "g");
         }
-        text(out, (16.0, height - 10.0), "start", &small, &self.caption);
+        for (i, row) in caption.iter().enumerate() {
+            let y = height - caption_px + 6.0 + CAPTION_ROW_PX * i as f64;
+            text(out, (EDGE_PX, y), "start", &small, row);
+        }
+    }
+
+    /// The caption, broken into rows that are no wider than the drawing.
+    fn caption_rows(&self) -> Vec<String> {
+        wrap(&self.caption, ((self.width_px - 2.0 * EDGE_PX) / (CHARACTER * NOTE_PX)) as usize)
     }
 }
 
@@ -289,7 +312,7 @@ mod tests {
         ArmSketch {
             title: "arm".into(),
             tubes: vec![Tube { name: "a".into(), line, size_m: 0.1 }],
-            pivots: vec![Pivot { name: "j".into(), at: ((0.0, 0.0), (0.0, 0.0)), axis: None }],
+            pivots: vec![Pivot { name: "j".into(), at: ((0.0, 0.0), (0.0, 0.0)), axis: None, slides: false }],
             factor: 50.0,
             upright: true,
             width_px: 500.0,
@@ -312,6 +335,21 @@ mod tests {
         let path = svg.lines().find(|line| line.contains("<title>spring</title>")).unwrap_or_default();
         assert_eq!(path.matches('L').count(), 12, "{path}");
         assert!(!sketch().to_svg().contains("<title>spring</title>"));
+    }
+
+    #[test]
+    fn a_long_caption_is_broken_into_rows_within_the_drawing() {
+        let caption =
+            "links to scale, joints as symbols; bent shape exaggerated 50 times: 1.234 mm at the tip"
+                .to_string();
+        let narrow = ArmSketch { caption, width_px: 300.0, ..sketch() };
+        let rows = narrow.caption_rows();
+        assert!(
+            rows.len() > 1 && rows.iter().all(|row| text_px(row, NOTE_PX) <= 300.0 - 2.0 * EDGE_PX),
+            "{rows:?}"
+        );
+        let svg = narrow.to_svg();
+        assert!(rows.iter().all(|row| svg.contains(&format!(">{row}</text>"))), "{svg}");
     }
 
     #[test]
