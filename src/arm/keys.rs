@@ -212,7 +212,13 @@ pub(crate) static STATED: Shape = Shape::new(
         ),
         required("gj_nm2", Kind::Positive, "N m²", "Torsional stiffness."),
         required("kg_per_m", Kind::Positive, "kg/m", "Mass per length."),
-        optional("ea_n", Kind::Positive, "N", "does not stretch", "Axial stiffness."),
+        optional(
+            "ea_n",
+            Kind::Positive,
+            "N",
+            "of an even outline",
+            "Axial stiffness. With the bending stiffnesses it determines the rotary inertia.",
+        ),
     ],
     &[],
 );

@@ -13,6 +13,7 @@ pub(crate) mod base_lift;
 pub(crate) mod bearing;
 pub(crate) mod body;
 pub(crate) mod case_keys;
+pub(crate) mod divided;
 pub mod effect;
 pub(crate) mod element_keys;
 pub(crate) mod element_names;

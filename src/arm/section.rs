@@ -101,21 +101,26 @@ pub struct StatedSection {
     pub ei_z_nm2: f64,
     /// Torsional stiffness G J \[N m²\].
     pub gj_nm2: f64,
-    /// Axial stiffness E A \[N\]; infinite if it is not stated, so that the link does not stretch.
+    /// Axial stiffness E A \[N\]; infinite if it is not stated. It is then that of a section whose mass is spread evenly
+    /// over the outline.
     pub ea_n: f64,
     /// Mass per length \[kg/m\].
     pub kg_per_m: f64,
 }
 
-/// Modulus of the fictitious material of a stated section \[Pa\]. It is so large that shear deformation is
-/// negligible.
+/// Shear modulus of the fictitious material of a stated section \[Pa\], and its modulus if it has no mass. It is so
+/// large that shear deformation is negligible.
 const STATED_PA: f64 = 1e15;
 
 impl StatedSection {
     /// The fictitious material with which the section has its stated stiffnesses and mass. Its density is 1 kg/m³.
     /// Shear stiffness is not among the stated ones, so it is taken as practically infinite.
     pub fn material(&self) -> LinkMaterial {
-        let of_ea_pa = self.ea_n / self.kg_per_m;
+        // Modulus and density also determine the rotary inertia about the axis, ρ (Iy + Iz) = kg/m (EIy + EIz) / EA. An
+        // even outline has kg/m (b² + h²) / 12, and EA follows.
+        let outline_m2 = (self.width_m * self.width_m + self.height_m * self.height_m) / 12.0;
+        let even_ea_n = (self.ei_y_nm2 + self.ei_z_nm2) / outline_m2;
+        let of_ea_pa = if self.ea_n.is_finite() { self.ea_n } else { even_ea_n } / self.kg_per_m;
         LinkMaterial {
             youngs_modulus_pa: if of_ea_pa.is_finite() { of_ea_pa } else { STATED_PA },
             shear_modulus_pa: STATED_PA,

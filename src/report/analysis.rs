@@ -1,5 +1,6 @@
 //! The results of an arm in one load case (torques, tip displacement, modes and response) as JSON and as text.
 
+use super::divided::{divided_lowest_hz, too_high};
 use super::number::percent;
 use super::pose::pose_words;
 use super::small_displacement::too_far;
@@ -64,6 +65,9 @@ pub struct Analysis {
     unbent: Vec<String>,
     /// Name of each balance spring, with its length and force, or its torque, in the pose of the case.
     springs: Vec<(String, Drawn)>,
+    /// The lowest mode with every tube divided at the bodies on it \[Hz\]; `None` if no tube has a body between its
+    /// ends, or no mode was asked for.
+    divided_hz: Option<f64>,
 }
 
 impl Analysis {
@@ -80,7 +84,8 @@ impl Analysis {
         let rigid = case.links == LinkModel::Rigid;
         let unbent = arm.effects.iter().filter(|e| rigid && e.is_of_bending()).map(Effect::label).collect();
         let springs = springs_in(&chain, &case);
-        Self { case, statics, modes, response, unbent, springs }
+        let divided_hz = if modes.is_empty() { None } else { divided_lowest_hz(arm, &case) };
+        Self { case, statics, modes, response, unbent, springs, divided_hz }
     }
 
     /// The results as `armwright analyze --json` prints them; `docs/arm-format.md` describes the keys.
@@ -113,6 +118,9 @@ impl Analysis {
             out["springs_stiffen_modes"] = json!(false);
         }
         self.guides_json(&mut out);
+        if let Some(divided_hz) = self.divided_hz {
+            out["lowest_mode_divided_hz"] = json!(divided_hz);
+        }
         let impossible = arm.impossible_bodies();
         if !impossible.is_empty() {
             out["impossible_inertias"] = json!(impossible);
@@ -302,6 +310,12 @@ impl Analysis {
                 mode.frequency_hz,
                 parts.join(", ")
             );
+        }
+        let lowest_hz = self.modes.first().map(|mode| mode.frequency_hz);
+        if let (Some(lowest_hz), Some(divided_hz)) = (lowest_hz, self.divided_hz)
+            && let Some(words) = too_high(lowest_hz, divided_hz)
+        {
+            let _ = writeln!(out, "  {words}");
         }
     }
 

@@ -6,6 +6,7 @@ pub mod budget;
 pub mod caveats;
 pub(crate) mod certificate;
 pub mod compare;
+pub(crate) mod divided;
 pub mod facts;
 pub mod file_names;
 pub(crate) mod front_svg;

@@ -3,6 +3,7 @@
 use super::range::{range_words, ranges, stated_ranges};
 use super::worst_pose::{WorstPose, WorstPoses, loads, worst_poses};
 use crate::arm::pose::{DrivenJoint, pose_json};
+use crate::report::divided::{divided_lowest_hz, too_high};
 use crate::report::front_table::FrontTable;
 use crate::report::number::{percent, significant};
 use crate::report::picks::{Objective, Pick, designs, picks};
@@ -32,6 +33,9 @@ struct PickPoses {
     pick: Pick,
     reach_m: f64,
     worst: WorstPoses,
+    /// The lowest mode over the judged cases with every tube divided at the bodies on it \[Hz\]; `None` if no tube has
+    /// a body between its ends.
+    divided_hz: Option<f64>,
 }
 
 /// The picks of a front in their worst poses.
@@ -52,7 +56,8 @@ pub fn picks_in_poses(problem: &ArmProblem, front: &FrontTable) -> PicksInPoses 
     let of_pick = |pick: Pick| {
         let arm = problem.arm(&problem.options_of_whole(number_of(&pick.design.design_id)?)?)?;
         let worst = worst_poses(&arm, &cases, &ranges)?;
-        Some(PickPoses { pick, reach_m: arm.reach_m(), worst })
+        let divided_hz = cases.iter().filter_map(|case| divided_lowest_hz(&arm, case)).reduce(f64::min);
+        Some(PickPoses { pick, reach_m: arm.reach_m(), worst, divided_hz })
     };
     PicksInPoses {
         picks: picks(&designs(front)).into_par_iter().filter_map(of_pick).collect(),
@@ -148,13 +153,16 @@ impl PickPoses {
 }
 
 impl PicksInPoses {
-    /// Warnings: a sentence for each pick that deflects too far already in the judged cases.
+    /// Warnings: a sentence for each pick that deflects too far already in the judged cases, and for each whose lowest
+    /// mode comes out too high because of bodies on its tubes.
     fn warnings(&self) -> Vec<String> {
-        let warning = |of: &PickPoses| {
-            let words = too_far(of.worst.deflection.judged, of.reach_m)?;
-            Some(format!("{}: the tip {words}.", of.title()))
+        let warnings = |of: &PickPoses| {
+            let far = too_far(of.worst.deflection.judged, of.reach_m)
+                .map(|words| format!("{}: the tip {words}.", of.title()));
+            let high = of.divided_hz.and_then(|divided_hz| too_high(of.worst.mode.judged, divided_hz));
+            [far, high.map(|words| format!("{}: {words}.", of.title()))].into_iter().flatten()
         };
-        self.picks.iter().filter_map(warning).collect()
+        self.picks.iter().flat_map(warnings).collect()
     }
 
     /// The driven joints of the arm, base to tip.

@@ -7,6 +7,7 @@ use armwright::input::Document;
 use armwright::mechanics::Chain;
 use nalgebra::Vector3;
 use serde_json::{Value, json};
+use std::f64::consts::TAU;
 
 fn read(arm: &Value) -> Result<Arm, String> {
     let document = Document::parse("arm.json", &arm.to_string()).expect("JSON");
@@ -85,6 +86,32 @@ fn factors_multiply_stiffness_and_mass() {
     assert!((ratio(|arm| deflection_m(arm, LinkModel::Full, 50.0)) - 1.0 / 0.8).abs() < 1e-12);
     assert!((ratio(Arm::mass_kg) - 0.7).abs() < 1e-12);
     assert_eq!(read(&drilled.to_json()).expect("sound"), drilled);
+}
+
+/// A link whose stiffnesses are stated has rotary inertia about its axis too: without an axial stiffness, that of mass which
+/// fills the outline evenly, and with one, `kg/m (EIy + EIz) / EA`. A soft roll joint shows it.
+#[test]
+fn a_link_of_stated_stiffnesses_rolls_with_the_inertia_of_its_mass() {
+    let roll_hz = |ea_n: Option<f64>| {
+        let mut section = json!({"shape": "stated", "ei_y_nm2": 3e4, "ei_z_nm2": 3e4, "gj_nm2": 2e7, "kg_per_m": 4.0,
+            "width_m": 0.1, "height_m": 0.1});
+        if let Some(ea_n) = ea_n {
+            section["ea_n"] = json!(ea_n);
+        }
+        let chain = json!([
+            {"type": "joint", "name": "roll", "axis": [1, 0, 0], "stiffness_nm_per_rad": 1000},
+            {"type": "link", "name": "l", "vector_m": [0.5, 0, 0], "section": section}]);
+        let arm = read(&arm(chain)).expect("sound");
+        let chain = Chain::new(&arm.structure(JointModel::ThreeSegment), LinkModel::Full);
+        let posed = chain.pose_rad(&[0.0], &Payload::default(), Vector3::zeros());
+        posed.modes(&posed.statics(), 1)[0].frequency_hz
+    };
+    let closed_hz = |inertia_kgm2: f64| (1000.0 / inertia_kgm2).sqrt() / TAU;
+    let even_kgm2 = 4.0 * 0.5 * (0.1 * 0.1 + 0.1 * 0.1) / 12.0;
+    let of_ea_kgm2 = 4.0 * 0.5 * 6e4 / 4e7;
+    // the link itself twists by a ten-thousandth of the joint
+    assert!((roll_hz(None) / closed_hz(even_kgm2) - 1.0).abs() < 1e-4, "{}", roll_hz(None));
+    assert!((roll_hz(Some(4e7)) / closed_hz(of_ea_kgm2) - 1.0).abs() < 1e-4, "{}", roll_hz(Some(4e7)));
 }
 
 #[test]

@@ -1,0 +1,33 @@
+//! The remark that a body beside a link makes the lowest mode lower than the model with undivided links says.
+
+use super::number::{percent, significant};
+use crate::arm::Arm;
+use crate::arm::load::LoadCase;
+use crate::mechanics::chain::Chain;
+
+/// Smallest part of the lowest mode that is remarked.
+const REMARKED: f64 = 0.005;
+
+/// The lowest mode \[Hz\] of an arm in a case, with every tube divided at the bodies on it. `None` if no tube has a body
+/// between its ends.
+pub(crate) fn divided_lowest_hz(arm: &Arm, case: &LoadCase) -> Option<f64> {
+    let structure = arm.structure_in(case).divided_at_bodies()?;
+    let chain = Chain::new(&structure, case.links);
+    let posed = chain.pose(case);
+    let statics = posed.statics();
+    Some(posed.modes(&statics, 1).first()?.frequency_hz)
+}
+
+/// The remark for a lowest mode `printed_hz` that is `divided_hz` with divided tubes, in words that continue a name;
+/// `None` if the two differ by little.
+pub(crate) fn too_high(printed_hz: f64, divided_hz: f64) -> Option<String> {
+    let part = (printed_hz - divided_hz) / printed_hz;
+    (part > REMARKED).then(|| {
+        format!(
+            "lowest mode {} Hz, {} lower than printed, if its tubes are divided at the bodies on them: a body beside the axis \
+             of a tube twists a part of it",
+            significant(divided_hz, 4),
+            percent(100.0 * part, 1)
+        )
+    })
+}
