@@ -276,14 +276,6 @@ fn to_mjcf(asked: &Asked, catalogs: &Catalogs) -> Export {
                 every spring where it rests under the load"
         .into());
     notes.extend(working_points_note(&rest.left_out));
-    if !file.passive_armatures.is_empty() {
-        let each = file.passive_armatures.iter().map(|(name, kgm2)| format!("{name} {kgm2:.3e}"));
-        notes.push(format!(
-            "passive joints with a spring have an armature that the arm does not have, so that their mass matrix is \
-             not singular [kg m2; kg where a joint slides]: {}",
-            each.collect::<Vec<_>>().join(", ")
-        ));
-    }
     if file.balanced {
         notes.push("no solid has the inertia of a body: MuJoCo makes its moments equal (balanceinertia), so frequencies differ".into());
     }

@@ -29,9 +29,6 @@ const STEP_S: f64 = 1e-4;
 pub(crate) struct Mjcf {
     /// The text of the file.
     pub text: String,
-    /// Passive joints with a spring, whose own hinges have an armature that the arm does not have, each with the
-    /// armature \[kg m²; kg if it slides\].
-    pub passive_armatures: Vec<(String, f64)>,
     /// Whether some body has an inertia that no solid can have, so that MuJoCo must change it.
     pub balanced: bool,
 }
@@ -45,8 +42,6 @@ pub(crate) fn mjcf(
 ) -> Mjcf {
     let mut nodes = tree(snapshot, options);
     name_bodies(&mut nodes);
-    let passive_armatures = passive_armatures(snapshot, &nodes);
-    let armatures = armatures_kgm2(motors, &passive_armatures);
     let least = Least::of(&nodes);
     let balanced = nodes.iter().any(|node| !is_solid(node, &least));
     let case = &snapshot.case;
@@ -76,7 +71,7 @@ pub(crate) fn mjcf(
     xml.open("worldbody", &[]);
     let mut before_m = Vector3::zeros();
     for node in &nodes {
-        body(&mut xml, node, &before_m, &least, &armatures);
+        body(&mut xml, node, &before_m, &least, motors);
         before_m = node.origin_m;
     }
     let posed = snapshot.at_zero();
@@ -89,36 +84,7 @@ pub(crate) fn mjcf(
     couplings(&mut xml, snapshot, &nodes);
     actuators(&mut xml, snapshot, motors);
     keyframes(&mut xml, snapshot, &nodes);
-    Mjcf { text: xml.finish(), passive_armatures, balanced }
-}
-
-/// Armatures of the passive joints that have a spring, by name \[kg m²; kg if the joint slides\]. The hinge that
-/// follows the driving joints and that of the spring have one axis and nothing between them. The passive joint has no
-/// motor, and without an armature the mass matrix would be singular.
-fn passive_armatures(snapshot: &Snapshot, nodes: &[Node]) -> Vec<(String, f64)> {
-    let hinges = || nodes.iter().flat_map(|node| &node.hinges);
-    let passive = snapshot.structure.joints().filter(|joint| !joint.is_driven());
-    let with_spring = passive.filter_map(|joint| {
-        let own = hinges().find(|hinge| hinge.name == joint.name)?;
-        let spring = hinges().find_map(|hinge| match hinge.role {
-            // the springs of a bearing have other axes
-            Role::Spring(working) if hinge.element == joint.name && is_along(hinge, own) => Some(working),
-            _ => None,
-        })?;
-        Some((joint.name.clone(), play_armature_kgm2(0.0, &spring)))
-    });
-    with_spring.collect()
-}
-
-/// Whether two hinges have the same axis.
-fn is_along(hinge: &Hinge, other: &Hinge) -> bool {
-    hinge.slides == other.slides && hinge.axis.dot(&other.axis).abs() > 1.0 - 1e-9
-}
-
-/// Armatures by name of the joint \[kg m²; kg if it slides\], of joints with a motor and of passive joints.
-fn armatures_kgm2(motors: &BTreeMap<String, Motor>, passive: &[(String, f64)]) -> BTreeMap<String, f64> {
-    let of_motors = motors.iter().map(|(name, motor)| (name.clone(), motor.armature_kgm2));
-    of_motors.chain(passive.iter().cloned()).collect()
+    Mjcf { text: xml.finish(), balanced }
 }
 
 /// Opens the XML element of a body. It stays open, because the bodies outboard of it are nested inside. `before_m` is
@@ -128,11 +94,11 @@ fn body(
     node: &Node,
     before_m: &Vector3<f64>,
     least: &Least,
-    armatures: &BTreeMap<String, f64>,
+    motors: &BTreeMap<String, Motor>,
 ) {
     xml.open("body", &[("name", node.name.clone()), ("pos", triple(&(node.origin_m - before_m)))]);
     for hinge in &node.hinges {
-        xml.leaf("joint", &joint(hinge, &node.origin_m, armatures));
+        xml.leaf("joint", &joint(hinge, &node.origin_m, motors));
     }
     let (mass_kg, cg_m, inertia) = mass_properties(&node.inertia);
     let inertia = inertia + least.inertia_kgm2(mass_kg);
@@ -164,7 +130,7 @@ fn body(
 fn joint(
     hinge: &Hinge,
     origin_m: &Vector3<f64>,
-    armatures: &BTreeMap<String, f64>,
+    motors: &BTreeMap<String, Motor>,
 ) -> Vec<(&'static str, String)> {
     let mut out = vec![
         ("name", hinge.name.clone()),
@@ -173,9 +139,10 @@ fn joint(
         ("pos", triple(&(hinge.at_m - origin_m))),
     ];
     match hinge.role {
+        Role::Follower(_) => {}
         Role::Motor => {
-            if let Some(armature_kgm2) = armatures.get(&hinge.name) {
-                out.push(("armature", numbers(&[*armature_kgm2])));
+            if let Some(motor) = motors.get(&hinge.name) {
+                out.push(("armature", numbers(&[motor.armature_kgm2])));
             }
         }
         Role::Spring(working) => {
@@ -184,7 +151,7 @@ fn joint(
         }
         Role::Play { half_rad, gear } => {
             out.push(("range", numbers(&[-half_rad, half_rad])));
-            let motor_kgm2 = armatures.get(&hinge.element).copied().unwrap_or_default();
+            let motor_kgm2 = motors.get(&hinge.element).map_or(0.0, |motor| motor.armature_kgm2);
             out.push(("armature", numbers(&[play_armature_kgm2(motor_kgm2, &gear)])));
         }
     }
@@ -200,34 +167,59 @@ fn play_armature_kgm2(motor_kgm2: f64, gear: &Working) -> f64 {
     steady_kgm2.max(PLAY_ARMATURE * motor_kgm2)
 }
 
-/// Writes the couplings of passive joints. Each is a tendon of fixed length, so that the joint follows the motor, the
-/// backlash and the gear of its driving joints.
+/// Writes the couplings of passive joints as tendons. The length of such a tendon is the angle of the passive joint minus
+/// the one that its driving joints ask for (with motor, backlash and gear of each). A rigid coupling keeps the length at
+/// zero. A compliant one has the spring of the passive joint: a hinge of its own for this spring would have the axis of the
+/// joint and nothing between, and the mass matrix would be singular.
 fn couplings(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
     let driven = snapshot.case_joints();
-    let passive: Vec<_> = snapshot.structure.joints().filter(|joint| !joint.is_driven()).collect();
-    if passive.is_empty() {
+    let hinges = || nodes.iter().flat_map(|node| &node.hinges);
+    let followers: Vec<(&Hinge, Working, &[(usize, f64)])> = hinges()
+        .filter_map(|hinge| match hinge.role {
+            Role::Follower(working) => Some((hinge, working, coupled(snapshot, &hinge.name)?)),
+            _ => None,
+        })
+        .collect();
+    if followers.is_empty() {
         return;
     }
+    let name_of = |hinge: &Hinge| format!("{}.coupling", hinge.name);
     xml.open("tendon", &[]);
-    for joint in &passive {
-        let JointAngle::Coupled(terms) = &joint.angle else { continue };
-        xml.open("fixed", &[("name", format!("{}.coupling", joint.name))]);
-        xml.leaf("joint", &[("joint", joint.name.clone()), ("coef", "1".into())]);
-        for (index, factor) in terms {
-            let driver = &driven[*index];
-            for hinge in nodes.iter().flat_map(|node| &node.hinges).filter(|hinge| hinge.element == *driver) {
+    for (follower, working, terms) in &followers {
+        let mut attributes = vec![("name", name_of(follower))];
+        if !working.is_rigid() {
+            attributes.push(("stiffness", numbers(&[working.tangent_nm_per_rad()])));
+            attributes.push(("springlength", numbers(&[working.rest_rad()])));
+        }
+        xml.open("fixed", &attributes);
+        xml.leaf("joint", &[("joint", follower.name.clone()), ("coef", "1".into())]);
+        for (index, factor) in *terms {
+            for hinge in hinges().filter(|hinge| hinge.element == driven[*index]) {
                 xml.leaf("joint", &[("joint", hinge.name.clone()), ("coef", numbers(&[-factor]))]);
             }
         }
         xml.close();
     }
     xml.close();
+    let rigid: Vec<&Hinge> =
+        followers.iter().filter(|(_, working, _)| working.is_rigid()).map(|(hinge, ..)| *hinge).collect();
+    if rigid.is_empty() {
+        return;
+    }
     xml.open("equality", &[]);
-    for joint in &passive {
-        let tendon = format!("{}.coupling", joint.name);
-        xml.leaf("tendon", &[("tendon1", tendon), ("polycoef", "0 0 0 0 0".into())]);
+    for hinge in rigid {
+        xml.leaf("tendon", &[("tendon1", name_of(hinge)), ("polycoef", "0 0 0 0 0".into())]);
     }
     xml.close();
+}
+
+/// The driving joints of a passive joint, each with its index in a pose and its factor; `None` if a motor drives it.
+fn coupled<'s>(snapshot: &'s Snapshot, joint: &str) -> Option<&'s [(usize, f64)]> {
+    let passive = snapshot.structure.joints().find(|other| other.name == joint)?;
+    match &passive.angle {
+        JointAngle::Coupled(terms) => Some(terms),
+        JointAngle::Driven(_) => None,
+    }
 }
 
 fn actuators(xml: &mut Xml, snapshot: &Snapshot, motors: &BTreeMap<String, Motor>) {
@@ -255,19 +247,19 @@ fn keyframes(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
         _ => 0.0,
     };
     // a passive joint follows the outputs of its driving joints: motor, backlash and gear
-    let follow = |terms: &[(usize, f64)], deflected: bool| -> f64 {
+    let follow = |name: &str, deflected: bool| -> f64 {
         let output = |joint: &String| {
             hinges().filter(|hinge| hinge.element == *joint).map(|hinge| drive(hinge, deflected)).sum::<f64>()
         };
+        let terms = coupled(snapshot, name).unwrap_or_default();
         terms.iter().map(|(index, factor)| factor * output(&driven[*index])).sum()
     };
     let position = |deflected: bool| {
-        let of = |hinge: &Hinge| match snapshot.structure.joints().find(|joint| joint.name == hinge.name) {
-            Some(joint) => match &joint.angle {
-                JointAngle::Coupled(terms) => follow(terms, deflected),
-                JointAngle::Driven(_) => drive(hinge, deflected),
-            },
-            None => drive(hinge, deflected),
+        let of = |hinge: &Hinge| match hinge.role {
+            Role::Follower(working) => {
+                follow(&hinge.name, deflected) + if deflected { working.deflection_rad } else { 0.0 }
+            }
+            _ => drive(hinge, deflected),
         };
         numbers(&hinges().map(of).collect::<Vec<_>>())
     };

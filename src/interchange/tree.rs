@@ -19,7 +19,7 @@ use crate::mechanics::beam::{line_stiffnesses, tube_inertia};
 use crate::mechanics::chain::{Compliance, ElasticElement, Item, OwnMass};
 use crate::mechanics::{Twist, angular, body_inertia, linear, stack};
 use nalgebra::{Matrix3, Matrix6, Vector3};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Radius with which a link without a section is drawn \[m\].
 const THIN_M: f64 = 0.02;
@@ -33,6 +33,8 @@ const MOST_HINGES: usize = 6;
 pub(crate) enum Role {
     /// A motor turns the hinge.
     Motor,
+    /// The hinge of a passive joint follows its driving joints, and has the spring of the joint between them and itself.
+    Follower(Working),
     /// A spring acts on the hinge.
     Spring(Working),
     /// The hinge turns freely, as the backlash of a gear.
@@ -121,7 +123,9 @@ pub(crate) fn tree(snapshot: &Snapshot, options: &TreeOptions) -> Vec<Node> {
     let pieces = snapshot.structure.pieces.iter();
     let joints =
         pieces.filter(|piece| !matches!(piece, Piece::Link(_))).map(|piece| piece.name().to_string());
-    let mut builder = Builder { options, nodes: Vec::new(), free: FreeNames::all_but(joints) };
+    let passive = snapshot.structure.joints().filter(|joint| !joint.is_driven());
+    let passive = passive.map(|joint| joint.name.clone()).collect();
+    let mut builder = Builder { options, nodes: Vec::new(), passive, free: FreeNames::all_but(joints) };
     builder.open("base", Vector3::zeros());
     let posed = snapshot.at_zero();
     let mut workings = snapshot.working_points().into_iter();
@@ -145,6 +149,8 @@ pub(crate) fn tree(snapshot: &Snapshot, options: &TreeOptions) -> Vec<Node> {
 struct Builder<'o> {
     options: &'o TreeOptions,
     nodes: Vec<Node>,
+    /// Names of the passive joints.
+    passive: BTreeSet<String>,
     /// Names for hinges other than those of motors, which are called as their joints.
     free: FreeNames,
 }
@@ -190,11 +196,15 @@ impl Builder<'_> {
             let motor = hinge(&travel, joint.name.clone(), &joint.name, element.at_m, Role::Motor);
             self.last().hinges.push(motor);
         }
+        let is_passive = is_joint && self.passive.contains(&element.name);
         let has_motor = self.last().hinges.iter().any(|hinge| hinge.name == element.name);
         if is_joint && !has_motor {
             let name = element.name.clone();
-            let motor = hinge(&element.twists[0], name.clone(), &name, element.at_m, Role::Motor);
-            self.last().hinges.push(motor);
+            let spring =
+                if is_compliant { workings.first().copied().unwrap_or_default() } else { Working::default() };
+            let role = if is_passive { Role::Follower(spring) } else { Role::Motor };
+            let first = hinge(&element.twists[0], name.clone(), &name, element.at_m, role);
+            self.last().hinges.push(first);
             if let Some(half_rad) = self.options.plays.get(&name).copied() {
                 let name = self.free.take(&format!("{name}.backlash"), "_hinge");
                 let role = Role::Play { half_rad, gear: workings.first().copied().unwrap_or_default() };
@@ -202,7 +212,8 @@ impl Builder<'_> {
                 self.last().hinges.push(play);
             }
         }
-        if !is_compliant {
+        // the spring of a passive joint is in its first hinge
+        if !is_compliant || is_passive {
             return;
         }
         for (i, (twist, working)) in element.twists.iter().zip(workings).enumerate() {

@@ -80,6 +80,14 @@ fn a_payload_that_slips_between_tests_is_none_that_sits_elsewhere() {
     assert!(outcome.reasons.iter().any(|reason| reason.contains(told)), "{:?}", outcome.reasons);
 }
 
+/// Gravity a degree off its stated direction: no effect of the library, and a fifth more scatter than declared hid it.
+#[test]
+fn an_arm_that_is_out_of_level_has_a_gap_that_no_effect_explains() {
+    let outcome = outcome("gravity-one-degree-off");
+    assert_eq!(outcome.verdict, Verdict::Unexplained, "{}", outcome.to_text());
+    assert!(outcome.reasons.iter().any(|reason| reason.contains("out of level")), "{:?}", outcome.reasons);
+}
+
 fn outcome(name: &str) -> Outcome {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/other_simulator").join(name);
     reconcile(&Campaign::read(&folder, &Catalogs::builtin()).expect("sound"))

@@ -40,6 +40,8 @@ pub struct Forward {
     pub lightest_payload_kg: f64,
     /// For each driven joint, the change of every reading by an angle whose zero is off; empty until it is asked for.
     pub(crate) zero_columns: OnceLock<Vec<Vec<f64>>>,
+    /// For each horizontal axis, the change of every reading by an arm that is out of level; empty until it is asked for.
+    pub(crate) level_columns: OnceLock<Vec<Vec<f64>>>,
     /// Whether some static or modal reading has a temperature.
     pub has_temperatures: bool,
 }
@@ -75,6 +77,7 @@ impl Forward {
             groups: groups.names,
             payload_density_kg_m3: campaign.statement.payload_density_kg_m3,
             zero_columns: OnceLock::new(),
+            level_columns: OnceLock::new(),
             has_temperatures: campaign.statics.iter().any(|r| r.temperature_c.is_some())
                 || campaign.modal.iter().any(|r| r.temperature_c.is_some()),
             largest_payload_kg: payloads_kg.iter().copied().fold(0.0, f64::max),

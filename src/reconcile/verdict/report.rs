@@ -115,10 +115,15 @@ impl Outcome {
     }
 
     fn quality(&self, out: &mut String) {
+        // where physics is missing, it may have moved these rows
+        let what = match self.verdict {
+            Verdict::Unexplained => "gross error, or part of what no effect explains",
+            _ => "gross error",
+        };
         for (channel, row, size) in &self.noise.outliers {
             let _ = writeln!(
                 out,
-                "  gross error: {} row {} is {size:.0} sigma off; left out of the fit",
+                "  {what}: {} row {} is {size:.0} sigma off; left out of the fit",
                 channel.word(),
                 row + 1
             );

@@ -1,0 +1,76 @@
+//! The law of an arm that is out of level: the weight of every payload pulls in another direction than stated.
+
+use super::{Builder, Law};
+use crate::reconcile::forward::prepared::Forward;
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+/// Angle over which the readings are compared \[rad\].
+const STEP_RAD: f64 = 2e-3;
+/// The angle that counts as the full size of the law \[rad\]: 30 degrees.
+const FULL_SIZE_RAD: f64 = std::f64::consts::FRAC_PI_6;
+
+impl Builder<'_> {
+    /// The law that gravity is turned about both horizontal axes.
+    pub(super) fn level_laws(&self) -> Vec<Law> {
+        let columns = self.forward.level_columns.get_or_init(|| self.level_columns());
+        vec![Law {
+            what: "a direction of gravity other than stated (an arm that is out of level)".into(),
+            effect: None,
+            columns: columns.clone(),
+        }]
+    }
+
+    /// For each horizontal axis of the world, the change of every reading of the nominal arm, in its unit, per full
+    /// size of the angle. Frequencies do not depend on the direction of gravity to first order, and the arm's own
+    /// weight deflects it in the reference of every reading too.
+    fn level_columns(&self) -> Vec<Vec<f64>> {
+        let stated = self.static_readings_with(Vector3::zeros());
+        let column = |axis: Vector3<f64>| {
+            let turned = self.static_readings_with(axis);
+            let change = turned.iter().zip(&stated).map(|(turned, stated)| (turned - stated) / STEP_RAD);
+            let mut column: Vec<f64> = change.map(|per_rad| FULL_SIZE_RAD * per_rad).collect();
+            column.resize(self.forward.data.len(), 0.0);
+            column
+        };
+        [Vector3::x(), Vector3::y()].into_par_iter().map(column).collect()
+    }
+
+    /// The static readings of the nominal arm if every payload pulls in the horizontal direction `along` too, with its
+    /// weight times [`STEP_RAD`]. The pull acts at the tip.
+    fn static_readings_with(&self, along: Vector3<f64>) -> Vec<f64> {
+        let mut campaign = self.campaign.clone();
+        campaign.modal.clear();
+        campaign.windup.clear();
+        let gravity_m_s2 = self.forward.layout.gravity_m_s2;
+        for row in &mut campaign.statics {
+            row.force_n += along * (STEP_RAD * row.payload.mass_kg * gravity_m_s2);
+        }
+        let forward = Forward::new(&campaign);
+        forward.predict(&forward.coefficients(&self.forward.nominal))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::about_the_nominal_arm;
+    use crate::arm::effect::channel::Channel;
+
+    #[test]
+    fn an_arm_out_of_level_moves_with_its_payload_and_in_static_tests_alone() {
+        about_the_nominal_arm(|builder, _| {
+            let laws = builder.level_laws();
+            let [along_x, along_y] = laws[0].columns.as_slice() else { panic!("two axes") };
+            let statics = builder.forward.range(Channel::Static);
+            for column in [along_x, along_y] {
+                assert_eq!(column.len(), builder.forward.data.len());
+                assert!(column[statics.end..].iter().all(|change| *change == 0.0));
+                for (datum, change) in builder.forward.data.iter().zip(column).take(statics.end) {
+                    let payload_kg = builder.campaign.statics[datum.index].payload.mass_kg;
+                    assert!(payload_kg > 0.0 || *change == 0.0, "row {}: {change}", datum.row);
+                }
+                assert!(column.iter().any(|change| change.abs() > 1e-3));
+            }
+        });
+    }
+}
