@@ -279,7 +279,7 @@ impl Analysis<'_> {
             return (Verdict::Unexplained, self.left_over());
         }
         if self.best.model.effects.is_empty() {
-            return match caution::impossible_calibration(self.campaign, &self.best) {
+            return match caution::impossible_calibration(self.campaign, self.best_factors()) {
                 Some(text) => (Verdict::Unexplained, vec![text]),
                 None => (Verdict::NoGap, vec![NOTHING_MISSING.to_string()]),
             };
@@ -311,6 +311,13 @@ impl Analysis<'_> {
             return (Verdict::InsufficientData, vec![text]);
         }
         (Verdict::Explained, vec![self.gap_sentence()])
+    }
+
+    /// The calibrated factors of the best model: name, factor, and standard deviation of its logarithm by the tolerance.
+    fn best_factors(&self) -> impl Iterator<Item = (String, f64, f64)> + '_ {
+        let nuisance = &self.best.model.nuisance;
+        let numbers = nuisance.numbers.iter().zip(&self.best.point.u).enumerate();
+        numbers.map(move |(i, ((calibration, sd), u))| (calibration.name(), nuisance.factor(i, *u), *sd))
     }
 
     /// Verdict and reasons if the evidence for the best effects is weak. These effects are only suspected. The

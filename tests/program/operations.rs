@@ -77,12 +77,15 @@ fn results_are_the_same_outside_of_their_timings_for_any_number_of_threads() {
 fn a_search_that_a_time_limit_ends_is_partial_and_its_check_settles_nothing_in_no_time() {
     let here = tempfile::tempdir().expect("a folder");
     // a machine with other work may find no design in a few seconds
-    let mut runs = ["3", "20", "100"]
+    let mut runs = ["6", "40", "100"]
         .into_iter()
         .map(|limit| armwright(here.path(), &["run", "full-catalog", "--time-limit", limit, "--out", "out"]));
     let partial =
         runs.find(|_| here.path().join("out/front.csv").exists()).expect("a design within some limit");
     assert_eq!(partial.status.code(), Some(10), "{}", String::from_utf8_lossy(&partial.stderr));
+    let said =
+        [&partial.stdout, &partial.stderr].map(|text| String::from_utf8_lossy(text).into_owned()).concat();
+    assert!(said.contains("partial") || said.contains("time limit"), "{said}");
     let check = armwright(here.path(), &["front", "check", "out", "--time-limit", "0.001"]);
     assert_eq!(check.status.code(), Some(11), "{}", String::from_utf8_lossy(&check.stdout));
 }

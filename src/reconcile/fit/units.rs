@@ -58,7 +58,8 @@ pub(crate) fn stretches(forward: &Forward, best: &Coefficients) -> Vec<Stretch> 
             .fold((0.0, 0.0), |(both, square), (d, model)| (both + d.value * model, square + model * model));
         // least-squares factor between readings and nominal model
         let ratio = both / square;
-        let slips = wrong_unit::SLIPS.iter().map(|(factor, _)| *factor).filter(|factor| *factor > 1.0);
+        let units = wrong_unit::SLIPS.iter().filter(|unit| unit.is_of(channel));
+        let slips = units.map(|unit| unit.factor).filter(|factor| *factor > 1.0);
         let factor = slips.min_by(|a, b| {
             let apart = |factor: &f64| libm::log(ratio / factor).abs();
             apart(a).total_cmp(&apart(b))

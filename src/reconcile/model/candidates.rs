@@ -314,6 +314,9 @@ fn unit_slips(forward: &Forward) -> Vec<Candidate> {
         twins: Vec::new(),
     };
     channels
-        .flat_map(|channel| wrong_unit::SLIPS.iter().map(move |(factor, _)| slip(channel, *factor)))
+        .flat_map(|channel| {
+            let own = wrong_unit::SLIPS.iter().filter(move |unit| unit.is_of(channel));
+            own.map(move |unit| slip(channel, unit.factor))
+        })
         .collect()
 }

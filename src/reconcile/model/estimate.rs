@@ -66,6 +66,22 @@ impl Finding {
         format!("{}@{}", self.effect, self.at)
     }
 
+    /// Whether all sizes of the effect may be those of an arm without it, by their 95 % intervals: a stiffness may be
+    /// infinite, a factor 1, and any other size 0. The torque over which play opens is no size.
+    pub(crate) fn may_be_absent(&self) -> bool {
+        let may_be = |name: &str, estimate: &Estimate| {
+            let contains =
+                |x: f64| estimate.low.is_none_or(|e| e <= x) && estimate.high.is_none_or(|e| x <= e);
+            match name {
+                _ if name.starts_with("stiffness") => estimate.high.is_none(),
+                _ if name.ends_with("factor") => contains(1.0),
+                _ => contains(0.0),
+            }
+        };
+        let mut sizes = self.parameters.iter().filter(|(name, _)| name != "torque_nm");
+        sizes.all(|(name, estimates)| estimates.iter().all(|estimate| may_be(name, estimate)))
+    }
+
     /// The entry of the finding in `verdict.json`.
     pub(crate) fn json(&self) -> Value {
         let parameters: Map<String, Value> = self
@@ -90,5 +106,35 @@ impl Finding {
             .map(|(effect, at)| json!({"effect": effect, "at": at}))
             .collect();
         json!({"effect": self.effect, "at": self.at, "parameters": parameters, "indistinguishable_from": others})
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn finding(parameters: &[(&str, &[[Option<f64>; 2]])]) -> Finding {
+        let estimates = |ends: &[[Option<f64>; 2]]| {
+            ends.iter().map(|[low, high]| Estimate { value: 0.5, low: *low, high: *high }).collect()
+        };
+        Finding {
+            effect: "x".into(),
+            at: "j1".into(),
+            parameters: parameters.iter().map(|(name, ends)| (name.to_string(), estimates(ends))).collect(),
+            indistinguishable_from: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn an_effect_may_be_absent_if_all_its_sizes_may() {
+        let [minus, zero, one, two] = [-1.0, 0.0, 1.0, 2.0].map(Some);
+        assert!(finding(&[("stiffness_nm_per_rad", &[[one, None]])]).may_be_absent());
+        assert!(!finding(&[("stiffness_nm_per_rad", &[[one, two]])]).may_be_absent());
+        assert!(finding(&[("cos_rad", &[[minus, one]]), ("sin_rad", &[[minus, one]])]).may_be_absent());
+        assert!(!finding(&[("cos_rad", &[[minus, one]]), ("sin_rad", &[[one, two]])]).may_be_absent());
+        assert!(finding(&[("factor", &[[zero, two]])]).may_be_absent());
+        assert!(
+            !finding(&[("half_width_rad", &[[one, two]]), ("torque_nm", &[[None, None]])]).may_be_absent()
+        );
     }
 }

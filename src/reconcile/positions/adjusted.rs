@@ -45,6 +45,15 @@ impl Positions {
         self.dependences.iter().enumerate().filter_map(of).collect()
     }
 
+    /// The calibrated factors of the model: name, factor, and standard deviation of its logarithm by the tolerance.
+    pub(super) fn factors(&self) -> impl Iterator<Item = (String, f64, f64)> + '_ {
+        let numbers = self.dependences.iter().zip(&self.fitted.geometry.dependences);
+        numbers.filter_map(|(dependence, x)| match dependence {
+            Dependence::Tolerance(calibration, sd) => Some((calibration.name(), dependence.value(*x), *sd)),
+            Dependence::Effect(..) => None,
+        })
+    }
+
     /// Standard deviations of the logarithms of the factors of [`adjusted`](Self::adjusted) by their tolerances.
     pub(super) fn tolerances(&self) -> impl Iterator<Item = f64> + '_ {
         self.dependences.iter().filter_map(|dependence| match dependence {

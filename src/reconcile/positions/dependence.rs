@@ -9,11 +9,15 @@ use crate::reconcile::readings::campaign::Campaign;
 
 /// The effects that change the nominal deflection.
 const EFFECTS: [&Kind; 3] = [&extra_mass::KIND, &harness_mass::KIND, &modulus_error::KIND];
+/// Smallest factor on a compliance or a mass that calibration can ask for.
+const LEAST: f64 = 0.02;
+
 /// Something on which the nominal deflection depends, described by one number that is 0 for the nominal arm.
 #[derive(Clone)]
 pub(crate) enum Dependence {
     /// A factor on a property of the arm, and the standard deviation of its logarithm by the tolerance. The number is
-    /// the logarithm in these standard deviations.
+    /// the change of the mass, or the fall of the compliance, in these standard deviations: for small changes, that of the
+    /// logarithm.
     Tolerance(Calibration, f64),
     /// An effect of one parameter at a place. The number is the parameter, or its reciprocal less 1 if the parameter is
     /// a factor.
@@ -34,7 +38,9 @@ impl Dependence {
     /// The factor, or the parameter of the effect, for the number `x`.
     pub(crate) fn value(&self, x: f64) -> f64 {
         match self {
-            Self::Tolerance(_, sd) => libm::exp(sd * x),
+            // the deflection, which is linear in the number, follows a compliance or a mass
+            Self::Tolerance(Calibration::Mass(_), sd) => (1.0 + sd * x).max(LEAST),
+            Self::Tolerance(_, sd) => 1.0 / (1.0 - sd * x).max(LEAST),
             Self::Effect(kind, _) if parameter(kind).scale == Scale::Reciprocal => 1.0 / (1.0 + x),
             Self::Effect(..) => x,
         }

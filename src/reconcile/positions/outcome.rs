@@ -148,12 +148,22 @@ impl Positions {
             );
             return (Verdict::InsufficientData, vec![text]);
         }
+        if let Some(text) = caution::impossible_calibration(campaign, self.factors()) {
+            return (Verdict::Unexplained, vec![text]);
+        }
         if findings.is_empty() {
             let text = "noise and the calibration of everything that is free explain every position";
             return (Verdict::NoGap, vec![text.into()]);
         }
         let crowded = |f: &Finding| too_many_alternatives(&f.label(), f.indistinguishable_from.len());
         if let Some(text) = findings.iter().find_map(crowded) {
+            return (Verdict::InsufficientData, vec![text]);
+        }
+        if let Some(finding) = findings.iter().find(|finding| finding.may_be_absent()) {
+            let text = format!(
+                "the 95 % interval of {} contains its absence: it is a suspect and no finding",
+                finding.label()
+            );
             return (Verdict::InsufficientData, vec![text]);
         }
         let [before, after] = self.before_and_after();

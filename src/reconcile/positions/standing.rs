@@ -7,7 +7,9 @@ use super::kinematics::{Geometry, Number};
 use super::loads::Deflection;
 use super::points::{Point, points};
 use crate::reconcile::readings::campaign::Campaign;
-use crate::reconcile::readings::placement::{Placement, Session, Stand, pose_mark, test_numbers};
+use crate::reconcile::readings::placement::{
+    Placement, Session, Stand, pose_mark, test_numbers, tests_in_order,
+};
 use nalgebra::Rotation3;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -41,7 +43,8 @@ impl Positions {
             points_m: own_points.iter().map(at_rest).collect(),
         };
         let rows: Vec<_> = own.iter().map(|&i| campaign.positions[i].clone()).collect();
-        let Some(numbers) = test_numbers(&rows).filter(|n| n.is_sorted()) else {
+        let numbered = test_numbers(&rows).filter(|n| n.is_sorted()).map(|numbers| (numbers, Vec::new()));
+        let Some((numbers, order)) = numbered.or_else(|| tests_in_order(&rows)) else {
             return Placement { usual, ..Placement::default() };
         };
         let number_of = |i: usize| own.iter().position(|&o| o == i).map_or(f64::INFINITY, |k| numbers[k]);
@@ -57,6 +60,7 @@ impl Positions {
             usual,
             sessions: sessions.collect(),
             tests: rows.iter().map(|r| (r.test.clone(), pose_mark(&r.pose_deg))).collect(),
+            order,
         }
     }
 

@@ -40,6 +40,9 @@ pub struct Placement {
     /// For each test of the campaign, the mark of its pose as [`pose_mark`] gives it. The marks show whether rows are
     /// numbered as in the campaign.
     pub tests: BTreeMap<String, String>,
+    /// The names of the tests in the order of the campaign, if they are no numbers that rise. The place of a test in
+    /// this list is then its number. Empty if the tests are numbered.
+    pub order: Vec<String>,
 }
 
 impl Default for Stand {
@@ -86,6 +89,12 @@ impl Placement {
             usual: Stand::from_json(placement).unwrap_or_default(),
             sessions: placement["sessions"].as_array().into_iter().flatten().filter_map(session).collect(),
             tests: tests.filter_map(|(test, mark)| Some((test.clone(), mark.as_str()?.into()))).collect(),
+            order: placement["order"]
+                .as_array()
+                .into_iter()
+                .flatten()
+                .filter_map(|test| Some(test.as_str()?.to_string()))
+                .collect(),
         }
     }
 
@@ -100,6 +109,9 @@ impl Placement {
             };
             out["sessions"] = self.sessions.iter().map(session).collect();
             out["tests"] = json!(self.tests);
+            if !self.order.is_empty() {
+                out["order"] = json!(self.order);
+            }
         }
         out
     }
@@ -107,10 +119,20 @@ impl Placement {
     /// The placement for each row of positions: that of the row's session if the rows are numbered as in the
     /// campaign, otherwise the usual one.
     pub fn stands<'a>(&'a self, rows: &[PositionRow]) -> Vec<&'a Stand> {
-        let numbered = test_numbers(rows).filter(|_| rows.iter().all(|row| self.agrees(row)));
+        let numbered = self.numbers(rows).filter(|_| rows.iter().all(|row| self.agrees(row)));
         let Some(numbers) = numbered else { return vec![&self.usual; rows.len()] };
         let of = |number: f64| self.sessions.iter().find(|s| number < s.before_test).map(|s| &s.stand);
         numbers.into_iter().map(|number| of(number).unwrap_or(&self.usual)).collect()
+    }
+
+    /// The number of each row's test, as the sessions count them; NaN for a test that the campaign does not name. `None`
+    /// if the tests should be numbers and are not.
+    fn numbers(&self, rows: &[PositionRow]) -> Option<Vec<f64>> {
+        if self.order.is_empty() {
+            return test_numbers(rows);
+        }
+        let place = |row: &PositionRow| self.order.iter().position(|test| test == row.test.trim());
+        Some(rows.iter().map(|row| place(row).map_or(f64::NAN, |at| at as f64)).collect())
     }
 
     /// Indices of the rows that belong to no known session although there are sessions, because their tests have no
@@ -131,6 +153,24 @@ impl Placement {
 /// number.
 pub fn test_numbers(rows: &[PositionRow]) -> Option<Vec<f64>> {
     rows.iter().map(|row| row.test.trim().parse().ok().filter(|n: &f64| n.is_finite())).collect()
+}
+
+/// The number of each row's test where tests have names, and the names in their order: a test has the place of its name
+/// in this list. `None` if the rows of one test do not follow each other.
+pub fn tests_in_order(rows: &[PositionRow]) -> Option<(Vec<f64>, Vec<String>)> {
+    let mut order: Vec<String> = Vec::new();
+    let mut numbers = Vec::new();
+    for row in rows {
+        let name = row.test.trim();
+        if order.last().is_none_or(|last| last != name) {
+            if order.iter().any(|earlier| earlier == name) {
+                return None;
+            }
+            order.push(name.to_string());
+        }
+        numbers.push((order.len() - 1) as f64);
+    }
+    Some((numbers, order))
 }
 
 /// A short text that identifies a pose. Equal angles give equal texts.
@@ -177,6 +217,7 @@ mod tests {
             usual: at(1.5),
             sessions: sessions.map(|(before_test, x_m)| Session { before_test, stand: at(x_m) }).into(),
             tests: [("4".into(), pose_mark(&[30.0]))].into(),
+            order: Vec::new(),
         }
     }
 
@@ -202,6 +243,23 @@ mod tests {
         assert_eq!(placement.strangers(&[row("3", 5.0), row("4", 31.0)]), [0, 1], "numbered anew");
         let undivided = Placement { sessions: Vec::new(), ..placement };
         assert_eq!(undivided.strangers(&[row("b", 31.0)]), [0; 0]);
+    }
+
+    #[test]
+    fn tests_with_names_belong_to_sessions_by_their_order() {
+        let rows = ["a", "a", "b", "c"].map(|test| row(test, 5.0));
+        let (numbers, order) = tests_in_order(&rows).expect("rows of a test follow each other");
+        assert_eq!((numbers, order.len()), (vec![0.0, 0.0, 1.0, 2.0], 3));
+        assert_eq!(tests_in_order(&["a", "b", "a"].map(|test| row(test, 5.0))), None);
+        let sessions = [(1.5, 1.0), (f64::INFINITY, 2.0)];
+        let sessions = sessions.map(|(before_test, x_m)| Session { before_test, stand: at(x_m) }).into();
+        let named = Placement { sessions, order, tests: BTreeMap::new(), ..placement() };
+        let rows = ["c", "a", "new"].map(|test| row(test, 5.0));
+        let places: Vec<f64> = named.stands(&rows).iter().map(|s| s.origin_m.x).collect();
+        assert_eq!(places, [2.0, 1.0, 1.5]);
+        assert_eq!(named.strangers(&rows), [2]);
+        let file = json!({"provenance": {"placement": named.to_json()}});
+        assert_eq!(Placement::from_json(&file), named);
     }
 
     #[test]

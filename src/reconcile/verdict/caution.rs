@@ -107,11 +107,11 @@ pub(crate) fn beyond_tolerance(
         let (part, tolerance) = (calibrated.factor.value - 1.0, TOLERANCE * sd);
         let one_in = honest_parts_for_one(libm::log(calibrated.factor.value) / sd);
         let words = format!(
-            "{} by {:+.1} % (tolerance {:.1} %; one honest part in {:.0})",
+            "{} by {:+.1} % (tolerance {:.1} %; {})",
             calibrated.name,
             100.0 * part,
             100.0 * tolerance,
-            one_in
+            rarity_words(one_in)
         );
         (part.abs() > tolerance).then_some((one_in, words))
     });
@@ -127,18 +127,16 @@ pub(crate) fn beyond_tolerance(
 }
 
 /// Sentence that calibration explains the readings only with a factor that no faultless part has; `None` if there is no
-/// such factor.
-pub(crate) fn impossible_calibration(campaign: &Campaign, fit: &Fit) -> Option<String> {
-    let numbers = fit.model.nuisance.numbers.iter().zip(&fit.point.u).enumerate();
-    let impossible = numbers.filter(|(_, (_, u))| honest_parts_for_one(**u) > IMPOSSIBLE);
-    let words = impossible.map(|(i, ((calibration, sd), u))| {
-        let part = fit.model.nuisance.factor(i, *u) - 1.0;
-        format!(
-            "{} by {:+.1} % (tolerance {:.1} %)",
-            calibration.name(),
-            100.0 * part,
-            100.0 * TOLERANCE * sd
-        )
+/// such factor. `numbers` has the name of each factor, the factor, and the standard deviation of its logarithm by the
+/// tolerance.
+pub(crate) fn impossible_calibration(
+    campaign: &Campaign,
+    numbers: impl Iterator<Item = (String, f64, f64)>,
+) -> Option<String> {
+    let impossible =
+        numbers.filter(|(_, factor, sd)| honest_parts_for_one(libm::log(*factor) / sd) > IMPOSSIBLE);
+    let words = impossible.map(|(name, factor, sd)| {
+        format!("{name} by {:+.1} % (tolerance {:.1} %)", 100.0 * (factor - 1.0), 100.0 * TOLERANCE * sd)
     });
     let words: Vec<String> = words.collect();
     if words.is_empty() {
@@ -154,6 +152,17 @@ pub(crate) fn impossible_calibration(campaign: &Campaign, fit: &Fit) -> Option<S
          part is another than the arm file says, something else deflects or has mass there{stated}",
         words.join(", ")
     ))
+}
+
+/// Largest number of honest parts that is printed. Beyond it, the normal distribution says nothing about parts.
+const MOST_PARTS: f64 = 1e12;
+
+/// How rare a calibrated factor is, in words.
+fn rarity_words(one_in: f64) -> String {
+    match one_in < MOST_PARTS {
+        true => format!("one honest part in {one_in:.0}"),
+        false => "less than one honest part in 1e12".into(),
+    }
 }
 
 /// The number n such that one in n faultless parts deviates from nominal by at least `deviations` standard
