@@ -74,7 +74,7 @@ fn a_duty_that_is_slower_than_the_tip_speed_asks_is_said_beside_the_result() {
         })
     };
     assert_eq!(told(2.0, json!({})), [true, true]);
-    assert_eq!(told(15.0, json!({})), [false, false], "faster than the tip speed asks");
+    assert_eq!(told(14.5, json!({})), [false, false], "faster than the tip speed asks");
     assert_eq!(told(2.0, json!({"max_speed_rad_s": 1.2})), [false, false], "sized for the stated speed");
 }
 

@@ -183,7 +183,7 @@ fn a_material_for_which_a_link_has_no_section_is_named_with_the_reason() {
 #[test]
 fn a_size_is_written_with_the_digits_that_it_has_and_reads_back() {
     let sections = json!([{"shape": "round_tube", "diameter_mm": [48.3, 60.3],
-        "wall_mm": {"from": 2.6, "to": 2.9, "step": 0.1}}, {"profiles": {"family": "steel", "shapes": ["round"]}}]);
+        "wall_mm": {"from": 2.6, "to": 2.9, "step": 0.1}}, {"profiles": {"family": "steel", "shapes": ["round"], "max_outer_mm": 61}}]);
     let choose = json!({"materials": [STEEL], "sections": sections});
     let here = folder_with("study.json", &study(choose));
     let run = |words: &[&str]| {
