@@ -16,6 +16,12 @@
 use super::torsion;
 use std::f64::consts::PI;
 
+/// A size of a section in millimetres, rounded to a nanometre: 48.3 for a tube of 48.3 mm, whose metres times 1000 are
+/// 48.300000000000004. Every text and table with such sizes takes it.
+pub(crate) fn millimetres(size_m: f64) -> f64 {
+    (size_m * 1e9).round() / 1e6
+}
+
 /// Elastic properties and density of the material of a link.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinkMaterial {
@@ -323,6 +329,15 @@ fn round_bar(d: f64, nu: f64) -> SectionProperties {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn millimetres_have_no_digits_of_rounding() {
+        for mm in [48.3, 2.6 + 0.1, 0.1 + 0.2, 114.3, 3.175, 60.0] {
+            let said = format!("{}", millimetres(mm / 1e3));
+            assert!(said.len() <= 5 && (said.parse::<f64>().unwrap() - mm).abs() < 1e-9, "{said}");
+            assert_eq!(said, format!("{}", millimetres(mm * 1e-3)), "either way into metres");
+        }
+    }
 
     #[test]
     fn the_papers_link_1_has_the_second_moment_of_eq_5() {

@@ -36,6 +36,7 @@ use crate::study::bearing_remarks::bearing_remarks;
 use crate::study::budget::budgets;
 use crate::study::definition::Study;
 use crate::study::effects::Correction;
+use crate::study::gear_remarks::{life_remarks_on, play_remarks};
 use crate::study::given_remarks::GivenDrives;
 use crate::study::outcome::StudyOutcome;
 use crate::study::page::study_page;
@@ -340,12 +341,14 @@ impl Finished<'_> {
         }
     }
 
-    /// What a reader should know of the question, and of the output bearings and the given drives in the answer.
+    /// What a reader should know of the question, and of the output bearings, gears and given drives in the answer.
     fn remarks(&self, front: &FrontTable, given: &GivenDrives) -> Vec<String> {
         let of_study = self.study.remarks.iter().cloned();
         let of_bearings = bearing_remarks(&self.study.space, self.catalogs, front);
+        let of_lives = life_remarks_on(&self.study.space, self.catalogs, front);
+        let of_play = play_remarks(&self.study.space, self.catalogs, front);
         let of_given = given.remarks(self.outcome.front.len());
-        of_study.chain(of_bearings).chain(of_given).collect()
+        of_study.chain(of_bearings).chain(of_lives).chain(of_play).chain(of_given).collect()
     }
 
     /// A sentence that names the parts of the picks whose ratings are not those of their vendor; `None` if there are

@@ -15,6 +15,7 @@ use crate::space::design_space::SpacePiece;
 use crate::space::problem::{ArmProblem, Partial};
 use crate::study::chosen::{chosen_design, why_not_held};
 use crate::study::definition::Study;
+use crate::study::gear_remarks::life_remarks;
 use crate::study::load::{load_study, refuse_empty};
 use crate::study::table::sizing_rows;
 use clap::Args;
@@ -54,8 +55,11 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failur
     refuse_empty(&study, catalogs)?;
     let (space, chosen) = chosen_design(&study, args.design.as_deref(), catalogs)?;
     let problem = ArmProblem::new(&space, catalogs);
-    let remarks: String = study.remarks.iter().map(|words| wrap(words, TERMINAL, "")).collect();
-    let remarks = if remarks.is_empty() { remarks } else { format!("\n{remarks}") };
+    let paragraphs = |remarks: &[String]| -> String {
+        let lines: String = remarks.iter().map(|words| wrap(words, TERMINAL, "")).collect();
+        if lines.is_empty() { lines } else { format!("\n{lines}") }
+    };
+    let remarks = paragraphs(&study.remarks);
     if let Some(joint) = &args.explain {
         return Ok(explain(&problem, &chosen, joint)? + &remarks);
     }
@@ -64,6 +68,8 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failur
     }
     let rows =
         sizing_rows(&problem, catalogs, &chosen).map_err(|slot| why_not_held(&problem, &chosen, slot))?;
+    let of_lives = life_remarks(rows.iter().map(|row| row.gear.as_str()), catalogs);
+    let remarks = paragraphs(&[study.remarks.clone(), of_lives].concat());
     let text = format!("{}{}{remarks}", heading(&study, &problem, &chosen), render_rows(&rows));
     let json = serde_json::to_string_pretty(&rows).expect("rows of numbers and strings serialize");
     if let Some(dir) = &args.out {
@@ -145,6 +151,9 @@ fn explain(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<String, 
     Ok(out)
 }
 
+/// Heading of the masses of drives: they are what the joint weighs with the drive, so the extras count.
+const MASS: &str = "mass kg (with extras)";
+
 fn all_fits(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<String, Failure> {
     let (slot, piece, partial) = before(problem, chosen, joint)?;
     let table = &sized(problem, piece, joint)?.table;
@@ -154,7 +163,7 @@ fn all_fits(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<String,
     let stiffness = if slides { "N/m" } else { "K2 Nm/rad" };
     // the straight curve of a gear of which K1 alone is known is used as it is
     let straight = if slides { "" } else { "K1 " };
-    let _ = writeln!(out, "{:>9}  {stiffness:>14}  drive", "mass kg");
+    let _ = writeln!(out, "{MASS:>21}  {stiffness:>14}  drive");
     for index in table.all_fits(&demand) {
         let drive = table.drive(index);
         let k2 = match (drive.gear.k2_nm_per_rad, drive.gear.single_slope_nm_per_rad()) {
@@ -162,7 +171,7 @@ fn all_fits(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<String,
             (None, Some(k1)) => format!("{straight}{k1:.0}"),
             (None, None) => "unknown".into(),
         };
-        let _ = writeln!(out, "{:>9.3}  {k2:>14}  {}", table.mass_kg(index), drive.name());
+        let _ = writeln!(out, "{:>21.3}  {k2:>14}  {}", table.mass_kg(index), drive.name());
     }
     Ok(out)
 }

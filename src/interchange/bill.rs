@@ -9,7 +9,7 @@ use super::bill_rows::{ROUNDING, Row, bodies_of, bought, stated, which_mass};
 use super::csv_text::csv_text;
 use crate::arm::pieces::without_factors;
 use crate::arm::prismatic::ROUNDED_KG;
-use crate::arm::section::Section;
+use crate::arm::section::{Section, millimetres};
 use crate::arm::{Arm, Element, Extras, Joint, Link, LinkBody, Prismatic};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::GearKind;
@@ -213,7 +213,7 @@ fn link_parts(link: &Link, catalogs: &Catalogs) -> Vec<Row> {
 
 /// A section in words, with sizes in millimetres.
 pub(crate) fn section_words(section: &Section) -> String {
-    let mm = |m: f64| format!("{}", (m * 1e6).round() / 1e3);
+    let mm = |m: f64| format!("{}", millimetres(m));
     match *section {
         Section::RectangularTube { width_m, height_m, wall_m } => {
             format!("tube {} x {} x {} mm", mm(width_m), mm(height_m), mm(wall_m))

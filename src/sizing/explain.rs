@@ -7,7 +7,8 @@ use super::demand::JointDemand;
 use super::drive::Drive;
 use super::limits::DriveLimits;
 use super::select::DriveTable;
-use crate::catalog::gear::Gear;
+use crate::catalog::gear::{Gear, GearKind};
+use crate::catalog::motor::MotorKind;
 use std::fmt;
 
 /// The part that a rejection is about.
@@ -17,6 +18,11 @@ pub enum RejectedPart {
     Gear {
         /// Name of the gear.
         gear: String,
+    },
+    /// An actuator, which is checked as a whole: its gear goes with its own motor only.
+    Actuator {
+        /// Name of the actuator.
+        actuator: String,
     },
     /// A gear that passes its own checks, but that has no motor which passes too. The checks listed are those with the
     /// nearest motor: the motor whose smallest margin is the largest.
@@ -59,6 +65,24 @@ impl Rejection {
     pub fn is_not_checked(&self) -> bool {
         self.checks.iter().all(|c| matches!(c.state, CheckState::NotChecked(_)))
     }
+
+    /// The ratings that are blank, each once and with its checks, then the further blank columns:
+    /// `no inertia_output_kgm2 (peak and rms), no mass_kg`.
+    fn lacking(&self) -> String {
+        let mut ratings: Vec<(&str, Vec<&str>)> = Vec::new();
+        for check in &self.checks {
+            let CheckState::NotChecked(rating) = check.state else { continue };
+            // a row of actuators.csv is the row of its motor too
+            let column = rating.0.strip_prefix("motor ").unwrap_or(rating.0);
+            match ratings.iter_mut().find(|(other, _)| *other == column) {
+                Some((_, checks)) => checks.push(check.kind.name()),
+                None => ratings.push((column, vec![check.kind.name()])),
+            }
+        }
+        let rating = |(column, checks): &(&str, Vec<&str>)| format!("no {column} ({})", checks.join(" and "));
+        let further = self.also_lacks.iter().map(|column| format!("no {column}"));
+        ratings.iter().map(rating).chain(further).collect::<Vec<_>>().join(", ")
+    }
 }
 
 impl fmt::Display for Rejection {
@@ -66,7 +90,12 @@ impl fmt::Display for Rejection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "joint {}: ", self.joint)?;
         match &self.part {
-            RejectedPart::Gear { gear } => write!(f, "{gear} ")?,
+            RejectedPart::Actuator { actuator } if self.is_not_checked() => {
+                return write!(f, "{actuator} cannot be checked: {}", self.lacking());
+            }
+            RejectedPart::Gear { gear: name } | RejectedPart::Actuator { actuator: name } => {
+                write!(f, "{name} ")?
+            }
             RejectedPart::GearWithoutMotor { gear, nearest_motor } => {
                 write!(f, "{gear} finds no motor, nearest {nearest_motor}: ")?
             }
@@ -172,20 +201,26 @@ struct Trial<'c> {
 
 impl<'c> DriveTable<'c> {
     /// Why parts were rejected for `demand`. The list has every gear that fails by itself, every gear that passes but
-    /// has no motor that passes with it, and every motor that fails with some gear that passes. Gears come first; gears
+    /// has no motor that passes with it, every actuator that fails, and every motor that fails with some gear that passes. Gears come first; gears
     /// and motors are each in the order of the catalog.
     pub fn explain(&self, demand: &JointDemand) -> Vec<Rejection> {
         let (mut rejections, trials) = (Vec::new(), self.trials(demand));
         for gear in self.gears() {
             let failed = not_holding(self.checks_of_gear(gear, demand));
-            if !failed.is_empty() {
+            let mut with_gear = trials.iter().filter(|t| t.drive.gear.id == gear.id);
+            if gear.kind == GearKind::Actuator {
+                let of_motor = with_gear.next().map_or(Vec::new(), |trial| trial.failed.clone());
+                let failed = if failed.is_empty() { of_motor } else { failed };
+                let part = RejectedPart::Actuator { actuator: gear.id.clone() };
+                rejections.extend((!failed.is_empty()).then(|| self.rejection(part, failed)));
+            } else if failed.is_empty() {
+                rejections.extend(self.gear_without_motor(with_gear));
+            } else {
                 rejections.push(self.rejection(RejectedPart::Gear { gear: gear.id.clone() }, failed));
-                continue;
             }
-            let with_gear = trials.iter().filter(|t| t.drive.gear.id == gear.id);
-            rejections.extend(self.gear_without_motor(with_gear));
         }
-        for motor in self.motors() {
+        // the motor of an actuator was named with its gear
+        for motor in self.motors().iter().filter(|motor| motor.kind != MotorKind::OfActuator) {
             rejections.extend(self.rejected_motor(trials.iter().filter(|t| t.drive.motor.id == motor.id)));
         }
         rejections
@@ -293,6 +328,15 @@ impl<'c> DriveTable<'c> {
         let of_motor = |id: &String| self.motors().iter().find(|motor| motor.id == *id);
         let lacks = match part {
             RejectedPart::Gear { gear } => of_gear(gear).map(|gear| gear.lacks(self.gear_mass())),
+            RejectedPart::Actuator { actuator } => {
+                of_gear(actuator).zip(of_motor(actuator)).map(|(gear, motor)| {
+                    let of_gear = gear.lacks(self.gear_mass());
+                    let known = |figure: &str| of_gear.iter().any(|lack| lack.figure == figure);
+                    let of_motor: Vec<_> =
+                        motor.lacks().into_iter().filter(|lack| !known(lack.figure)).collect();
+                    of_gear.iter().copied().chain(of_motor).collect()
+                })
+            }
             RejectedPart::GearWithoutMotor { nearest_motor: motor, .. }
             | RejectedPart::Motor { motor, .. } => of_motor(motor).map(|motor| motor.lacks()),
         };
@@ -473,7 +517,7 @@ mod tests {
                 let fits = fits.is_some_and(|i| table.all_fits(&demand).any(|j| i == j));
                 let explained = rejections.iter().any(|r| match &r.part {
                     RejectedPart::Gear { gear } => *gear == drive.gear.id,
-                    RejectedPart::GearWithoutMotor { .. } => false,
+                    RejectedPart::GearWithoutMotor { .. } | RejectedPart::Actuator { .. } => false,
                     RejectedPart::Motor { motor, rejected_with, .. } => {
                         *motor == drive.motor.id && rejected_with.contains(&drive.gear.id)
                     }

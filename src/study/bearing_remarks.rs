@@ -148,7 +148,10 @@ fn bearing_of(joint: &SpaceJoint) -> String {
 }
 
 /// Names of the gears that the designs of a front have at a joint, each once.
-fn gears_of<'f>(front: &'f FrontTable, joint: &SpaceJoint) -> impl Iterator<Item = &'f str> {
+pub(super) fn gears_of<'f>(
+    front: &'f FrontTable,
+    joint: &SpaceJoint,
+) -> impl Iterator<Item = &'f str> + use<'f> {
     let column = front.column(&format!("{}_gear", joint.name));
     let mut ids: Vec<&str> =
         column.map_or(Vec::new(), |c| front.rows.iter().map(|row| row[c].as_str()).collect());

@@ -134,7 +134,7 @@ pub(super) static JOINT: Shape = Shape::new(
             Kind::Word(&["first_fit", "all_fits"]),
             "-",
             "none",
-            "Search for it: the lightest drive that passes all checks, or every drive that passes them as a choice.",
+            "Search for it: the drive that is lightest with its extras among those that pass all checks, or every drive that passes them as a choice.",
         ),
         optional(
             "drives",

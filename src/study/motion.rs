@@ -3,9 +3,13 @@
 
 use super::keys::{MOTION, PHASE, STATED_PHASE};
 use crate::input::json::{Node, Object};
+use crate::report::number::significant;
 use crate::sizing::duty::{DutyCycle, Phase, PhaseKind};
 use crate::sizing::requirement::MotionRequirement;
+use crate::sizing::rpm_from_rad_s;
 use crate::sizing::stated::{StatedDuty, StatedPhase};
+use crate::space::design_space::{DesignSpace, SpaceJoint};
+use crate::space::station::reaches_m;
 
 /// Reads the motion of the tip. Keys that are missing have the paper's values.
 pub(super) fn read_motion(node: &Node) -> Option<MotionRequirement> {
@@ -42,6 +46,34 @@ pub(super) fn ramp_remark(motion: &MotionRequirement) -> Option<String> {
              and mean torque, life and motor heat count it for {ramp_s} s. State the same time in both."
         )
     })
+}
+
+/// Remarks on the joints that are sized for a stated duty which is slower than the speed that the study asks of the tip.
+pub(super) fn duty_remarks(space: &DesignSpace) -> Vec<String> {
+    let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
+    let remark = |((_, joint), reach_m): ((usize, &SpaceJoint), f64)| {
+        joint.duty.as_ref()?;
+        let of_tip_rad_s = space.motion.joint_motion(reach_m, joint.max_speed_rad_s).speed_rad_s;
+        let of_duty_rad_s = joint.motion(&space.motion, reach_m).speed_rad_s;
+        (of_duty_rad_s < of_tip_rad_s * (1.0 - SAME_SPEED)).then(|| {
+            format!(
+                "Joint {} is sized for the {} rpm of its duty, not for the {} rpm of tip_speed_m_s.",
+                joint.name,
+                rpm_words(of_duty_rad_s),
+                rpm_words(of_tip_rad_s)
+            )
+        })
+    };
+    space.joints().zip(reaches_m(space, sizing)).filter_map(remark).collect()
+}
+
+/// Speeds that differ by less than this fraction count as equal: they were converted between units.
+const SAME_SPEED: f64 = 1e-6;
+
+/// A speed in rpm with one decimal, or with two digits below 1 rpm.
+fn rpm_words(speed_rad_s: f64) -> String {
+    let rpm = rpm_from_rad_s(speed_rad_s);
+    if rpm < 1.0 { significant(rpm, 2) } else { format!("{rpm:.1}") }
 }
 
 /// Reads the duty cycle that every joint repeats, a list of phases.

@@ -4,6 +4,7 @@ use super::connections::connection_share;
 use super::fit::joints_that_ask;
 use super::harness::has_harness;
 use crate::arm::bearing::BearingSource;
+use crate::arm::effect::connection_compliance::KIND as CONNECTION;
 use crate::arm::extras::ExtrasSource;
 use crate::arm::transmission::Stages;
 use crate::catalog::Catalogs;
@@ -90,7 +91,9 @@ fn left_out_everywhere(space: &DesignSpace) -> String {
         (!fits).then_some("whether the parts fit into each other"),
     ];
     let words = list.into_iter().flatten().collect::<Vec<_>>().join(", ");
-    format!("Left out of every number: {words}, and temperature. {SIZE_OF_WHAT_IS_LEFT_OUT}")
+    let stated = !rigid || has_harness(space) || space.effects.iter().any(|e| e.effect == CONNECTION.name);
+    let size = if stated { SIZES_ONE_BY_ONE } else { SIZE_OF_ALL_TOGETHER };
+    format!("Left out of every number: {words}, and temperature. {size}")
 }
 
 /// Whether a screw or rack and its motor are chosen for some prismatic joint.
@@ -100,8 +103,12 @@ fn has_sized_rail(space: &DesignSpace) -> bool {
 
 /// By how much a built arm may differ from the computed one because of all that is left out: the row "together" of
 /// docs/left-out.md.
-const SIZE_OF_WHAT_IS_LEFT_OUT: &str = "How much this may be: on the knees of two named studies it adds 77 to 79 % to the \
-    deflection and 40 to 47 % to the mass, and takes 18 to 22 % from the lowest mode (docs/left-out.md).";
+const SIZE_OF_ALL_TOGETHER: &str = "How much this may be: all starred rows of docs/left-out.md together, connections and \
+    cables among them, add 77 to 79 % to the deflection and 40 to 47 % to the mass, and take 18 to 22 % from the lowest \
+    mode, on the knees of two named studies.";
+
+/// In place of [`SIZE_OF_ALL_TOGETHER`] in a study that states connections or cables, which are among these rows.
+const SIZES_ONE_BY_ONE: &str = "How much each of these may be: docs/left-out.md.";
 
 fn joints(space: &DesignSpace) -> impl Iterator<Item = &SpaceJoint> {
     space.pieces.iter().filter_map(|piece| match piece {

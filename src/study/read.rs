@@ -16,7 +16,7 @@ use super::fit::{fit_remarks, read_fit};
 use super::harness::{harness_effects, harness_remark};
 use super::keys::{CONSTRAINTS, JOINT, LINK, MODELS, STUDY};
 use super::linkages::drivers_are_inboard;
-use super::motion::{ramp_remark, read_duty, read_motion};
+use super::motion::{duty_remarks, ramp_remark, read_duty, read_motion};
 use super::omissions::{actuators_remark, omissions};
 use super::piece_names::check_names;
 use super::rail_keys::{OF_CATALOG_DRIVE, PRISMATIC};
@@ -147,6 +147,7 @@ fn remarks_on(space: &DesignSpace, harness_kg_per_m: f64, catalogs: &Catalogs) -
     out.extend(connections_remark(space));
     out.extend(harness_remark(space, harness_kg_per_m));
     out.extend(ramp_remark(&space.motion));
+    out.extend(duty_remarks(space));
     out.extend(fit_remarks(space, catalogs));
     out.extend(omissions(space));
     out.extend(actuators_remark(space, catalogs));

@@ -269,21 +269,32 @@ fn sold_in(family: &str, material: &Material) -> bool {
     }
 }
 
-/// The word in the names of stainless steels, which is also the name of their family of profiles.
-const STAINLESS: &str = "stainless";
+/// The materials in which profiles of the family `family` are sold, in words.
+fn sold_in_words(family: &str) -> &str {
+    match family {
+        "steel" => "structural steel",
+        "stainless" => "stainless steel",
+        other => other,
+    }
+}
 
-/// A remark if `link` may be of stainless steel and of catalog profiles, but none of the profiles is sold in stainless
-/// steel.
-fn stainless_without_profiles(materials: &[&Material], sections: &Sections, link: &str) -> Option<String> {
-    let families: HashSet<&str> =
-        sections.sections.iter().filter_map(|(_, profile)| Some(profile.as_ref()?.family.as_str())).collect();
-    let stainless: Vec<&str> =
-        materials.iter().filter(|m| sold_in(STAINLESS, m)).map(|m| m.name.as_str()).collect();
-    (!stainless.is_empty() && !families.is_empty() && !families.contains(STAINLESS)).then(|| {
+/// A remark on the materials that `link` offers and of which it has no section: all its sections are profiles, and none of
+/// them is sold in these materials. `None` if every material has a section.
+fn without_section(materials: &[&Material], sections: &Sections, link: &str) -> Option<String> {
+    // a section that is no profile is made of any material
+    let families: Option<BTreeSet<&str>> =
+        sections.sections.iter().map(|(_, profile)| Some(profile.as_ref()?.family.as_str())).collect();
+    let families = families.filter(|families| !families.is_empty())?;
+    let has_none = |m: &&&Material| !families.iter().any(|family| sold_in(family, m));
+    let without: Vec<&str> = materials.iter().filter(has_none).map(|m| m.name.as_str()).collect();
+    let have = if without.len() == 1 { "has" } else { "have" };
+    let sold: Vec<&str> = families.iter().map(|family| sold_in_words(family)).collect();
+    (!without.is_empty()).then(|| {
         format!(
-            "Link {link} offers {} without profiles of the family \"{STAINLESS}\": steel profiles are structural steel \
-             and not sold in it.",
-            stainless.join(" and ")
+            "Link {link}: {} {have} no section to choose from: the {} profiles of the catalog are sold in {} only.",
+            without.join(", "),
+            families.iter().copied().collect::<Vec<_>>().join(" and "),
+            sold.join(" and ")
         )
     })
 }
@@ -314,7 +325,7 @@ pub(super) fn options(
     link: &str,
     aside: &mut Aside,
 ) -> Vec<LinkOption> {
-    aside.remarks.extend(stainless_without_profiles(materials, sections, link));
+    aside.remarks.extend(without_section(materials, sections, link));
     let mut out = Vec::new();
     for material in materials {
         let Some(elastic) = material_of(material) else { continue };

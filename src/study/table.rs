@@ -2,6 +2,7 @@
 
 use super::outcome::{Front, Judged};
 use super::piece_names::{choice_columns, has_parts, joint_columns};
+use crate::arm::section::millimetres;
 use crate::catalog::Catalogs;
 use crate::catalog::gear::GearKind;
 use crate::report::front_table::FrontTable;
@@ -98,9 +99,9 @@ fn link_cells(option: &LinkOption) -> [String; 6] {
     [
         option.material_name.clone(),
         option.section.shape().to_string(),
-        millimetres(width),
-        millimetres(height),
-        millimetres(option.section.wall_m()),
+        number(millimetres(width)),
+        number(millimetres(height)),
+        number(millimetres(option.section.wall_m())),
         option.profile.clone().unwrap_or_default(),
     ]
 }
@@ -109,12 +110,6 @@ fn link_cells(option: &LinkOption) -> [String; 6] {
 pub(super) fn link_words(option: &LinkOption) -> String {
     let [material, shape, width, height, wall, _] = link_cells(option);
     format!("{} {material}", tube_size(&shape, [&width, &height, &wall]))
-}
-
-/// A length in millimetres, written as the user gave it: the shortest decimal that reads back to the same length.
-fn millimetres(length_m: f64) -> String {
-    let near = (length_m * 1e3 * 1e9).round() / 1e9;
-    number(if near / 1e3 == length_m { near } else { length_m * 1e3 })
 }
 
 /// The shortest decimal that reads back to the same number.

@@ -70,6 +70,53 @@ fn a_harmonic_drive_of_another_maker_lasts_the_usual_life_where_its_row_states_n
     );
 }
 
+/// What `size` and `run` say of the lives of the gears; both must say the same, and `run` in all its files.
+fn of_lives(study: &Value, gears: &str) -> Vec<String> {
+    let here = folder(study, &[("gears.csv", gears)]);
+    let read = |words: &[&str]| {
+        let (code, said) = armwright(here.path(), words);
+        assert_eq!(code, 0, "{said}");
+        said.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let size = read(&["size", "study.json", "--catalogs", "parts"]);
+    let run = read(&["run", "study.json", "--catalogs", "parts", "--out", "out"]);
+    let file = |name: &str| std::fs::read_to_string(here.path().join("out").join(name)).expect(name);
+    let json: Value = serde_json::from_str(&file("run.json")).expect("JSON");
+    let mut remarks: Vec<String> = serde_json::from_value(json["remarks"].clone()).expect("a list");
+    remarks.retain(|words| ["strain-wave", "life not checked"].iter().any(|word| words.contains(word)));
+    for words in &remarks {
+        for text in [&size, &run, &file("summary.md"), &file("report.html")] {
+            assert!(text.contains(words.as_str()), "{words}: {text}");
+        }
+    }
+    remarks
+}
+
+#[test]
+fn a_life_that_rests_on_a_usual_figure_or_on_none_is_said_beside_the_result() {
+    let usual =
+        "no rated_life_h in the catalog: the usual 7000 h at 2000 rpm of strain-wave gears stand for it.";
+    let study = one_joint(json!({"gears": ["FSG-25-100"]}));
+    assert_eq!(
+        of_lives(&study, &own_gears()),
+        [
+            "FSG-25-100: taken as a strain-wave gear (column kind is blank).".into(),
+            format!("FSG-25-100: {usual}")
+        ]
+    );
+    let named = own_gears().replace(",FSG,25", "strain_wave,FSG,25");
+    assert_eq!(of_lives(&study, &named), [format!("FSG-25-100: {usual}")]);
+    let whole = named.replace("57000,0.7,,,,", "57000,0.7,8000,2000,,");
+    assert_eq!(of_lives(&study, &whole), [""; 0]);
+    let belt = format!(
+        "{GEARS}\nbelt,BLT,25,5,90,90,140,200,6000,6000,9e-5,1.6,,,65000,,,0.97,,,,own sheet,third party\n"
+    );
+    let belts = one_joint(json!({"gears": ["BLT-25-5"]}));
+    assert_eq!(of_lives(&belts, &belt), ["BLT-25-5: life not checked: lacks rated_life_h."]);
+    let built_in = one_joint(json!({"gears": ["CSG-25-100"]}));
+    assert_eq!(of_lives(&built_in, &own_gears()), [""; 0]);
+}
+
 #[test]
 fn the_life_of_a_cycloidal_gear_goes_with_the_power_ten_thirds_and_that_of_a_stated_exponent_with_it() {
     let here = folder(&one_joint(json!({"gears": ["RV-42-127"]})), &[("gears.csv", &own_gears())]);
@@ -145,6 +192,7 @@ fn other_kinds_and_actuators_join_a_study_that_asks_for_them_only() {
         armwright(here.path(), &["size", "study.json", "--catalogs", "parts", "--all-fits", "j"]).1
     };
     let usual = gears(json!({}));
+    assert!(usual.contains("\nmass kg (with extras)  "), "{usual}");
     assert!(usual.contains("FSG-25-100") && !usual.contains("RV-42") && !usual.contains("ACT-"), "{usual}");
     assert!(gears(json!({"gear_kinds": ["cycloidal", "planetary"]})).contains("RV-42-127"));
     let actuators = gears(json!({"actuators": "all"}));
@@ -171,7 +219,18 @@ fn an_actuator_is_checked_by_what_its_row_states_at_the_output() {
     // 19.1 rpm at the output are within the rated 20 rpm
     assert!((50.0 * number(&row, "motor_continuous_torque_nm") - 70.0).abs() < 1e-9, "{row}");
     let (_, said) = armwright(here.path(), &["size", "study.json", "--catalogs", "parts", "--explain", "j"]);
-    assert!(said.contains("ACT-X") && said.contains("lacks inertia_output_kgm2"), "{said}");
+    // an actuator is one part: one line, and no word of a motor for it or of a gear before it
+    let of_x: Vec<&str> =
+        said.lines().filter(|line| line.contains("ACT-X") && !line.contains("bearing")).collect();
+    assert_eq!(of_x, ["joint j: ACT-X cannot be checked: no inertia_output_kgm2 (peak and rms)"], "{said}");
+    let mut heavy = one_joint(json!({"actuators": "all"}));
+    heavy["payload"]["mass_kg"] = json!(7.9);
+    let here = folder(&heavy, &[("actuators.csv", ACTUATORS)]);
+    let (_, said) = armwright(here.path(), &["size", "study.json", "--catalogs", "parts", "--explain", "j"]);
+    let of_70: Vec<&str> =
+        said.lines().filter(|line| line.contains("ACT-70") && line.contains("rms")).collect();
+    assert!(of_70.len() == 1 && of_70[0].starts_with("joint j: ACT-70 "), "{said}");
+    assert!(!said.contains("finds no motor") && !said.contains("behind"), "{said}");
     let (_, said) = armwright(here.path(), &["catalog", "check", "--catalogs", "parts"]);
     assert!(
         said.contains("ACT-X: cannot be chosen by size and run: no inertia_output_kgm2 (peak and rms)"),

@@ -54,6 +54,30 @@ fn the_vendors_worked_example_of_a_selection_comes_out() {
     is("emergency_stops_allowed", 1190.0, 0.5);
 }
 
+/// 1.5 m/s at 1 m are 14.3 rpm. A duty replaces this speed, and whoever reads 1.5 m/s in the heading must hear of it.
+#[test]
+fn a_duty_that_is_slower_than_the_tip_speed_asks_is_said_beside_the_result() {
+    let told = |duty_rpm: f64, more: Value| {
+        let phase = |torque_nm: f64, time_s: f64, speed_rpm: f64| json!({"torque_nm": torque_nm, "time_s": time_s, "speed_rpm": speed_rpm});
+        let mut joint = json!({"duty": [phase(150.0, 0.25, duty_rpm / 2.0), phase(100.0, 1.5, duty_rpm),
+            phase(80.0, 0.25, duty_rpm / 2.0), phase(100.0, 1.0, 0.0)]});
+        joint.as_object_mut().expect("a joint").extend(more.as_object().expect("keys").clone());
+        let mut study = one_joint([0.0, 1.0, 0.0], joint);
+        study["motion"]["tip_speed_m_s"] = json!(1.5);
+        let short = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+        let words = "Joint j is sized for the 2.0 rpm of its duty, not for the 14.3 rpm of tip_speed_m_s.";
+        [vec!["size", "study.json"], vec!["run", "study.json", "--out", "out"]].map(|command| {
+            let (code, out, err) = on(&study, &command);
+            assert_eq!(code, 0, "{err}");
+            assert_eq!(short(&out).contains(words), short(&out).contains("of its duty"), "{out}");
+            short(&out).contains(words)
+        })
+    };
+    assert_eq!(told(2.0, json!({})), [true, true]);
+    assert_eq!(told(14.5, json!({})), [false, false], "faster than the tip speed asks");
+    assert_eq!(told(2.0, json!({"max_speed_rad_s": 1.2})), [false, false], "sized for the stated speed");
+}
+
 #[test]
 fn a_duty_may_stand_beside_the_chain_of_a_single_joint_only() {
     let mut study = one_joint([0.0, 0.0, 1.0], json!({}));

@@ -80,8 +80,32 @@ fn the_size_of_what_is_left_out_is_that_of_the_table() {
     let (_, said) = armwright(here.path(), &["run", "study.json", "--out", "out"]);
     let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
     let sentence = format!(
-        "it adds {} to {} % to the deflection and {} to {} % to the mass, and takes {} to {} % from the lowest mode",
+        "How much this may be: all starred rows of docs/left-out.md together, connections and cables among them, add {} to {} % to the \
+         deflection and {} to {} % to the mass, and take {} to {} % from the lowest mode, on the knees",
         tip[0], tip[1], mass[0], mass[1], mode[0], mode[1]
     );
     assert!(said.contains(&sentence), "{sentence}: {said}");
+}
+
+/// Connections and cables are among the rows whose sizes are added up, so a study that states one of them has no use for the
+/// sum.
+#[test]
+fn a_study_that_states_connections_or_cables_is_not_told_their_size_again() {
+    let of = |key: &str, value: Value| {
+        let mut study = study(json!({"drive": "first_fit"}), json!({}));
+        study[key] = value;
+        let here = folder_with("study.json", &study);
+        let (code, said) = armwright(here.path(), &["size", "study.json"]);
+        assert_eq!(code, 0, "{said}");
+        said.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let softer = json!([{"effect": "connection_compliance", "at": "shoulder", "parameters": {"stiffness_nm_per_rad": 1e5}}]);
+    for (key, value) in
+        [("connection_share", json!(0.2)), ("harness_kg_per_m", json!(0.3)), ("effects", softer)]
+    {
+        let said = of(key, value);
+        assert!(said.contains("How much each of these may be: docs/left-out.md."), "{key}: {said}");
+        assert!(!said.contains("starred rows"), "{key}: {said}");
+    }
+    assert!(of("gravity_m_s2", json!(9.81)).contains("starred rows"), "nothing stated");
 }

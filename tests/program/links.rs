@@ -123,15 +123,15 @@ fn a_bar_may_be_chosen_and_is_taken_out_as_one() {
 }
 
 #[test]
-fn a_study_that_offers_stainless_steel_in_structural_sections_alone_says_so() {
+fn a_material_for_which_a_link_has_no_section_is_named_with_the_reason() {
     let profiles = |families: &[&str]| -> Value {
         families
             .iter()
             .map(|f| json!({"profiles": {"family": f, "shapes": ["square"], "max_outer_mm": 60}}))
             .collect()
     };
-    let told = |materials: &[&str], families: &[&str]| {
-        let choose = json!({"materials": materials, "sections": profiles(families)});
+    let of = |materials: &[&str], sections: Value| {
+        let choose = json!({"materials": materials, "sections": sections});
         let here = folder_with("study.json", &study(choose));
         let (code, said) = armwright(here.path(), &["run", "study.json", "--out", "out"]);
         assert_eq!(code, 0, "{said}");
@@ -140,21 +140,81 @@ fn a_study_that_offers_stainless_steel_in_structural_sections_alone_says_so() {
         let mut remarks: Vec<String> = serde_json::from_value(run["remarks"].clone()).expect("a list");
         // the other remark is what every study with gears leaves out
         remarks.retain(|words| words.starts_with("Link "));
+        let short = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
         for file in ["summary.md", "report.html"] {
             let text = std::fs::read_to_string(here.path().join("out").join(file)).expect(file);
-            assert_eq!(text.contains("offers Stainless"), !remarks.is_empty(), "{file}");
+            assert_eq!(short(&text).contains("no section to choose from"), !remarks.is_empty(), "{file}");
         }
-        assert_eq!(said.contains("offers Stainless"), !remarks.is_empty(), "{said}");
+        assert_eq!(short(&said).contains("no section to choose from"), !remarks.is_empty(), "{said}");
         remarks
     };
-    let remarks = told(&[STEEL, STAINLESS], &["steel"]);
-    assert_eq!(remarks.len(), 1, "{remarks:?}");
-    assert!(
-        remarks[0].starts_with("Link upper_arm offers Stainless steel 1.4404 (316L) without"),
-        "{remarks:?}"
+    let told = |materials: &[&str], families: &[&str]| of(materials, profiles(families));
+    assert_eq!(
+        told(&[STEEL, STAINLESS], &["steel"]),
+        [
+            "Link upper_arm: Stainless steel 1.4404 (316L) has no section to choose from: the steel profiles of the catalog are \
+          sold in structural steel only."
+        ]
+    );
+    assert_eq!(
+        told(&["Aluminium 6061-T6", STEEL, "Titanium Ti-6Al-4V"], &["steel"]),
+        [
+            "Link upper_arm: Aluminium 6061-T6, Titanium Ti-6Al-4V have no section to choose from: the steel profiles of the \
+          catalog are sold in structural steel only."
+        ]
+    );
+    assert_eq!(
+        told(&["Aluminium 6061-T6", STEEL, STAINLESS], &["stainless", "aluminium"]),
+        [
+            "Link upper_arm: Structural steel S355 has no section to choose from: the aluminium and stainless profiles of the \
+          catalog are sold in aluminium and stainless steel only."
+        ]
     );
     assert_eq!(told(&[STEEL, STAINLESS], &["steel", "stainless"]), [""; 0]);
     assert_eq!(told(&[STEEL], &["steel"]), [""; 0]);
+    // sizes that are no profiles are those of every material
+    let mut sizes = profiles(&["steel"]);
+    let tube = json!({"shape": "rectangular_tube", "width_mm": 60, "wall_mm": [2, 3]});
+    sizes.as_array_mut().expect("a list").push(tube);
+    assert_eq!(of(&[STEEL, STAINLESS], sizes), [""; 0]);
+}
+
+/// 48.3 mm in metres times 1000 is 48.300000000000004, and a wall of the grid is 2.6 + 0.1 + 0.1 mm.
+#[test]
+fn a_size_is_written_with_the_digits_that_it_has_and_reads_back() {
+    let sections = json!([{"shape": "round_tube", "diameter_mm": [48.3, 60.3],
+        "wall_mm": {"from": 2.6, "to": 2.9, "step": 0.1}}, {"profiles": {"family": "steel", "shapes": ["round"], "max_outer_mm": 61}}]);
+    let choose = json!({"materials": [STEEL], "sections": sections});
+    let here = folder_with("study.json", &study(choose));
+    let run = |words: &[&str]| {
+        let (code, said) = armwright(here.path(), words);
+        assert_eq!(code, 0, "{said}");
+        said
+    };
+    run(&["run", "study.json", "--out", "out"]);
+    run(&["front", "check", "out"]);
+    let mut front = csv::Reader::from_path(here.path().join("out/front.csv")).expect("a front");
+    let header = front.headers().expect("a header").clone();
+    let rows: Vec<csv::StringRecord> = front.records().map(|row| row.expect("a row")).collect();
+    for (column, _) in
+        header.iter().enumerate().filter(|(_, name)| name.ends_with("_mm") && name.starts_with("upper"))
+    {
+        for row in &rows {
+            assert!(row[column].len() <= 5, "{}: {}", &header[column], &row[column]);
+        }
+    }
+    let column = |name: &str| header.iter().position(|c| c == name).expect("the column");
+    let number = |text: &str| text.parse::<f64>().expect("a number");
+    for row in &rows {
+        // the arm of the design has the very size, and the objectives of the row
+        let said = run(&["design", "out", &row[0], "--out", "arm"]);
+        let arm = std::fs::read_to_string(here.path().join("arm/arm.json")).expect("an arm");
+        let section = serde_json::from_str::<Value>(&arm).expect("JSON")["chain"][1]["section"].clone();
+        let diameter_mm = number(&row[column("upper_arm_width_mm")]);
+        assert!((1e3 * section["diameter_m"].as_f64().expect("round") - diameter_mm).abs() < 1e-9);
+        let mass = format!("mass {:.3} kg", number(&row[column("mass_kg")]));
+        assert!(said.contains(&mass), "{mass}: {said}");
+    }
 }
 
 /// Three steel and three aluminium tubes. By kg/m: aluminium 20 x 1, 30 x 1.5, steel 20 x 1, 30 x 1.5, aluminium 50 x 4,

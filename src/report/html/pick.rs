@@ -3,6 +3,7 @@
 
 use super::gallery::{Gallery, table};
 use crate::arm::load::LoadCase;
+use crate::arm::section::millimetres;
 use crate::arm::springs::Drawn;
 use crate::arm::{Arm, Element, Link, LinkBody};
 use crate::mechanics::centre_line::Station;
@@ -252,7 +253,7 @@ impl PickedArm {
                 LinkBody::Tube { material_name, material, section } => {
                     let p = section.properties(material.poisson);
                     let outer_mm = |m: f64| significant(m * 1e3, 3);
-                    let wall_mm = |m: f64| shortest((m * 1e9).round() / 1e6);
+                    let wall_mm = |m: f64| shortest(millimetres(m));
                     Some(json!({
                         "name": link.name,
                         "material": material_name,
