@@ -312,7 +312,16 @@ mod tests {
         ] {
             assert!(said.iter().any(|s| s.contains(part)), "{part} in {said:#?}");
         }
-        let no_xml = UrdfTree::read("r.urdf", "<robot").expect_err("no XML").to_string();
-        assert!(no_xml.contains("is no URDF") && no_xml.contains("xacro"), "{no_xml}");
+        let refused = |text: &str| UrdfTree::read("r.urdf", text).expect_err("no URDF").to_string();
+        let xacro = refused("<robot name=\"r\"><link/></robot>");
+        assert!(xacro.contains("is no URDF") && xacro.contains("xacro"), "{xacro}");
+        for cut in ["", "<robot", "<robot name=\"r\">\n<link name=\"a\"/>"] {
+            let said = refused(cut);
+            assert!(said.contains("is empty or cut off"), "{cut}: {said}");
+        }
+        let far = "<robot name=\"r\"><link name=\"a\"/><link name=\"b\"/><joint name=\"j\" type=\"fixed\"><parent link=\"a\"/>\
+                   <child link=\"b\"/><origin xyz=\"0 0 X\"/></joint></robot>";
+        assert!(refused(&far.replace('X', "nan")).contains("j: has an origin that is no number"));
+        assert!(refused(&far.replace('X', "1e300")).contains("m away"));
     }
 }

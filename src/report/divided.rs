@@ -24,8 +24,8 @@ pub(crate) fn too_high(printed_hz: f64, divided_hz: f64) -> Option<String> {
     let part = (printed_hz - divided_hz) / printed_hz;
     (part > REMARKED).then(|| {
         format!(
-            "lowest mode {} Hz, {} lower than printed, if its tubes are divided at the bodies on them: a body beside the axis \
-             of a tube twists a part of it",
+            "lowest mode {} Hz, {} lower than printed, if its tubes are divided at the bodies on them: the weight of a \
+             body, or its inertia about the tube, twists a part of it",
             significant(divided_hz, 4),
             percent(100.0 * part, 1)
         )
