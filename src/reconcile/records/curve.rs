@@ -163,6 +163,7 @@ pub(crate) fn curve(model: &TwistModel, viscous_nms_per_rad: f64) -> Option<Curv
     let largest_nm = out.spring_nm.iter().fold(0.0f64, |m, t| m.max(t.abs()));
     for _ in 0..2 {
         let tried = out.best_of_grids(model, &own, largest_nm)?;
+        if std::env::var("DBG").is_ok() { for (l, f) in &tried { eprintln!("DBG {l:?} rms {} of {} clear {}", f.held_out_rms(), out.fitted.held_out_rms(), f.better_than(&out.fitted)); } }
         let clear = |fit: &Fitted| fit.better_than(&out.fitted) > CLEARLY_OF_GRID;
         let Some((law, fit)) = tried.iter().find(|(_, fit)| clear(fit)).cloned() else { break };
         if !is_material(&fit, law, first + 4 * out.laws.len(), &out.spring_nm, model.places.torque()) {

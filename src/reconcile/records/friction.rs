@@ -27,8 +27,9 @@ const FRICTION: usize = 3;
 /// one column only.
 const SLIGHTLY: f64 = 1.0;
 /// A row enters the balance of torques only if the magnitude of the smoothed sign of the speed differs from one by at
-/// most this. Near a reversal the friction is not known.
-const TURNING: f64 = 0.5;
+/// most this. Near a reversal the friction is not known, and where the sign of the speed changes smoothly although friction
+/// does not, Coulomb friction would come out too large.
+const TURNING: f64 = 0.05;
 /// Number of columns that the motion of one other joint adds to the balance of torques.
 const OTHER: usize = 8;
 

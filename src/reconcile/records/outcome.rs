@@ -1,8 +1,8 @@
 //! Verdict from records: named effects, calibrated stiffnesses and the corrected arm.
 
 use super::curve::TORSION_CURVE;
-use super::finding::{JointRecord, Stated};
-use super::judge::judge;
+use super::finding::{JointRecord, State, Stated};
+use super::judge::{GRAVITY_OR_ERROR, judge};
 use super::twist::Group;
 use crate::arm::effect::entry::Effect;
 use crate::arm::effect::kind::Place;
@@ -131,6 +131,13 @@ fn verdict(
         });
         return (Verdict::Unexplained, left.collect());
     }
+    let ambiguous: Vec<&JointRecord> = joints.iter().filter(|j| j.is_ambiguous).collect();
+    if !ambiguous.is_empty() {
+        return (
+            Verdict::InsufficientData,
+            ambiguous.iter().map(|j| format!("{}: {GRAVITY_OR_ERROR}", j.joint)).collect(),
+        );
+    }
     if !findings.is_empty() {
         let fall = joints.iter().map(|j| {
             format!(
@@ -155,7 +162,10 @@ fn verdict(
 fn named(joint: &JointRecord) -> Vec<Finding> {
     let like = |what: &str| -> Vec<(String, String)> {
         // a transmission error once a turn and gravity give the same twist if no other joint changes the torque
-        match what == transmission_error::KIND.name && joint.found("compliance").is_some() {
+        let is_alike = joint
+            .of("compliance")
+            .is_some_and(|s| s.state == State::Found || s.words.starts_with(GRAVITY_OR_ERROR));
+        match what == transmission_error::KIND.name && is_alike {
             true => vec![(connection_compliance::KIND.name.into(), joint.joint.clone())],
             false => Vec::new(),
         }
@@ -321,20 +331,30 @@ fn located(joints: &[JointRecord]) -> Vec<Located> {
     all.into_iter().chain(each).collect()
 }
 
-/// Recommends one test for all joints whose compliance the records do not show, because their torque is nearly all
-/// acceleration and friction of the joint itself.
+/// Recommends one test for all joints whose compliance the records do not show because their torque is nearly all
+/// acceleration and friction of the joint itself, and one for those where a transmission error explains the same twist.
 fn next_tests(joints: &[JointRecord]) -> Vec<NextTest> {
-    let blind = joints.iter().filter(|j| {
-        j.of("compliance").is_some_and(|s: &Stated| s.words.starts_with("insufficient excitation"))
-    });
-    let names: Vec<&str> = blind.map(|j| j.joint.as_str()).collect();
-    if names.is_empty() {
-        return Vec::new();
-    }
-    vec![NextTest::of_another_kind(format!(
-        "compliance of {}: state rotor_inertia_kgm2, or load the joint with its output locked",
-        names.join(", ")
-    ))]
+    let named = |start: &str| -> Vec<&str> {
+        let has = |j: &&JointRecord| {
+            j.of("compliance")
+                .is_some_and(|s: &Stated| s.state != State::Found && s.words.starts_with(start))
+        };
+        joints.iter().filter(has).map(|j| j.joint.as_str()).collect()
+    };
+    let tests = [
+        (
+            named("insufficient excitation"),
+            "state rotor_inertia_kgm2, or load the joint with its output locked",
+        ),
+        (
+            named(GRAVITY_OR_ERROR),
+            "state rotor_inertia_kgm2, or move with another payload or pose, so that gravity differs at the same angle",
+        ),
+    ];
+    let asked = tests.iter().filter(|(names, _)| !names.is_empty());
+    asked
+        .map(|(names, what)| NextTest::of_another_kind(format!("compliance of {}: {what}", names.join(", "))))
+        .collect()
 }
 
 /// Joins the outcome of the records, `records`, with the outcome of the other readings, `other`. Each is judged by
