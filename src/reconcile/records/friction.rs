@@ -203,7 +203,7 @@ pub(crate) fn friction(rows: &JointRows, records: &[Record], shift_s: f64) -> Op
     let chosen = if has_load { with_load } else { best };
     let without = |column: usize| {
         let others: Vec<usize> = chosen.columns.iter().copied().filter(|c| *c != column).collect();
-        fit(&others).is_some_and(|other| chosen.better_than(&other) > CLEARLY)
+        fit(&others).is_some_and(|other| chosen.better_than(&other) > CLEARLY || chosen.halves(&other))
     };
     // viscous friction above the largest torque of the motor is a load that was taken for friction
     let largest_nm = rows.samples.iter().fold(0.0f64, |m, s| m.max(s.torque_nm.abs()));

@@ -38,6 +38,9 @@ const LEAST_FRICTION_PART: f64 = 0.01;
 const LEAST_LAW_PART: f64 = 0.05;
 /// Smallest half width of the interval of a time shift, as a fraction of the time between rows.
 const LEAST_STEP_PART: f64 = 0.01;
+/// Largest compliance beside a transmission error, as a multiple of the compliance with a rotor without inertia: the rotor has
+/// at most the inertia of its load.
+const MOST_ROTOR: f64 = 2.0;
 /// Approximate number of points of a picture.
 const POINTS: usize = 600;
 /// Smallest range of the joint's angle at which transmission errors once and twice a turn can be told apart \[rad\].
@@ -103,12 +106,12 @@ impl<'a> Judged<'a> {
             return self.compliance.clone();
         };
         let mut stiffness = Estimate { value: 1.0 / c.value, low: Some(1.0 / high), high: Some(1.0 / low) };
-        let is_sure =
-            self.curve.iter().all(|c| c.laws.iter().all(|l| law_stated(c, *l, self.model).state == State::Found));
+        let is_sure = self
+            .curve
+            .iter()
+            .all(|c| c.laws.iter().all(|l| law_stated(c, *l, self.model).state == State::Found));
         let linear = self.compliance.parameters.first().and_then(|(_, list)| list.first());
-        if let Some(linear) =
-            linear.filter(|_| !is_sure || self.model.groups.contains(&Group::Output))
-        {
+        if let Some(linear) = linear.filter(|_| !is_sure || self.model.groups.contains(&Group::Output)) {
             stiffness.low = stiffness.low.zip(linear.low).map(|(a, b)| a.min(b));
             stiffness.high = stiffness.high.zip(linear.high).map(|(a, b)| a.max(b));
         }
@@ -139,7 +142,7 @@ impl<'a> Judged<'a> {
             steps: steps.map(|(added, rad)| Step { added: added.clone(), held_out_rad: *rad }).collect(),
             trace: self.trace(),
             remarks: self.remarks(),
-            is_ambiguous: self.model.beside_gravity.as_ref().is_some_and(|b| b.is_doubtful),
+            undecided: self.undecided(),
             stated,
         }
     }
@@ -297,9 +300,13 @@ impl<'a> Judged<'a> {
         let (low, high) = self.rows.range_rad();
         let columns = self.model.places.output();
         let fits: Vec<&Fitted> =
-            [Some(&self.model.fitted), beside.map(|b| &b.at_compliance)].into_iter().flatten().collect();
+            [Some(&self.model.fitted), beside.filter(|b| b.shows || b.is_held).map(|b| &b.at_compliance)]
+                .into_iter()
+                .flatten()
+                .collect();
         // where the compliance may be that without the error, so may the error be the one beside that compliance
-        let both = |of: &dyn Fn(&Fitted) -> Estimate| fits[1..].iter().fold(of(fits[0]), |a, f| covering(a, of(f)));
+        let both =
+            |of: &dyn Fn(&Fitted) -> Estimate| fits[1..].iter().fold(of(fits[0]), |a, f| covering(a, of(f)));
         let size = both(&|fitted| error_size(fitted, columns, low, high, 1.0));
         let mut each: Vec<Estimate> = columns.map(|c| both(&|fitted| fitted.estimate(|of| -of(c)))).to_vec();
         let mut words = String::new();
@@ -349,6 +356,24 @@ impl<'a> Judged<'a> {
             }
             None => Stated::none("first_mode", State::Absent, "no free ringing while the motor rests"),
         }
+    }
+
+    /// What the records leave open, so that the joint is not explained although little error is left.
+    fn undecided(&self) -> Vec<String> {
+        let mut out = Vec::new();
+        if self.model.beside_gravity.as_ref().is_some_and(|b| b.is_doubtful) {
+            out.push(GRAVITY_OR_ERROR.into());
+        }
+        if let Some((law, rms_rad)) = self.curve.as_ref().and_then(|c| c.hidden) {
+            out.push(format!(
+                "with a {} {:.4} instead of {:.4} mrad of the twist would be left, but held-out blocks do not show it clearly: a longer \
+                 record, or one with larger torques, may",
+                law.replace('_', " "),
+                1e3 * rms_rad,
+                1e3 * self.fitted().held_out_rms()
+            ));
+        }
+        out
     }
 
     fn remarks(&self) -> Vec<String> {
@@ -497,6 +522,8 @@ fn compliance(model: &TwistModel, left_share: f64) -> Stated {
         return Stated { parameters, ..Stated::none(WHAT, State::NotIdentified, words) };
     }
     let (low, high, mut words) = with_gear_error(model, low, high);
+    let both = beside_gear_error(model, Estimate { value: c.value, low: Some(low), high: Some(high) });
+    let (low, high) = (both.low.unwrap_or(low), both.high.unwrap_or(high));
     if is_wide(low, high) {
         let c = Estimate { value: c.value, low: Some(low), high: Some(high) };
         return Stated { parameters: open(&c), ..Stated::none(WHAT, State::NotIdentified, GRAVITY_OR_ERROR) };
@@ -521,8 +548,18 @@ fn beside_gear_error(model: &TwistModel, c: Estimate) -> Estimate {
     if !beside.is_doubtful && !model.groups.contains(&Group::Output) {
         return c;
     }
-    let fits = [&beside.without, &beside.with];
-    fits.iter().fold(c, |c, fit| covering(c, fit.coefficient(model.places.torque())))
+    let torque = model.places.torque();
+    let with = beside.with.coefficient(torque);
+    let mut out = covering(c, with);
+    if beside.shows {
+        out = covering(out, beside.without.coefficient(torque));
+    }
+    if beside.is_held {
+        // without a rotor the compliance is the least; with one of the load's own inertia it is twice that
+        let most = |high: f64| high.max(MOST_ROTOR * with.high.unwrap_or(high));
+        out.high = out.high.map(most);
+    }
+    out
 }
 
 /// The limits `low` and `high` of the compliance \[rad/(N m)\], widened so that they include the value without a

@@ -97,6 +97,11 @@ fn is_explained(joint: &JointRecord) -> bool {
     joint.after_rad <= (LEFT * joint.before_rad).max(NOISY * joint.noise_rad)
 }
 
+/// Whether the joint is explained and the records leave nothing open.
+fn is_settled(joint: &JointRecord) -> bool {
+    is_explained(joint) && joint.undecided.is_empty()
+}
+
 /// Ending of a sentence on a joint whose error of the twist, although small, is more than noise; empty if it is
 /// noise.
 fn left_beyond_noise(joint: &JointRecord) -> String {
@@ -131,12 +136,10 @@ fn verdict(
         });
         return (Verdict::Unexplained, left.collect());
     }
-    let ambiguous: Vec<&JointRecord> = joints.iter().filter(|j| j.is_ambiguous).collect();
-    if !ambiguous.is_empty() {
-        return (
-            Verdict::InsufficientData,
-            ambiguous.iter().map(|j| format!("{}: {GRAVITY_OR_ERROR}", j.joint)).collect(),
-        );
+    let undecided = joints.iter().flat_map(|j| j.undecided.iter().map(|why| format!("{}: {why}", j.joint)));
+    let undecided: Vec<String> = undecided.collect();
+    if !undecided.is_empty() {
+        return (Verdict::InsufficientData, undecided);
     }
     if !findings.is_empty() {
         let fall = joints.iter().map(|j| {
@@ -270,7 +273,7 @@ fn corrected(
 ) -> Arm {
     let mut arm = campaign.arm.clone();
     for (joint, stiffness) in joints.iter().zip(stiffnesses) {
-        let Some(factor) = stiffness.factor.filter(|_| is_explained(joint)) else { continue };
+        let Some(factor) = stiffness.factor.filter(|_| is_settled(joint)) else { continue };
         for element in &mut arm.chain {
             if let Element::Joint(own) = element
                 && own.name == joint.joint
@@ -279,7 +282,7 @@ fn corrected(
             }
         }
     }
-    let explained = |f: &&Finding| joints.iter().any(|j| j.joint == f.at && is_explained(j));
+    let explained = |f: &&Finding| joints.iter().any(|j| j.joint == f.at && is_settled(j));
     arm.effects.extend(findings.iter().filter(explained).filter_map(|f| as_effect(campaign, f)));
     arm
 }
@@ -336,8 +339,7 @@ fn located(joints: &[JointRecord]) -> Vec<Located> {
 fn next_tests(joints: &[JointRecord]) -> Vec<NextTest> {
     let named = |start: &str| -> Vec<&str> {
         let has = |j: &&JointRecord| {
-            j.of("compliance")
-                .is_some_and(|s: &Stated| s.state != State::Found && s.words.starts_with(start))
+            j.of("compliance").is_some_and(|s: &Stated| s.state != State::Found && s.words.starts_with(start))
         };
         joints.iter().filter(has).map(|j| j.joint.as_str()).collect()
     };

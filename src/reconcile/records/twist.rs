@@ -177,12 +177,12 @@ pub(crate) struct TwistModel<'a> {
     pub rows_per_reading: f64,
     /// Root mean square error of the twist on held-out blocks after each step \[rad\], with the name of the step.
     pub steps: Vec<(String, f64)>,
-    /// Where the rotor's inertia is not stated and the compliance shows without a transmission error of the output: what the
-    /// records say of that error beside it.
+    /// Where the rotor's inertia is not stated: what the records say of a transmission error of the output beside the
+    /// compliance. `None` where there is neither that error nor a compliance that shows without it.
     pub beside_gravity: Option<BesideGravity>,
 }
 
-/// A transmission error of the output beside a compliance that shows without it. Gravity twists the joint in proportion to
+/// A transmission error of the output beside a compliance. Gravity twists the joint in proportion to
 /// waves of its angle, as the error does, and the link's acceleration takes the place of the rest of the torque. With the
 /// error a compliance of nearly zero is then as good as the true one, although the inertia that it asks of the rotor is
 /// negative.
@@ -193,7 +193,10 @@ pub(crate) struct BesideGravity {
     pub at_compliance: Fitted,
     /// Fit with the error in which the rotor's inertia is not negative.
     pub with: Fitted,
-    /// Whether the rotor's inertia had to be held at zero in `with`, because the best value is negative.
+    /// Whether the compliance shows without the error.
+    pub shows: bool,
+    /// Whether the rotor's inertia must be held at zero, because the best value is negative, and clearly so where the
+    /// compliance does not show without the error.
     pub is_held: bool,
     /// Whether the error lowers the error on held-out blocks so far that it would be named, but only at another compliance.
     pub is_doubtful: bool,
@@ -373,7 +376,8 @@ impl<'a> TwistModel<'a> {
     /// varies with the angle, as that of gravity does. Where the compliance shows without a transmission error of the output,
     /// the error must also pay at that compliance. `others` are the groups of the fit without it.
     fn pays(&self, group: Group, others: &[Group], with: &Fitted, without: &Fitted) -> bool {
-        if !group.pays(with, without) || (group.is_of_gear() && self.leaves_noise_only(without, STILL_NOISE)) {
+        if !group.pays(with, without) || (group.is_of_gear() && self.leaves_noise_only(without, STILL_NOISE))
+        {
             return false;
         }
         if group != Group::Output || !self.shows_compliance(others, without) {
@@ -413,16 +417,24 @@ impl<'a> TwistModel<'a> {
         sums.fit(&columns(self.rows, &free), target, |c| self.prior(c))
     }
 
-    /// What the records say of a transmission error of the output beside the compliance; `None` where the compliance does not
-    /// show without it.
+    /// What the records say of a transmission error of the output beside the compliance; `None` where there is neither that
+    /// error nor a compliance that shows without it.
     fn beside_gravity(&self) -> Option<BesideGravity> {
         let others: Vec<Group> = self.groups.iter().copied().filter(|g| *g != Group::Output).collect();
-        let without = self.fit(&others).filter(|fit| self.shows_compliance(&others, fit))?;
+        if !others.contains(&Group::Compliance) || self.rows.rotor_inertia_kgm2.is_some() {
+            return None;
+        }
+        let without = self.fit(&others)?;
+        let shows = self.shows_compliance(&others, &without);
+        if !shows && !self.groups.contains(&Group::Output) {
+            return None;
+        }
         let all: Vec<Group> = others.iter().copied().chain([Group::Output]).collect();
         let mut with = self.fit(&all)?;
         // the coefficient of the acceleration is minus the compliance times the rotor's inertia
-        let is_held = with.value(self.places.acceleration()) > 0.0;
-        if is_held {
+        let inertial = with.coefficient(self.places.acceleration());
+        let is_held = if shows { inertial.value > 0.0 } else { inertial.low.is_some_and(|low| low > 0.0) };
+        if inertial.value > 0.0 {
             let rest: Vec<usize> =
                 with.columns.iter().copied().filter(|c| *c != self.places.acceleration()).collect();
             with = self.fit_with(&rest)?;
@@ -431,7 +443,7 @@ impl<'a> TwistModel<'a> {
         let is_doubtful = !self.groups.contains(&Group::Output)
             && Group::Output.pays(&with, &without)
             && !self.leaves_noise_only(&without, SURELY_MORE);
-        Some(BesideGravity { without, at_compliance, with, is_held, is_doubtful })
+        Some(BesideGravity { without, at_compliance, with, shows, is_held, is_doubtful })
     }
 
     /// A compliance that the record's twist does not exceed, whatever friction is \[rad/(N m)\]: the twist that a time shift
