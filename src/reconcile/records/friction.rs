@@ -49,6 +49,8 @@ pub(crate) struct Friction {
     /// Whether the viscous friction at the largest speed is below the largest torque of the motor. If it is not, a
     /// part of the load was taken for friction.
     pub is_possible: bool,
+    /// Viscous friction that would take the largest torque of the motor at the largest speed \[N m s/rad\].
+    pub most_viscous_nms_per_rad: f64,
     /// Fraction of the variance of the motor's torque that neither load nor friction explains.
     pub left_share: f64,
 }
@@ -215,6 +217,7 @@ pub(crate) fn friction(rows: &JointRows, records: &[Record], shift_s: f64) -> Op
         load_part: has_load.then(|| chosen.coefficient(load_sense)),
         clearly: [without(sense), without(speed) && is_possible],
         is_possible,
+        most_viscous_nms_per_rad: largest_nm / fastest.max(1e-12),
         left_share: chosen.squares / fit(&(0..rows.record_count()).collect::<Vec<_>>())?.squares.max(1e-300),
     })
 }

@@ -197,7 +197,7 @@ impl<'a> Judged<'a> {
             let possible = self.friction.filter(|f| f.is_possible && self.compliance.state != State::Found);
             let Some(f) = possible else { return (plain, String::new()) };
             let most = |e: &Estimate| e.low.unwrap_or(0.0).abs().max(e.high.unwrap_or(0.0).abs());
-            let reach = most(&c) * most(&f.viscous_nms_per_rad);
+            let reach = most(&c) * most(&f.viscous_nms_per_rad).min(f.most_viscous_nms_per_rad);
             let words = format!(
                 "viscous friction may count for up to {:.2} ms of it: neither it nor the compliance is determined",
                 1e3 * reach
