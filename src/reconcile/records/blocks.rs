@@ -176,6 +176,15 @@ impl Fitted {
         (self.held_out.iter().sum::<f64>() / self.rows as f64).sqrt()
     }
 
+    /// Whether this model predicts nearly all held-out blocks better than the model `other`, and leaves less than half of its
+    /// error. One block with most of the error can keep [`Fitted::better_than`] small although this is so.
+    pub(crate) fn halves(&self, other: &Fitted) -> bool {
+        const NEARLY_ALL: f64 = 0.9;
+        let better = other.held_out.iter().zip(&self.held_out).filter(|(a, b)| a >= b).count();
+        self.held_out_rms() < 0.5 * other.held_out_rms()
+            && better as f64 >= NEARLY_ALL * self.held_out.len() as f64
+    }
+
     /// How clearly this model predicts held-out blocks better than the model `other`, in standard errors: the mean
     /// over the blocks of the reduction of the sum of squared errors, divided by the standard error of this mean.
     pub(crate) fn better_than(&self, other: &Fitted) -> f64 {

@@ -121,6 +121,9 @@ pub struct JointRecord {
     pub steps: Vec<Step>,
     /// Twist against torque, thinned for the picture.
     pub trace: Vec<Traced>,
+    /// What the records leave open, such as a transmission error that they cannot tell from the twist by gravity. Then the
+    /// data are insufficient.
+    pub undecided: Vec<String>,
     /// Further sentences for the reader, such as a law that explains the record as well.
     pub remarks: Vec<String>,
 }

@@ -27,8 +27,9 @@ const FRICTION: usize = 3;
 /// one column only.
 const SLIGHTLY: f64 = 1.0;
 /// A row enters the balance of torques only if the magnitude of the smoothed sign of the speed differs from one by at
-/// most this. Near a reversal the friction is not known.
-const TURNING: f64 = 0.5;
+/// most this. Near a reversal the friction is not known, and where the sign of the speed changes smoothly although friction
+/// does not, Coulomb friction would come out too large.
+const TURNING: f64 = 0.05;
 /// Number of columns that the motion of one other joint adds to the balance of torques.
 const OTHER: usize = 8;
 
@@ -48,6 +49,8 @@ pub(crate) struct Friction {
     /// Whether the viscous friction at the largest speed is below the largest torque of the motor. If it is not, a
     /// part of the load was taken for friction.
     pub is_possible: bool,
+    /// Viscous friction that would take the largest torque of the motor at the largest speed \[N m s/rad\].
+    pub most_viscous_nms_per_rad: f64,
     /// Fraction of the variance of the motor's torque that neither load nor friction explains.
     pub left_share: f64,
 }
@@ -202,7 +205,7 @@ pub(crate) fn friction(rows: &JointRows, records: &[Record], shift_s: f64) -> Op
     let chosen = if has_load { with_load } else { best };
     let without = |column: usize| {
         let others: Vec<usize> = chosen.columns.iter().copied().filter(|c| *c != column).collect();
-        fit(&others).is_some_and(|other| chosen.better_than(&other) > CLEARLY)
+        fit(&others).is_some_and(|other| chosen.better_than(&other) > CLEARLY || chosen.halves(&other))
     };
     // viscous friction above the largest torque of the motor is a load that was taken for friction
     let largest_nm = rows.samples.iter().fold(0.0f64, |m, s| m.max(s.torque_nm.abs()));
@@ -214,6 +217,7 @@ pub(crate) fn friction(rows: &JointRows, records: &[Record], shift_s: f64) -> Op
         load_part: has_load.then(|| chosen.coefficient(load_sense)),
         clearly: [without(sense), without(speed) && is_possible],
         is_possible,
+        most_viscous_nms_per_rad: largest_nm / fastest.max(1e-12),
         left_share: chosen.squares / fit(&(0..rows.record_count()).collect::<Vec<_>>())?.squares.max(1e-300),
     })
 }

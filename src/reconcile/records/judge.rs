@@ -38,10 +38,17 @@ const LEAST_FRICTION_PART: f64 = 0.01;
 const LEAST_LAW_PART: f64 = 0.05;
 /// Smallest half width of the interval of a time shift, as a fraction of the time between rows.
 const LEAST_STEP_PART: f64 = 0.01;
+/// Largest compliance beside a transmission error, as a multiple of the compliance with a rotor without inertia: the rotor has
+/// at most the inertia of its load.
+const MOST_ROTOR: f64 = 2.0;
 /// Approximate number of points of a picture.
 const POINTS: usize = 600;
 /// Smallest range of the joint's angle at which transmission errors once and twice a turn can be told apart \[rad\].
 const TELLING_RANGE_RAD: f64 = 2.0;
+
+/// Why a compliance or a transmission error is not identified where each of them explains the twist by gravity.
+pub(crate) const GRAVITY_OR_ERROR: &str = "the twist by gravity and a transmission error turn with the joint alike, and the rotor's inertia is not \
+     stated: the records cannot tell them apart";
 
 /// Judges one joint from all records. `None` if no record has the angles on both sides of its gear, or a fit is
 /// impossible.
@@ -88,7 +95,8 @@ impl<'a> Judged<'a> {
     /// the compliance comes from the fit that includes it; the linear fit would take a part of that effect for
     /// compliance. If a torsion curve was found, its segments have their own stiffnesses, and the compliance stated
     /// here is that of the linear fit, a mean over the record. The linear fit is also taken where the interval of the
-    /// other fit does not exclude zero compliance.
+    /// other fit does not exclude zero compliance. Beside a transmission error of the output, or a law that is not found, the
+    /// interval covers both fits.
     fn compliance_beside_laws(&self) -> Stated {
         let laws = self.curve.iter().flat_map(|c| &c.laws);
         let is_changed = !laws.clone().any(|l| matches!(l, Law::Segments(..))) && laws.count() > 0;
@@ -97,7 +105,16 @@ impl<'a> Judged<'a> {
         let (Some(low), Some(high)) = (c.low.filter(|low| is_changed && *low > 0.0), c.high) else {
             return self.compliance.clone();
         };
-        let stiffness = Estimate { value: 1.0 / c.value, low: Some(1.0 / high), high: Some(1.0 / low) };
+        let mut stiffness = Estimate { value: 1.0 / c.value, low: Some(1.0 / high), high: Some(1.0 / low) };
+        let is_sure = self
+            .curve
+            .iter()
+            .all(|c| c.laws.iter().all(|l| law_stated(c, *l, self.model).state == State::Found));
+        let linear = self.compliance.parameters.first().and_then(|(_, list)| list.first());
+        if let Some(linear) = linear.filter(|_| !is_sure || self.model.groups.contains(&Group::Output)) {
+            stiffness.low = stiffness.low.zip(linear.low).map(|(a, b)| a.min(b));
+            stiffness.high = stiffness.high.zip(linear.high).map(|(a, b)| a.max(b));
+        }
         let parameters = vec![("stiffness_nm_per_rad".into(), vec![stiffness])];
         Stated { parameters, ..self.compliance.clone() }
     }
@@ -125,6 +142,7 @@ impl<'a> Judged<'a> {
             steps: steps.map(|(added, rad)| Step { added: added.clone(), held_out_rad: *rad }).collect(),
             trace: self.trace(),
             remarks: self.remarks(),
+            undecided: self.undecided(),
             stated,
         }
     }
@@ -169,17 +187,30 @@ impl<'a> Judged<'a> {
 
     /// The time shift \[s\] corrected for viscous friction, and a sentence on the correction. `plain` is the time
     /// shift of the fit, which is too small by the effect of friction. If the compliance is not identified, the
-    /// interval covers the correction for every compliance that is possible.
+    /// interval covers the correction for every compliance that is possible. If the friction is refused too, the correction
+    /// may have either sign.
     fn with_friction(&self, plain: Estimate) -> (Estimate, String) {
-        let Some(f) = self.friction.filter(|f| f.is_possible && is_positive(&f.viscous_nms_per_rad)) else {
-            return (plain, String::new());
-        };
         // the columns of a torsion law use the torque without viscous friction, so only the linear compliance is used
         // here
         let c = self.fitted().coefficient(self.model.places.torque());
+        let Some(f) = self.friction.filter(|f| f.is_possible && is_positive(&f.viscous_nms_per_rad)) else {
+            let possible = self.friction.filter(|f| f.is_possible && self.compliance.state != State::Found);
+            let Some(f) = possible else { return (plain, String::new()) };
+            let most = |e: &Estimate| e.low.unwrap_or(0.0).abs().max(e.high.unwrap_or(0.0).abs());
+            let reach = most(&c) * most(&f.viscous_nms_per_rad).min(f.most_viscous_nms_per_rad);
+            let words = format!(
+                "viscous friction may count for up to {:.2} ms of it: neither it nor the compliance is determined",
+                1e3 * reach
+            );
+            return (widened(plain, half(&plain) + reach), words);
+        };
         let is_known = is_positive(&c);
         let compliance = if is_known { c.value } else { 0.0 };
-        let most_compliant = c.high.unwrap_or(0.0).max(0.0);
+        let mut most_compliant = c.high.unwrap_or(0.0).max(0.0);
+        // a fit whose compliance is negative does not bound it
+        if self.compliance.state != State::Found && c.value <= 0.0 {
+            most_compliant = most_compliant.max(self.model.largest_compliance());
+        }
         let (least, most) = if is_known { self.motor_part() } else { (0.0, 1.0) };
         let viscous = f.viscous_nms_per_rad;
         let by_friction = |part: f64| part * compliance * viscous.value;
@@ -259,13 +290,25 @@ impl<'a> Judged<'a> {
     /// less the motor's. The twist is the opposite, so the sign of the coefficients is changed.
     fn output_error(&self) -> Stated {
         let what = Group::Output.what();
+        let beside = self.model.beside_gravity.as_ref();
         if !self.model.groups.contains(&Group::Output) {
-            return Stated::none(what, State::Absent, "held-out blocks are not predicted better with it");
+            return match beside.filter(|b| b.is_doubtful) {
+                Some(_) => Stated::none(what, State::NotIdentified, GRAVITY_OR_ERROR),
+                None => Stated::none(what, State::Absent, "held-out blocks are not predicted better with it"),
+            };
         }
         let (low, high) = self.rows.range_rad();
         let columns = self.model.places.output();
-        let size = self.error_size(columns, low, high, 1.0);
-        let mut each: Vec<Estimate> = columns.map(|c| self.model.fitted.estimate(|of| -of(c))).to_vec();
+        let fits: Vec<&Fitted> =
+            [Some(&self.model.fitted), beside.filter(|b| b.shows || b.is_held).map(|b| &b.at_compliance)]
+                .into_iter()
+                .flatten()
+                .collect();
+        // where the compliance may be that without the error, so may the error be the one beside that compliance
+        let both =
+            |of: &dyn Fn(&Fitted) -> Estimate| fits[1..].iter().fold(of(fits[0]), |a, f| covering(a, of(f)));
+        let size = both(&|fitted| error_size(fitted, columns, low, high, 1.0));
+        let mut each: Vec<Estimate> = columns.map(|c| both(&|fitted| fitted.estimate(|of| -of(c)))).to_vec();
         let mut words = String::new();
         if high - low < TELLING_RANGE_RAD {
             each.iter_mut().for_each(|e| (e.low, e.high) = (None, None));
@@ -289,28 +332,11 @@ impl<'a> Judged<'a> {
             return Stated::none(what, State::Absent, "held-out blocks are not predicted better with it");
         }
         let columns = self.model.places.input();
-        let size = self.error_size(columns, 0.0, std::f64::consts::TAU / ratio, ratio);
+        let size = error_size(&self.model.fitted, columns, 0.0, std::f64::consts::TAU / ratio, ratio);
         let each = columns.map(|c| self.model.fitted.estimate(|of| -of(c))).to_vec();
         let parameters =
             vec![("peak_to_peak_rad".into(), vec![size]), ("sin_cos_sin2_cos2_rad".into(), each)];
         Stated { what, state: State::Found, parameters, words: String::new() }
-    }
-
-    /// Transmission error from peak to peak \[rad\], over the angles of the output from `low` to `high` \[rad\].
-    /// `columns` are the indices of sine and cosine, once and twice per turn, of the angle times `ratio` (1 for the
-    /// output, the gear ratio for the input).
-    fn error_size(&self, columns: [usize; 4], low: f64, high: f64, ratio: f64) -> Estimate {
-        const STEPS: usize = 60;
-        self.model.fitted.estimate(|c| {
-            let ends = (f64::INFINITY, f64::NEG_INFINITY);
-            let (least, most) = (0..=STEPS).fold(ends, |(least, most), i| {
-                let (sin, cos) = libm::sincos(ratio * (low + (high - low) * i as f64 / STEPS as f64));
-                let shapes = [sin, cos, 2.0 * sin * cos, cos * cos - sin * sin];
-                let error: f64 = shapes.iter().zip(columns).map(|(s, k)| s * c(k)).sum();
-                (least.min(error), most.max(error))
-            });
-            most - least
-        })
     }
 
     fn first_mode(&self) -> Stated {
@@ -330,6 +356,24 @@ impl<'a> Judged<'a> {
             }
             None => Stated::none("first_mode", State::Absent, "no free ringing while the motor rests"),
         }
+    }
+
+    /// What the records leave open, so that the joint is not explained although little error is left.
+    fn undecided(&self) -> Vec<String> {
+        let mut out = Vec::new();
+        if self.model.beside_gravity.as_ref().is_some_and(|b| b.is_doubtful) {
+            out.push(GRAVITY_OR_ERROR.into());
+        }
+        if let Some((law, rms_rad)) = self.curve.as_ref().and_then(|c| c.hidden) {
+            out.push(format!(
+                "with a {} {:.4} instead of {:.4} mrad of the twist would be left, but held-out blocks do not show it clearly: a longer \
+                 record, or one with larger torques, may",
+                law.replace('_', " "),
+                1e3 * rms_rad,
+                1e3 * self.fitted().held_out_rms()
+            ));
+        }
+        out
     }
 
     fn remarks(&self) -> Vec<String> {
@@ -393,6 +437,32 @@ fn balanced(rows: &JointRows, model: &TwistModel, records: &[Record]) -> Option<
     Some(out)
 }
 
+/// Transmission error from peak to peak according to the fit `fitted` \[rad\], over the angles of the output from `low` to
+/// `high` \[rad\]. `columns` are the indices of sine and cosine, once and twice per turn, of the angle times `ratio` (1 for
+/// the output, the gear ratio for the input).
+fn error_size(fitted: &Fitted, columns: [usize; 4], low: f64, high: f64, ratio: f64) -> Estimate {
+    const STEPS: usize = 60;
+    fitted.estimate(|c| {
+        let ends = (f64::INFINITY, f64::NEG_INFINITY);
+        let (least, most) = (0..=STEPS).fold(ends, |(least, most), i| {
+            let (sin, cos) = libm::sincos(ratio * (low + (high - low) * i as f64 / STEPS as f64));
+            let shapes = [sin, cos, 2.0 * sin * cos, cos * cos - sin * sin];
+            let error: f64 = shapes.iter().zip(columns).map(|(s, k)| s * c(k)).sum();
+            (least.min(error), most.max(error))
+        });
+        most - least
+    })
+}
+
+/// The estimate `one` with its interval widened to cover that of `other`.
+fn covering(one: Estimate, other: Estimate) -> Estimate {
+    Estimate {
+        value: one.value,
+        low: one.low.zip(other.low).map(|(a, b)| a.min(b)),
+        high: one.high.zip(other.high).map(|(a, b)| a.max(b)),
+    }
+}
+
 fn half(estimate: &Estimate) -> f64 {
     estimate.high.zip(estimate.low).map_or(0.0, |(high, low)| 0.5 * (high - low))
 }
@@ -432,18 +502,32 @@ fn compliance(model: &TwistModel, left_share: f64) -> Stated {
             100.0 * (1.0 - share),
             100.0 * left_share
         );
-        return Stated { parameters: open(&c), ..Stated::none(WHAT, State::NotIdentified, words) };
+        let parameters = open(&beside_gear_error(model, c));
+        return Stated { parameters, ..Stated::none(WHAT, State::NotIdentified, words) };
     }
     if c.high.is_some_and(|high| high < 0.0) {
         return Stated::none(WHAT, State::Refused, "the twist falls as the torque grows");
     }
     let c = widened(c, LEAST_PART * c.value.abs());
+    let has_error = model.groups.contains(&Group::Output);
+    if model.beside_gravity.as_ref().is_some_and(|b| b.is_doubtful || (has_error && b.is_held)) {
+        let parameters = open(&beside_gear_error(model, c));
+        return Stated { parameters, ..Stated::none(WHAT, State::NotIdentified, GRAVITY_OR_ERROR) };
+    }
     let (low, high) = (c.low.unwrap_or(0.0), c.high.unwrap_or(f64::INFINITY));
-    if low <= 0.0 || high / low > WIDE || model.gain(Group::Compliance) < CLEARLY {
+    let is_wide = |low: f64, high: f64| low <= 0.0 || high / low > WIDE;
+    if is_wide(low, high) || model.gain(Group::Compliance) < CLEARLY {
         let words = "the interval of the compliance contains zero or spans a factor of more than 5: the record hardly loads the joint";
-        return Stated { parameters: open(&c), ..Stated::none(WHAT, State::NotIdentified, words) };
+        let parameters = open(&beside_gear_error(model, c));
+        return Stated { parameters, ..Stated::none(WHAT, State::NotIdentified, words) };
     }
     let (low, high, mut words) = with_gear_error(model, low, high);
+    let both = beside_gear_error(model, Estimate { value: c.value, low: Some(low), high: Some(high) });
+    let (low, high) = (both.low.unwrap_or(low), both.high.unwrap_or(high));
+    if is_wide(low, high) {
+        let c = Estimate { value: c.value, low: Some(low), high: Some(high) };
+        return Stated { parameters: open(&c), ..Stated::none(WHAT, State::NotIdentified, GRAVITY_OR_ERROR) };
+    }
     let stiffness = Estimate { value: 1.0 / c.value, low: Some(1.0 / high), high: Some(1.0 / low) };
     let p = model.places;
     let plain =
@@ -455,6 +539,27 @@ fn compliance(model: &TwistModel, left_share: f64) -> Stated {
         ));
     }
     Stated::one(WHAT, State::Found, NAME, stiffness, &words.join("; "))
+}
+
+/// The compliance `c` \[rad/(N m)\] of a joint whose compliance is not identified, with its interval widened so that it
+/// covers the fits with and without a transmission error of the output, where the compliance shows without that error.
+fn beside_gear_error(model: &TwistModel, c: Estimate) -> Estimate {
+    let Some(beside) = &model.beside_gravity else { return c };
+    if !beside.is_doubtful && !model.groups.contains(&Group::Output) {
+        return c;
+    }
+    let torque = model.places.torque();
+    let with = beside.with.coefficient(torque);
+    let mut out = covering(c, with);
+    if beside.shows {
+        out = covering(out, beside.without.coefficient(torque));
+    }
+    if beside.is_held {
+        // without a rotor the compliance is the least; with one of the load's own inertia it is twice that
+        let most = |high: f64| high.max(MOST_ROTOR * with.high.unwrap_or(high));
+        out.high = out.high.map(most);
+    }
+    out
 }
 
 /// The limits `low` and `high` of the compliance \[rad/(N m)\], widened so that they include the value without a
@@ -493,17 +598,14 @@ fn law_stated(curve: &Curve, law: Law, model: &TwistModel) -> Stated {
         .into_iter()
         .map(|(name, list)| (name, list.iter().map(wide).collect()))
         .collect();
-    // an effect whose interval of size contains zero is not found
-    let is_bounded = match law {
-        // a stiffness whose interval reaches below zero is that of no spring
-        Law::Segments(..) => parameters.iter().flat_map(|(_, list)| list).all(is_positive),
-        _ => parameters.first().and_then(|(_, list)| list.first()).is_some_and(is_positive),
-    };
+    // an effect whose interval of size contains zero is not found; neither is one at a torque that may be zero or of either
+    // sign, nor a stiffness whose interval reaches below zero
+    let is_bounded = parameters.iter().flat_map(|(_, list)| list).all(is_positive);
     let state = if is_bounded { State::Found } else { State::NotIdentified };
     let words = match (is_bounded, law) {
         (true, _) => "",
         (false, Law::Segments(..)) => "the interval of a stiffness or of a torque of the curve contains zero",
-        (false, _) => "the interval of its size contains zero",
+        (false, _) => "the interval of its size or of its torque contains zero",
     };
     Stated { what: law.what(), state, parameters, words: words.into() }
 }

@@ -1,8 +1,8 @@
 //! Verdict from records: named effects, calibrated stiffnesses and the corrected arm.
 
 use super::curve::TORSION_CURVE;
-use super::finding::{JointRecord, Stated};
-use super::judge::judge;
+use super::finding::{JointRecord, State, Stated};
+use super::judge::{GRAVITY_OR_ERROR, judge};
 use super::twist::Group;
 use crate::arm::effect::entry::Effect;
 use crate::arm::effect::kind::Place;
@@ -97,6 +97,11 @@ fn is_explained(joint: &JointRecord) -> bool {
     joint.after_rad <= (LEFT * joint.before_rad).max(NOISY * joint.noise_rad)
 }
 
+/// Whether the joint is explained and the records leave nothing open.
+fn is_settled(joint: &JointRecord) -> bool {
+    is_explained(joint) && joint.undecided.is_empty()
+}
+
 /// Ending of a sentence on a joint whose error of the twist, although small, is more than noise; empty if it is
 /// noise.
 fn left_beyond_noise(joint: &JointRecord) -> String {
@@ -131,6 +136,11 @@ fn verdict(
         });
         return (Verdict::Unexplained, left.collect());
     }
+    let undecided = joints.iter().flat_map(|j| j.undecided.iter().map(|why| format!("{}: {why}", j.joint)));
+    let undecided: Vec<String> = undecided.collect();
+    if !undecided.is_empty() {
+        return (Verdict::InsufficientData, undecided);
+    }
     if !findings.is_empty() {
         let fall = joints.iter().map(|j| {
             format!(
@@ -155,7 +165,10 @@ fn verdict(
 fn named(joint: &JointRecord) -> Vec<Finding> {
     let like = |what: &str| -> Vec<(String, String)> {
         // a transmission error once a turn and gravity give the same twist if no other joint changes the torque
-        match what == transmission_error::KIND.name && joint.found("compliance").is_some() {
+        let is_alike = joint
+            .of("compliance")
+            .is_some_and(|s| s.state == State::Found || s.words.starts_with(GRAVITY_OR_ERROR));
+        match what == transmission_error::KIND.name && is_alike {
             true => vec![(connection_compliance::KIND.name.into(), joint.joint.clone())],
             false => Vec::new(),
         }
@@ -260,7 +273,7 @@ fn corrected(
 ) -> Arm {
     let mut arm = campaign.arm.clone();
     for (joint, stiffness) in joints.iter().zip(stiffnesses) {
-        let Some(factor) = stiffness.factor.filter(|_| is_explained(joint)) else { continue };
+        let Some(factor) = stiffness.factor.filter(|_| is_settled(joint)) else { continue };
         for element in &mut arm.chain {
             if let Element::Joint(own) = element
                 && own.name == joint.joint
@@ -269,7 +282,7 @@ fn corrected(
             }
         }
     }
-    let explained = |f: &&Finding| joints.iter().any(|j| j.joint == f.at && is_explained(j));
+    let explained = |f: &&Finding| joints.iter().any(|j| j.joint == f.at && is_settled(j));
     arm.effects.extend(findings.iter().filter(explained).filter_map(|f| as_effect(campaign, f)));
     arm
 }
@@ -321,20 +334,29 @@ fn located(joints: &[JointRecord]) -> Vec<Located> {
     all.into_iter().chain(each).collect()
 }
 
-/// Recommends one test for all joints whose compliance the records do not show, because their torque is nearly all
-/// acceleration and friction of the joint itself.
+/// Recommends one test for all joints whose compliance the records do not show because their torque is nearly all
+/// acceleration and friction of the joint itself, and one for those where a transmission error explains the same twist.
 fn next_tests(joints: &[JointRecord]) -> Vec<NextTest> {
-    let blind = joints.iter().filter(|j| {
-        j.of("compliance").is_some_and(|s: &Stated| s.words.starts_with("insufficient excitation"))
-    });
-    let names: Vec<&str> = blind.map(|j| j.joint.as_str()).collect();
-    if names.is_empty() {
-        return Vec::new();
-    }
-    vec![NextTest::of_another_kind(format!(
-        "compliance of {}: state rotor_inertia_kgm2, or load the joint with its output locked",
-        names.join(", ")
-    ))]
+    let named = |start: &str| -> Vec<&str> {
+        let has = |j: &&JointRecord| {
+            j.of("compliance").is_some_and(|s: &Stated| s.state != State::Found && s.words.starts_with(start))
+        };
+        joints.iter().filter(has).map(|j| j.joint.as_str()).collect()
+    };
+    let tests = [
+        (
+            named("insufficient excitation"),
+            "state rotor_inertia_kgm2, or load the joint with its output locked",
+        ),
+        (
+            named(GRAVITY_OR_ERROR),
+            "state rotor_inertia_kgm2, or move with another payload or pose, so that gravity differs at the same angle",
+        ),
+    ];
+    let asked = tests.iter().filter(|(names, _)| !names.is_empty());
+    asked
+        .map(|(names, what)| NextTest::of_another_kind(format!("compliance of {}: {what}", names.join(", "))))
+        .collect()
 }
 
 /// Joins the outcome of the records, `records`, with the outcome of the other readings, `other`. Each is judged by

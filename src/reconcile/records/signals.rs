@@ -11,6 +11,13 @@ const SLOW_PART: f64 = 0.002;
 /// Largest ratio of the root mean square accelerations on the two sides of a gear. If the ratio is larger, the larger
 /// acceleration is not a motion of the joint but an error of the gear or its sensor.
 const RESTLESS: f64 = 1.2;
+/// A joint rests at rows where the magnitude of the smoothed sign of its speed is below this for longer than the window of
+/// the torque. At a reversal it is below for about half of the window.
+const RESTING: f64 = 0.5;
+/// A rest ends where the magnitude of the smoothed sign of the speed reaches this again.
+const MOVING: f64 = 0.98;
+/// Rows at rest are left out only where at least this fraction of the record's rows is left.
+const LEAST_MOVING_PART: f64 = 0.2;
 /// Smallest number of blocks of a record, so that the result for a record does not depend on one block.
 const FEWEST_BLOCKS: usize = 4;
 
@@ -161,11 +168,18 @@ impl JointRows {
         let loaded: Vec<f64> = sign.iter().zip(torque_nm).map(|(s, t)| s * t.abs()).collect();
         let load_sense_nm = smooth(t_s, &loaded, torque_half).value;
         let record = self.records.len();
+        let rests = if self.has_torque { rests(&sense, torque_half) } else { vec![false; t_s.len()] };
+        let moving_rows = rests.iter().filter(|rests| !**rests).count();
+        let mut moved = 0;
         for row in 0..t_s.len() {
+            if rests[row] {
+                continue;
+            }
+            moved += 1;
             let sample = Sample {
                 record,
                 row,
-                block: self.blocks + row * blocks / t_s.len(),
+                block: self.blocks + (moved - 1) * blocks / moving_rows,
                 angle_rad: signals.motor_rad[row],
                 speed_rad_s: motor.slope[row],
                 acceleration_rad_s2: motor.curvature[row],
@@ -255,4 +269,26 @@ impl JointRows {
             },
         )
     }
+}
+
+/// Whether the joint rests, row by row. Friction is not known while it rests: it may hold any torque up to that of Coulomb
+/// friction, of either sign, and the sign of the speed says nothing of it. `sense` is the smoothed sign of the speed, and
+/// `half` the half width of its window \[rows\]. A reversal is no rest. Nothing rests in a record that hardly moves.
+fn rests(sense: &[f64], half: usize) -> Vec<bool> {
+    let mut out = vec![false; sense.len()];
+    let mut row = 0;
+    while row < sense.len() {
+        // a value near an end or a gap is NaN and compares as neither
+        let run = sense[row..].iter().take_while(|s| s.abs() < RESTING).count();
+        if run > 2 * half + 1 {
+            // the smoothed sign differs from the sign up to half a window before and after the rest
+            let before = sense[..row].iter().rev().take_while(|s| s.abs() < MOVING).count().max(half);
+            let after = sense[row + run..].iter().take_while(|s| s.abs() < MOVING).count().max(half);
+            let end = (row + run + after).min(sense.len());
+            out[row.saturating_sub(before)..end].fill(true);
+        }
+        row += run.max(1);
+    }
+    let moving = out.iter().filter(|rests| !**rests).count();
+    if (moving as f64) < LEAST_MOVING_PART * sense.len() as f64 { vec![false; sense.len()] } else { out }
 }

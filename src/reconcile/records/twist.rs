@@ -39,6 +39,8 @@ const CLEARLY_MANY: f64 = 2.5;
 const MATERIAL: f64 = 0.8;
 /// Errors up to this multiple of the noise of the sensors are noise.
 const STILL_NOISE: f64 = 1.15;
+/// Errors beyond this multiple of the noise of the sensors are certainly more than noise.
+const SURELY_MORE: f64 = 2.0;
 /// Largest number of iterations by which the time shift is found.
 const ROUNDS: usize = 12;
 
@@ -175,6 +177,29 @@ pub(crate) struct TwistModel<'a> {
     pub rows_per_reading: f64,
     /// Root mean square error of the twist on held-out blocks after each step \[rad\], with the name of the step.
     pub steps: Vec<(String, f64)>,
+    /// Where the rotor's inertia is not stated: what the records say of a transmission error of the output beside the
+    /// compliance. `None` where there is neither that error nor a compliance that shows without it.
+    pub beside_gravity: Option<BesideGravity>,
+}
+
+/// A transmission error of the output beside a compliance. Gravity twists the joint in proportion to
+/// waves of its angle, as the error does, and the link's acceleration takes the place of the rest of the torque. With the
+/// error a compliance of nearly zero is then as good as the true one, although the inertia that it asks of the rotor is
+/// negative.
+pub(crate) struct BesideGravity {
+    /// Fit without the error.
+    pub without: Fitted,
+    /// Fit of the error, with the compliance, the friction and the rotor's inertia of the fit without it.
+    pub at_compliance: Fitted,
+    /// Fit with the error in which the rotor's inertia is not negative.
+    pub with: Fitted,
+    /// Whether the compliance shows without the error.
+    pub shows: bool,
+    /// Whether the rotor's inertia must be held at zero, because the best value is negative, and clearly so where the
+    /// compliance does not show without the error.
+    pub is_held: bool,
+    /// Whether the error lowers the error on held-out blocks so far that it would be named, but only at another compliance.
+    pub is_doubtful: bool,
 }
 
 /// Writes the columns of the row with index `i` into `row`, with the link's signal read as late by `shift_s` \[s\].
@@ -250,9 +275,16 @@ impl<'a> TwistModel<'a> {
             fitted,
             rows_per_reading: 1.0,
             steps,
+            beside_gravity: None,
         };
         out.judge_errors();
         out.select()?;
+        out.beside_gravity = out.beside_gravity();
+        if out.groups.contains(&Group::Output)
+            && let Some(beside) = out.beside_gravity.as_ref().filter(|b| b.is_held)
+        {
+            out.fitted = beside.with.clone();
+        }
         out.judge_errors();
         Some(out)
     }
@@ -315,7 +347,7 @@ impl<'a> TwistModel<'a> {
         loop {
             let left = self.candidates().into_iter().filter(|g| !groups.contains(g));
             let tried = left.filter_map(|g| Some((g, self.fit(&[groups.as_slice(), &[g]].concat())?)));
-            let better = tried.filter(|(g, fit)| self.pays(*g, fit, &best));
+            let better = tried.filter(|(g, fit)| self.pays(*g, &groups, fit, &best));
             // a transmission error and gravity both vary with the joint's angle; compliance goes first where it is
             // enough
             let order = |(group, fit): &(Group, Fitted)| (group.is_of_gear(), fit.held_out_rms());
@@ -341,15 +373,88 @@ impl<'a> TwistModel<'a> {
 
     /// Whether the group is to be named. A transmission error is not where the fit without it leaves no more than the
     /// noise of the sensors: the waves are known without noise, so they would take the place of a noisy torque that
-    /// varies with the angle, as that of gravity does.
-    fn pays(&self, group: Group, with: &Fitted, without: &Fitted) -> bool {
-        group.pays(with, without) && !(group.is_of_gear() && self.leaves_noise_only(without))
+    /// varies with the angle, as that of gravity does. Where the compliance shows without a transmission error of the output,
+    /// the error must also pay at that compliance. `others` are the groups of the fit without it.
+    fn pays(&self, group: Group, others: &[Group], with: &Fitted, without: &Fitted) -> bool {
+        if !group.pays(with, without) || (group.is_of_gear() && self.leaves_noise_only(without, STILL_NOISE))
+        {
+            return false;
+        }
+        if group != Group::Output || !self.shows_compliance(others, without) {
+            return true;
+        }
+        self.at_compliance(others, without).is_some_and(|fit| group.pays(&fit, without))
     }
 
-    /// Whether the errors of a fit on held-out blocks are the noise of the angles and of the torque.
-    fn leaves_noise_only(&self, fitted: &Fitted) -> bool {
+    /// Whether the errors of a fit on held-out blocks are below `times` the noise of the angles and of the torque.
+    fn leaves_noise_only(&self, fitted: &Fitted, times: f64) -> bool {
         let by_torque_rad = fitted.value(self.places.torque()) * self.rows.torque_noise_nm();
-        fitted.held_out_rms() < STILL_NOISE * libm::hypot(self.rows.noise_rad(), by_torque_rad)
+        fitted.held_out_rms() < times * libm::hypot(self.rows.noise_rad(), by_torque_rad)
+    }
+
+    /// Whether the compliance shows in the fit `fitted` by the groups `groups`, and the rotor's inertia is not stated.
+    fn shows_compliance(&self, groups: &[Group], fitted: &Fitted) -> bool {
+        let others: Vec<Group> = groups.iter().copied().filter(|g| *g != Group::Compliance).collect();
+        self.rows.rotor_inertia_kgm2.is_none()
+            && others.len() < groups.len()
+            && self.fit(&others).is_some_and(|other| Group::Compliance.pays(fitted, &other))
+    }
+
+    /// Fit of the twist by the groups `groups` and a transmission error of the output, in which compliance, friction and the
+    /// rotor's inertia have the values of the fit `without`, which lacks the error. `None` if a fit is impossible.
+    fn at_compliance(&self, groups: &[Group], without: &Fitted) -> Option<Fitted> {
+        let p = self.places;
+        let elastic = [p.torque(), p.acceleration(), p.sense(), p.load_sense(), p.rate()];
+        let target = p.further();
+        let sums = self.rows.sums(target + 1, |i, _, row| {
+            let is_filled = fill(self.rows, i, self.shift_s, row);
+            let known: f64 = elastic.iter().map(|c| row[*c] * without.value(*c)).sum();
+            row[target] -= known;
+            is_filled
+        });
+        let free: Vec<Group> = groups.iter().copied().filter(|g| *g != Group::Compliance).collect();
+        let free = [free.as_slice(), &[Group::Output]].concat();
+        sums.fit(&columns(self.rows, &free), target, |c| self.prior(c))
+    }
+
+    /// What the records say of a transmission error of the output beside the compliance; `None` where there is neither that
+    /// error nor a compliance that shows without it.
+    fn beside_gravity(&self) -> Option<BesideGravity> {
+        let others: Vec<Group> = self.groups.iter().copied().filter(|g| *g != Group::Output).collect();
+        if !others.contains(&Group::Compliance) || self.rows.rotor_inertia_kgm2.is_some() {
+            return None;
+        }
+        let without = self.fit(&others)?;
+        let shows = self.shows_compliance(&others, &without);
+        if !shows && !self.groups.contains(&Group::Output) {
+            return None;
+        }
+        let all: Vec<Group> = others.iter().copied().chain([Group::Output]).collect();
+        let mut with = self.fit(&all)?;
+        // the coefficient of the acceleration is minus the compliance times the rotor's inertia
+        let inertial = with.coefficient(self.places.acceleration());
+        let is_held = if shows { inertial.value > 0.0 } else { inertial.low.is_some_and(|low| low > 0.0) };
+        if inertial.value > 0.0 {
+            let rest: Vec<usize> =
+                with.columns.iter().copied().filter(|c| *c != self.places.acceleration()).collect();
+            with = self.fit_with(&rest)?;
+        }
+        let at_compliance = self.at_compliance(&others, &without)?;
+        let is_doubtful = !self.groups.contains(&Group::Output)
+            && Group::Output.pays(&with, &without)
+            && !self.leaves_noise_only(&without, SURELY_MORE);
+        Some(BesideGravity { without, at_compliance, with, shows, is_held, is_doubtful })
+    }
+
+    /// A compliance that the record's twist does not exceed, whatever friction is \[rad/(N m)\]: the twist that a time shift
+    /// leaves, over the torque that is not friction, both as root mean squares, with a margin. Zero if a fit is impossible.
+    pub(crate) fn largest_compliance(&self) -> f64 {
+        const MARGIN: f64 = 1.5;
+        let p = self.places;
+        let free = [p.offsets(), vec![p.shift(), p.sense()]].concat();
+        let loaded = self.sums.fit(&free, p.torque(), |_| None).map_or(0.0, |f| f.squares);
+        let twisted = self.fit(&[Group::Shift]).map_or(0.0, |f| f.squares);
+        if loaded > 0.0 { MARGIN * (twisted / loaded).sqrt() } else { 0.0 }
     }
 
     /// Removes those of the `groups` without which the model predicts held-out blocks about as well, and returns the
@@ -360,7 +465,7 @@ impl<'a> TwistModel<'a> {
             if without.len() == groups.len() {
                 continue;
             }
-            if let Some(fit) = self.fit(&without).filter(|fit| !self.pays(group, best, fit)) {
+            if let Some(fit) = self.fit(&without).filter(|fit| !self.pays(group, &without, best, fit)) {
                 self.steps.push((format!("without {}", group.step()), fit.held_out_rms()));
                 (groups, *best) = (without, fit);
             }
