@@ -50,7 +50,7 @@ impl LinkPiece {
                 bodies: own
                     .map(|(body, _)| super::body::RigidBody {
                         cg_m: body.cg_m - self.vector_m * start,
-                        ..body.clone()
+                        ..*body
                     })
                     .collect(),
                 root_frame: if i == 0 { self.root_frame } else { FrameCompliance::default() },

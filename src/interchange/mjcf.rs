@@ -174,18 +174,18 @@ fn play_armature_kgm2(motor_kgm2: f64, gear: &Working) -> f64 {
 fn couplings(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
     let driven = snapshot.case_joints();
     let hinges = || nodes.iter().flat_map(|node| &node.hinges);
-    let followers: Vec<(&Hinge, Working, &[(usize, f64)])> = hinges()
-        .filter_map(|hinge| match hinge.role {
-            Role::Follower(working) => Some((hinge, working, coupled(snapshot, &hinge.name)?)),
-            _ => None,
-        })
-        .collect();
+    let mut followers: Vec<(&Hinge, Working)> = Vec::new();
+    for hinge in hinges() {
+        if let Role::Follower(working) = hinge.role {
+            followers.push((hinge, working));
+        }
+    }
     if followers.is_empty() {
         return;
     }
     let name_of = |hinge: &Hinge| format!("{}.coupling", hinge.name);
     xml.open("tendon", &[]);
-    for (follower, working, terms) in &followers {
+    for (follower, working) in &followers {
         let mut attributes = vec![("name", name_of(follower))];
         if !working.is_rigid() {
             attributes.push(("stiffness", numbers(&[working.tangent_nm_per_rad()])));
@@ -193,7 +193,7 @@ fn couplings(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
         }
         xml.open("fixed", &attributes);
         xml.leaf("joint", &[("joint", follower.name.clone()), ("coef", "1".into())]);
-        for (index, factor) in *terms {
+        for (index, factor) in coupled(snapshot, &follower.name).unwrap_or_default() {
             for hinge in hinges().filter(|hinge| hinge.element == driven[*index]) {
                 xml.leaf("joint", &[("joint", hinge.name.clone()), ("coef", numbers(&[-factor]))]);
             }
@@ -202,7 +202,7 @@ fn couplings(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
     }
     xml.close();
     let rigid: Vec<&Hinge> =
-        followers.iter().filter(|(_, working, _)| working.is_rigid()).map(|(hinge, ..)| *hinge).collect();
+        followers.iter().filter(|(_, working)| working.is_rigid()).map(|(hinge, _)| *hinge).collect();
     if rigid.is_empty() {
         return;
     }

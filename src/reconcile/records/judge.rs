@@ -47,7 +47,7 @@ const POINTS: usize = 600;
 const TELLING_RANGE_RAD: f64 = 2.0;
 
 /// Why a compliance or a transmission error is not identified where each of them explains the twist by gravity.
-pub(crate) const GRAVITY_OR_ERROR: &str = "the twist by gravity and a transmission error turn with the joint alike, and the rotor's inertia is not \
+pub(crate) const GRAVITY_OR_ERROR: &str = "the twist by gravity and a transmission error both follow the angle of the joint, and the rotor's inertia is not \
      stated: the records cannot tell them apart";
 
 /// Judges one joint from all records. `None` if no record has the angles on both sides of its gear, or a fit is
