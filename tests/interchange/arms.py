@@ -109,7 +109,7 @@ def fixed_arms():
         joint("j3", [0, 1, 0], 2e5, 5.0), box("fore", [0.6, 0, 0], "steel", 0.1, 0.1, 0.005),
         joint("level", [0, 1, 0], None, 1.5, coupled={"j2": -1, "j3": -1}), offset("hand", [0.15, 0, -0.05], 0.5),
         joint("j4", [0, 0, 1], 2e4, 1.0), offset("tool", [0, 0, -0.1])]), [case("level", [25, -40, 65, 15], 6.0, (0.02, 0.01, -0.05))]))
-    out.append(("linkage that yields", arm("soft linkage", [
+    out.append(("compliant linkage", arm("compliant linkage", [
         joint("j1", [0, 0, 1], 4e5, 8.0), box("column", [0, 0, 0.5], "steel", 0.16, 0.16, 0.008),
         joint("j2", [0, 1, 0], 3e5, 8.0), box("upper", [0.7, 0, 0], "steel", 0.12, 0.12, 0.006),
         joint("j3", [0, 1, 0], 2e5, 5.0), box("fore", [0.6, 0, 0], "steel", 0.1, 0.1, 0.005),
