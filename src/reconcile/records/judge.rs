@@ -290,7 +290,7 @@ impl<'a> Judged<'a> {
     /// less the motor's. The twist is the opposite, so the sign of the coefficients is changed.
     fn output_error(&self) -> Stated {
         let what = Group::Output.what();
-        let beside = self.model.beside_gravity.as_ref();
+        let beside = self.model.error_or_gravity.as_ref();
         if !self.model.groups.contains(&Group::Output) {
             return match beside.filter(|b| b.is_doubtful) {
                 Some(_) => Stated::none(what, State::NotIdentified, GRAVITY_OR_ERROR),
@@ -361,7 +361,7 @@ impl<'a> Judged<'a> {
     /// What the records leave open, so that the joint is not explained although little error is left.
     fn undecided(&self) -> Vec<String> {
         let mut out = Vec::new();
-        if self.model.beside_gravity.as_ref().is_some_and(|b| b.is_doubtful) {
+        if self.model.error_or_gravity.as_ref().is_some_and(|b| b.is_doubtful) {
             out.push(GRAVITY_OR_ERROR.into());
         }
         if let Some((law, rms_rad)) = self.curve.as_ref().and_then(|c| c.hidden) {
@@ -510,7 +510,7 @@ fn compliance(model: &TwistModel, left_share: f64) -> Stated {
     }
     let c = widened(c, LEAST_PART * c.value.abs());
     let has_error = model.groups.contains(&Group::Output);
-    if model.beside_gravity.as_ref().is_some_and(|b| b.is_doubtful || (has_error && b.is_held)) {
+    if model.error_or_gravity.as_ref().is_some_and(|b| b.is_doubtful || (has_error && b.is_held)) {
         let parameters = open(&beside_gear_error(model, c));
         return Stated { parameters, ..Stated::none(WHAT, State::NotIdentified, GRAVITY_OR_ERROR) };
     }
@@ -544,7 +544,7 @@ fn compliance(model: &TwistModel, left_share: f64) -> Stated {
 /// The compliance `c` \[rad/(N m)\] of a joint whose compliance is not identified, with its interval widened so that it
 /// covers the fits with and without a transmission error of the output, where the compliance shows without that error.
 fn beside_gear_error(model: &TwistModel, c: Estimate) -> Estimate {
-    let Some(beside) = &model.beside_gravity else { return c };
+    let Some(beside) = &model.error_or_gravity else { return c };
     if !beside.is_doubtful && !model.groups.contains(&Group::Output) {
         return c;
     }

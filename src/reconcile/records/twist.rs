@@ -179,14 +179,14 @@ pub(crate) struct TwistModel<'a> {
     pub steps: Vec<(String, f64)>,
     /// Where the rotor's inertia is not stated: what the records say of a transmission error of the output beside the
     /// compliance. `None` where there is neither that error nor a compliance that shows without it.
-    pub beside_gravity: Option<BesideGravity>,
+    pub error_or_gravity: Option<ErrorOrGravity>,
 }
 
 /// A transmission error of the output beside a compliance. Gravity twists the joint in proportion to
 /// waves of its angle, as the error does, and the link's acceleration takes the place of the rest of the torque. With the
 /// error a compliance of nearly zero is then as good as the true one, although the inertia that it asks of the rotor is
 /// negative.
-pub(crate) struct BesideGravity {
+pub(crate) struct ErrorOrGravity {
     /// Fit without the error.
     pub without: Fitted,
     /// Fit of the error, with the compliance, the friction and the rotor's inertia of the fit without it.
@@ -275,13 +275,13 @@ impl<'a> TwistModel<'a> {
             fitted,
             rows_per_reading: 1.0,
             steps,
-            beside_gravity: None,
+            error_or_gravity: None,
         };
         out.judge_errors();
         out.select()?;
-        out.beside_gravity = out.beside_gravity();
+        out.error_or_gravity = out.error_or_gravity();
         if out.groups.contains(&Group::Output)
-            && let Some(beside) = out.beside_gravity.as_ref().filter(|b| b.is_held)
+            && let Some(beside) = out.error_or_gravity.as_ref().filter(|b| b.is_held)
         {
             out.fitted = beside.with.clone();
         }
@@ -419,7 +419,7 @@ impl<'a> TwistModel<'a> {
 
     /// What the records say of a transmission error of the output beside the compliance; `None` where there is neither that
     /// error nor a compliance that shows without it.
-    fn beside_gravity(&self) -> Option<BesideGravity> {
+    fn error_or_gravity(&self) -> Option<ErrorOrGravity> {
         let others: Vec<Group> = self.groups.iter().copied().filter(|g| *g != Group::Output).collect();
         if !others.contains(&Group::Compliance) || self.rows.rotor_inertia_kgm2.is_some() {
             return None;
@@ -443,7 +443,7 @@ impl<'a> TwistModel<'a> {
         let is_doubtful = !self.groups.contains(&Group::Output)
             && Group::Output.pays(&with, &without)
             && !self.leaves_noise_only(&without, SURELY_MORE);
-        Some(BesideGravity { without, at_compliance, with, shows, is_held, is_doubtful })
+        Some(ErrorOrGravity { without, at_compliance, with, shows, is_held, is_doubtful })
     }
 
     /// A compliance that the record's twist does not exceed, whatever friction is \[rad/(N m)\]: the twist that a time shift
