@@ -47,6 +47,9 @@ impl Estimate {
     }
 }
 
+/// Half of the width of a 95 % interval, in standard deviations.
+const Z_95: f64 = 1.96;
+
 /// An effect that was found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
@@ -66,20 +69,22 @@ impl Finding {
         format!("{}@{}", self.effect, self.at)
     }
 
-    /// Whether all sizes of the effect may be those of an arm without it, by their 95 % intervals: a stiffness may be
-    /// infinite, a factor 1, and any other size 0. The torque over which play opens is no size.
-    pub(crate) fn may_be_absent(&self) -> bool {
-        let may_be = |name: &str, estimate: &Estimate| {
-            let contains =
-                |x: f64| estimate.low.is_none_or(|e| e <= x) && estimate.high.is_none_or(|e| x <= e);
-            match name {
-                _ if name.starts_with("stiffness") => estimate.high.is_none(),
-                _ if name.ends_with("factor") => contains(1.0),
-                _ => contains(0.0),
+    /// Whether no size of the effect differs from that of an arm without it by more than its own standard deviation: a
+    /// stiffness that may be infinite, a factor near 1, and any other size near 0. The torque over which play opens is no
+    /// size.
+    pub(crate) fn is_within_its_deviation(&self) -> bool {
+        let is_near = |name: &str, estimate: &Estimate| {
+            let Estimate { value, low, high } = *estimate;
+            if name.starts_with("stiffness") {
+                // the interval is that of the compliance, whose upper end is 1.96 deviations away
+                return high.is_none() && low.is_none_or(|low| value > (1.0 + Z_95) * low);
             }
+            let absent = if name.ends_with("factor") { 1.0 } else { 0.0 };
+            let deviation = low.zip(high).map_or(f64::INFINITY, |(low, high)| (high - low) / (2.0 * Z_95));
+            (value - absent).abs() < deviation
         };
         let mut sizes = self.parameters.iter().filter(|(name, _)| name != "torque_nm");
-        sizes.all(|(name, estimates)| estimates.iter().all(|estimate| may_be(name, estimate)))
+        sizes.all(|(name, estimates)| estimates.iter().all(|estimate| is_near(name, estimate)))
     }
 
     /// The entry of the finding in `verdict.json`.
@@ -113,28 +118,35 @@ impl Finding {
 mod tests {
     use super::*;
 
-    fn finding(parameters: &[(&str, &[[Option<f64>; 2]])]) -> Finding {
-        let estimates = |ends: &[[Option<f64>; 2]]| {
-            ends.iter().map(|[low, high]| Estimate { value: 0.5, low: *low, high: *high }).collect()
+    fn finding(parameters: &[(&str, &[(f64, Option<f64>, Option<f64>)])]) -> Finding {
+        let estimates = |list: &[(f64, Option<f64>, Option<f64>)]| {
+            list.iter().map(|&(value, low, high)| Estimate { value, low, high }).collect()
         };
         Finding {
             effect: "x".into(),
             at: "j1".into(),
-            parameters: parameters.iter().map(|(name, ends)| (name.to_string(), estimates(ends))).collect(),
+            parameters: parameters.iter().map(|(name, list)| (name.to_string(), estimates(list))).collect(),
             indistinguishable_from: Vec::new(),
         }
     }
 
     #[test]
-    fn an_effect_may_be_absent_if_all_its_sizes_may() {
-        let [minus, zero, one, two] = [-1.0, 0.0, 1.0, 2.0].map(Some);
-        assert!(finding(&[("stiffness_nm_per_rad", &[[one, None]])]).may_be_absent());
-        assert!(!finding(&[("stiffness_nm_per_rad", &[[one, two]])]).may_be_absent());
-        assert!(finding(&[("cos_rad", &[[minus, one]]), ("sin_rad", &[[minus, one]])]).may_be_absent());
-        assert!(!finding(&[("cos_rad", &[[minus, one]]), ("sin_rad", &[[one, two]])]).may_be_absent());
-        assert!(finding(&[("factor", &[[zero, two]])]).may_be_absent());
+    fn an_effect_is_a_suspect_if_it_is_smaller_than_its_deviation() {
+        let is_near = |name: &str, value: f64, low: f64, high: Option<f64>| {
+            finding(&[(name, &[(value, Some(low), high)])]).is_within_its_deviation()
+        };
+        assert!(is_near("stiffness_nm_per_rad", 7010.0, 20.9, None));
+        assert!(!is_near("stiffness_nm_per_rad", 10_933.0, 5028.0, None), "1.7 deviations");
+        assert!(!is_near("stiffness_nm_per_rad", 7010.0, 20.9, Some(1e6)));
+        assert!(is_near("delta_kg", 0.3, -0.7, Some(1.3)) && !is_near("delta_kg", 0.9, -0.1, Some(1.9)));
+        assert!(is_near("factor", 0.9, 0.5, Some(1.3)));
+        let small = (0.1, Some(-0.9), Some(1.1));
+        let large = (3.0, Some(2.0), Some(4.0));
+        assert!(finding(&[("cos_rad", &[small]), ("sin_rad", &[small])]).is_within_its_deviation());
+        assert!(!finding(&[("cos_rad", &[small]), ("sin_rad", &[large])]).is_within_its_deviation());
         assert!(
-            !finding(&[("half_width_rad", &[[one, two]]), ("torque_nm", &[[None, None]])]).may_be_absent()
+            !finding(&[("half_width_rad", &[large]), ("torque_nm", &[(1.0, None, None)])])
+                .is_within_its_deviation()
         );
     }
 }

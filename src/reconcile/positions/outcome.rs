@@ -159,9 +159,9 @@ impl Positions {
         if let Some(text) = findings.iter().find_map(crowded) {
             return (Verdict::InsufficientData, vec![text]);
         }
-        if let Some(finding) = findings.iter().find(|finding| finding.may_be_absent()) {
+        if let Some(finding) = findings.iter().find(|finding| finding.is_within_its_deviation()) {
             let text = format!(
-                "the 95 % interval of {} contains its absence: it is a suspect and no finding",
+                "{} is smaller than its own standard deviation: it is a suspect and no finding",
                 finding.label()
             );
             return (Verdict::InsufficientData, vec![text]);
