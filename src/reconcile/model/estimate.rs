@@ -118,10 +118,12 @@ impl Finding {
 mod tests {
     use super::*;
 
-    fn finding(parameters: &[(&str, &[(f64, Option<f64>, Option<f64>)])]) -> Finding {
-        let estimates = |list: &[(f64, Option<f64>, Option<f64>)]| {
-            list.iter().map(|&(value, low, high)| Estimate { value, low, high }).collect()
-        };
+    /// Value, lower and upper end.
+    type Size = (f64, Option<f64>, Option<f64>);
+
+    fn finding(parameters: &[(&str, &[Size])]) -> Finding {
+        let estimates =
+            |list: &[Size]| list.iter().map(|&(value, low, high)| Estimate { value, low, high }).collect();
         Finding {
             effect: "x".into(),
             at: "j1".into(),
