@@ -6,57 +6,133 @@
 //! about the link comes out too high, by up to 6 %. Where the link is divided at the body, the step lies between two
 //! links, and the frequency is right.
 
+use super::body::RigidBody;
+use super::springs::{SpringEnd, SpringKind, SpringPlace};
 use super::structure::{FrameCompliance, LinkPiece, Piece, Structure};
+use nalgebra::Vector3;
 
 /// Smallest distance between two divisions, and to the ends of a link, relative to the length of the link.
 const NEAREST: f64 = 1e-3;
 
 impl Structure {
-    /// This structure with every tube divided where a body moves with it. `None` if no body is between the ends of a
-    /// tube, or if the structure has springs, which refer to its pieces by their index.
+    /// This structure with every tube divided where a body moves with it; `None` if no body is between the ends of a
+    /// tube. Springs stay where they are.
     pub(crate) fn divided_at_bodies(&self) -> Option<Structure> {
-        if !self.springs.is_empty() {
+        let starts: Vec<Vec<f64>> = self.pieces.iter().map(starts).collect();
+        if starts.iter().all(|of_piece| of_piece.len() == 1) {
             return None;
         }
-        let divided = |piece: &Piece| match piece {
-            Piece::Link(link) => link.divided_at_bodies().into_iter().map(Piece::Link).collect(),
-            joint => vec![joint.clone()],
+        let parts = self.pieces.iter().zip(&starts).flat_map(|(piece, starts)| parts(piece, starts));
+        let mut out = Structure { pieces: parts.collect(), ..self.clone() };
+        // index of the first part of each piece
+        let first = |piece: usize| starts[..piece].iter().map(Vec::len).sum::<usize>();
+        let moved = |end: &mut SpringEnd| {
+            let SpringPlace::Element(piece) = end.on else { return };
+            let part = match &self.pieces[piece] {
+                Piece::Link(link) => part_at(&starts[piece], along(link, &end.point_m)),
+                Piece::Joint(_) | Piece::Prismatic(_) => 0,
+            };
+            if let Piece::Link(link) = &self.pieces[piece] {
+                end.point_m -= link.vector_m * starts[piece][part];
+            }
+            end.on = SpringPlace::Element(first(piece) + part);
         };
-        let pieces: Vec<Piece> = self.pieces.iter().flat_map(divided).collect();
-        (pieces.len() > self.pieces.len()).then(|| Structure { pieces, ..self.clone() })
+        for spring in &mut out.springs {
+            match &mut spring.kind {
+                SpringKind::Line { ends, .. } => ends.iter_mut().for_each(moved),
+                SpringKind::Torsion { joint, .. } => *joint = first(*joint),
+            }
+        }
+        Some(out)
     }
 }
 
-impl LinkPiece {
-    /// The parts of this link, from root to end: one part if it is no tube, or has no body between its ends.
-    fn divided_at_bodies(&self) -> Vec<LinkPiece> {
-        let length2_m2 = self.vector_m.norm_squared();
-        if self.beam.is_none() || length2_m2 == 0.0 {
-            return vec![self.clone()];
-        }
-        // the point of the axis with which a body moves is the nearest to its centre of gravity
-        let places = self.bodies.iter().map(|body| self.vector_m.dot(&body.cg_m) / length2_m2);
-        let mut cuts: Vec<f64> = places.clone().filter(|xi| (NEAREST..1.0 - NEAREST).contains(xi)).collect();
-        cuts.sort_by(f64::total_cmp);
-        cuts.dedup_by(|next, before| *next - *before < NEAREST);
-        let starts: Vec<f64> = [0.0].into_iter().chain(cuts).collect();
-        let part_of = |xi: f64| starts.iter().rposition(|start| *start <= xi).unwrap_or_default();
-        let parts = starts.iter().enumerate().map(|(i, &start)| {
-            let end = starts.get(i + 1).copied().unwrap_or(1.0);
-            let own = self.bodies.iter().zip(places.clone()).filter(|(_, xi)| part_of(*xi) == i);
-            LinkPiece {
-                name: if i == 0 { self.name.clone() } else { format!("{}, part {}", self.name, i + 1) },
-                vector_m: self.vector_m * (end - start),
-                bodies: own
-                    .map(|(body, _)| super::body::RigidBody {
-                        cg_m: body.cg_m - self.vector_m * start,
-                        ..*body
-                    })
-                    .collect(),
-                root_frame: if i == 0 { self.root_frame } else { FrameCompliance::default() },
-                ..self.clone()
-            }
-        });
-        parts.collect()
+/// Where a point beside a link is along it, from 0 at its root to 1 at its end; 0 for a link without length.
+fn along(link: &LinkPiece, point_m: &Vector3<f64>) -> f64 {
+    let length2_m2 = link.vector_m.norm_squared();
+    if length2_m2 > 0.0 { link.vector_m.dot(point_m) / length2_m2 } else { 0.0 }
+}
+
+/// Where the parts of a piece begin along it, from root to end. There is one part unless the piece is a tube with bodies
+/// between its ends.
+fn starts(piece: &Piece) -> Vec<f64> {
+    let mut out = vec![0.0];
+    if let Piece::Link(link) = piece
+        && link.beam.is_some()
+    {
+        let places = link.bodies.iter().map(|body| along(link, &body.cg_m));
+        out.extend(places.filter(|xi| (NEAREST..1.0 - NEAREST).contains(xi)));
+        out.sort_by(f64::total_cmp);
+        out.dedup_by(|next, before| *next - *before < NEAREST);
+    }
+    out
+}
+
+/// Index of the part in which the point at `xi` along a piece lies.
+fn part_at(starts: &[f64], xi: f64) -> usize {
+    starts.iter().rposition(|start| *start <= xi).unwrap_or_default()
+}
+
+/// The parts of a piece that begin at `starts` along it.
+fn parts(piece: &Piece, starts: &[f64]) -> Vec<Piece> {
+    let Piece::Link(link) = piece else { return vec![piece.clone()] };
+    let part = |(i, &start): (usize, &f64)| {
+        let end = starts.get(i + 1).copied().unwrap_or(1.0);
+        let own = link.bodies.iter().filter(|body| part_at(starts, along(link, &body.cg_m)) == i);
+        let moved = own.map(|body| RigidBody { cg_m: body.cg_m - link.vector_m * start, ..*body });
+        Piece::Link(LinkPiece {
+            name: if i == 0 { link.name.clone() } else { format!("{}, part {}", link.name, i + 1) },
+            vector_m: link.vector_m * (end - start),
+            bodies: moved.collect(),
+            root_frame: if i == 0 { link.root_frame } else { FrameCompliance::default() },
+            ..link.clone()
+        })
+    };
+    starts.iter().enumerate().map(part).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::arm::file::read_arm_document;
+    use crate::arm::load::Payload;
+    use crate::arm::{JointModel, LinkModel};
+    use crate::catalog::Catalogs;
+    use crate::input::json::Document;
+    use crate::mechanics::chain::Chain;
+    use nalgebra::Vector3;
+
+    const ARM: &str = r#"{"name": "a",
+        "materials": {"steel": {"youngs_modulus_pa": 2.1e11, "shear_modulus_pa": 8.1e10, "density_kg_m3": 7850}},
+        "chain": [
+            {"type": "joint", "name": "j", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e5},
+            {"type": "link", "name": "l", "vector_m": [0.8, 0, 0], "material": "steel",
+             "section": {"shape": "round_tube", "diameter_m": 0.08, "wall_m": 0.004},
+             "bodies": [{"mass_kg": 3, "cg_m": [0.6, 0.05, 0]}, {"mass_kg": 2, "cg_m": [0.2, 0, -0.1]}]},
+            {"type": "joint", "name": "k", "axis": [0, 1, 0], "stiffness_nm_per_rad": 5e4},
+            {"type": "link", "name": "m", "vector_m": [0.4, 0, 0], "mass_kg": 1}],
+        "springs": [
+            {"name": "s", "from": {"at": "base", "point_m": [0, 0, 0.3]}, "to": {"at": "l", "point_m": [0.5, 0, 0.05]},
+             "stiffness_n_per_m": 2000, "free_length_m": 0.3},
+            {"name": "t", "joint": "k", "stiffness_nm_per_rad": 20, "free_deg": -30}]}"#;
+
+    /// Deflections are exact in both, with the springs at the same points of the same parts.
+    #[test]
+    fn a_divided_arm_is_as_heavy_and_bends_as_far_with_its_springs_where_they_were() {
+        let arm = read_arm_document(Document::parse("a.json", ARM).unwrap(), &Catalogs::default()).unwrap();
+        let whole = arm.structure(JointModel::ThreeSegment);
+        let divided = whole.divided_at_bodies().expect("two bodies");
+        assert_eq!(divided.pieces.len(), whole.pieces.len() + 2);
+        assert!((divided.mass_kg() - whole.mass_kg()).abs() < 1e-12);
+        let tip_m = |structure| {
+            let chain = Chain::new(structure, LinkModel::Full);
+            let payload = Payload { mass_kg: 2.0, ..Payload::default() };
+            chain.pose_rad(&[0.3, -0.5], &payload, Vector3::zeros()).statics().tip_displacement_m
+        };
+        let (whole_m, divided_m): (Vector3<f64>, Vector3<f64>) = (tip_m(&whole), tip_m(&divided));
+        assert!((whole_m - divided_m).norm() < 1e-10 * whole_m.norm(), "{whole_m} {divided_m}");
+        let mut without = whole.clone();
+        without.springs.clear();
+        assert!((tip_m(&without) - whole_m).norm() > 1e-2 * whole_m.norm(), "the springs act");
+        assert!(divided.divided_at_bodies().is_none(), "its bodies are at the ends of its parts");
     }
 }

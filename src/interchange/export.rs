@@ -275,6 +275,9 @@ fn to_mjcf(asked: &Asked, catalogs: &Catalogs) -> Export {
     notes.push("the keyframe \"pose\" is the pose with straight springs, in which torques and frequencies are compared; \"deflected\" has \
                 every spring where it rests under the load"
         .into());
+    notes.push("the time step of 0.1 ms is too long for an arm with light bodies between stiff springs: a simulation in time is then \
+                unstable, while torques, deflections and frequencies are right"
+        .into());
     notes.extend(working_points_note(&rest.left_out));
     if file.balanced {
         notes.push("no solid has the inertia of a body: MuJoCo makes its moments equal (balanceinertia), so frequencies differ".into());

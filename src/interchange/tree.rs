@@ -200,9 +200,11 @@ impl Builder<'_> {
         let has_motor = self.last().hinges.iter().any(|hinge| hinge.name == element.name);
         if is_joint && !has_motor {
             let name = element.name.clone();
-            let spring =
-                if is_compliant { workings.first().copied().unwrap_or_default() } else { Working::default() };
-            let role = if is_passive { Role::Follower(spring) } else { Role::Motor };
+            let role = match (is_passive, workings.first()) {
+                (true, Some(spring)) if is_compliant => Role::Follower(*spring),
+                (true, _) => Role::Follower(Working::default()),
+                (false, _) => Role::Motor,
+            };
             let first = hinge(&element.twists[0], name.clone(), &name, element.at_m, role);
             self.last().hinges.push(first);
             if let Some(half_rad) = self.options.plays.get(&name).copied() {

@@ -211,8 +211,7 @@ impl Analysis<'_> {
         }
         if matches!(verdict, Verdict::Explained | Verdict::NoGap) {
             let shown = if verdict == Verdict::NoGap { &self.baseline } else { &self.best };
-            let deviations = shown.model.nuisance.numbers.iter().map(|(_, sd)| *sd);
-            if let Some(text) = caution::beyond_tolerance(deviations, &calibrated) {
+            if let Some(text) = caution::beyond_tolerance(fitted::tolerances(shown), &calibrated) {
                 let within = reasons.iter_mut().filter(|reason| *reason == NOTHING_MISSING);
                 within.for_each(|reason| *reason = BEYOND.into());
                 reasons.push(text);
@@ -279,7 +278,8 @@ impl Analysis<'_> {
             return (Verdict::Unexplained, self.left_over());
         }
         if self.best.model.effects.is_empty() {
-            return match caution::impossible_calibration(self.campaign, self.best_factors()) {
+            let (tolerances, calibrated) = (fitted::tolerances(&self.best), fitted::calibrated(&self.best));
+            return match caution::impossible_calibration(self.campaign, tolerances, &calibrated) {
                 Some(text) => (Verdict::Unexplained, vec![text]),
                 None => (Verdict::NoGap, vec![NOTHING_MISSING.to_string()]),
             };
@@ -311,13 +311,6 @@ impl Analysis<'_> {
             return (Verdict::InsufficientData, vec![text]);
         }
         (Verdict::Explained, vec![self.gap_sentence()])
-    }
-
-    /// The calibrated factors of the best model: name, factor, and standard deviation of its logarithm by the tolerance.
-    fn best_factors(&self) -> impl Iterator<Item = (String, f64, f64)> + '_ {
-        let nuisance = &self.best.model.nuisance;
-        let numbers = nuisance.numbers.iter().zip(&self.best.point.u).enumerate();
-        numbers.map(move |(i, ((calibration, sd), u))| (calibration.name(), nuisance.factor(i, *u), *sd))
     }
 
     /// Verdict and reasons if the evidence for the best effects is weak. These effects are only suspected. The

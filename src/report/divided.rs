@@ -15,7 +15,7 @@ pub(crate) fn divided_lowest_hz(arm: &Arm, case: &LoadCase) -> Option<f64> {
     let chain = Chain::new(&structure, case.links);
     let posed = chain.pose(case);
     let statics = posed.statics();
-    Some(posed.modes(&statics, 1).first()?.frequency_hz)
+    Some(posed.lowest_frequency_hz(&statics))
 }
 
 /// The remark for a lowest mode `printed_hz` that is `divided_hz` with divided tubes, in words that continue a name;
@@ -24,8 +24,8 @@ pub(crate) fn too_high(printed_hz: f64, divided_hz: f64) -> Option<String> {
     let part = (printed_hz - divided_hz) / printed_hz;
     (part > REMARKED).then(|| {
         format!(
-            "lowest mode {} Hz, {} lower than printed, if its tubes are divided at the bodies on them: the weight of a \
-             body, or its inertia about the tube, twists a part of it",
+            "lowest mode {} Hz, {} lower than printed, if its tubes are divided at the bodies on them: the inertia of a \
+             body twists a part of its tube only",
             significant(divided_hz, 4),
             percent(100.0 * part, 1)
         )

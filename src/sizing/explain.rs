@@ -201,8 +201,8 @@ struct Trial<'c> {
 
 impl<'c> DriveTable<'c> {
     /// Why parts were rejected for `demand`. The list has every gear that fails by itself, every gear that passes but
-    /// has no motor that passes with it, every actuator that fails, and every motor that fails with some gear that passes. Gears come first; gears
-    /// and motors are each in the order of the catalog.
+    /// has no motor that passes with it, every actuator that fails, and every motor that fails with some gear that
+    /// passes. Gears come first; gears and motors are each in the order of the catalog.
     pub fn explain(&self, demand: &JointDemand) -> Vec<Rejection> {
         let (mut rejections, trials) = (Vec::new(), self.trials(demand));
         for gear in self.gears() {

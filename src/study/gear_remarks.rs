@@ -20,8 +20,6 @@ use crate::space::station::reaches_m;
 const MOST_NAMES: usize = 4;
 /// Play that moves the tip by less than this fraction of the deflection of every pick is not said.
 const LEAST_SHARE: f64 = 0.02;
-/// Radians in an arc minute.
-const RAD_PER_ARCMIN: f64 = std::f64::consts::PI / 10_800.0;
 
 /// Names of gears, grouped by what is to be said of them, in the order of the first name.
 struct ByWords<W>(Vec<(W, Vec<String>)>);
@@ -131,7 +129,7 @@ impl Play {
 
     /// How far the tip moves from one stop to the other \[mm\], if it moves by `reach_m` \[m\] per radian of the joint.
     fn loose_mm(&self, reach_m: f64) -> f64 {
-        1e3 * reach_m * self.arcmin * RAD_PER_ARCMIN
+        1e3 * reach_m * (self.arcmin / 60.0).to_radians()
     }
 }
 

@@ -48,7 +48,7 @@ impl Estimate {
 }
 
 /// Half of the width of a 95 % interval, in standard deviations.
-const Z_95: f64 = 1.96;
+pub(crate) const Z_95: f64 = 1.96;
 
 /// An effect that was found.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,7 +76,7 @@ impl Finding {
         let is_near = |name: &str, estimate: &Estimate| {
             let Estimate { value, low, high } = *estimate;
             if name.starts_with("stiffness") {
-                // the interval is that of the compliance, whose upper end is 1.96 deviations away
+                // the interval is that of the compliance, whose upper end is Z_95 deviations away
                 return high.is_none() && low.is_none_or(|low| value > (1.0 + Z_95) * low);
             }
             let absent = if name.ends_with("factor") { 1.0 } else { 0.0 };

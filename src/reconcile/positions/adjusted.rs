@@ -6,12 +6,10 @@ use super::dependence::{Dependence, parameter};
 use super::fitted::Fitted;
 use super::kinematics::Number;
 use crate::arm::Arm;
-use crate::reconcile::model::estimate::{Estimate, Finding};
+use crate::reconcile::model::estimate::{Estimate, Finding, Z_95};
 use crate::reconcile::verdict::correct::calibrate;
 use crate::reconcile::verdict::outcome::Calibrated;
 
-/// Half of the width of a 95 % interval, in standard deviations.
-const Z_95: f64 = 1.96;
 /// A zero that moved by more than this many standard deviations of its prior is mentioned.
 const FAR: f64 = 3.0;
 /// A joint whose angles in all poses differ by less than this hardly turns \[rad\].
@@ -43,15 +41,6 @@ impl Positions {
             })
         };
         self.dependences.iter().enumerate().filter_map(of).collect()
-    }
-
-    /// The calibrated factors of the model: name, factor, and standard deviation of its logarithm by the tolerance.
-    pub(super) fn factors(&self) -> impl Iterator<Item = (String, f64, f64)> + '_ {
-        let numbers = self.dependences.iter().zip(&self.fitted.geometry.dependences);
-        numbers.filter_map(|(dependence, x)| match dependence {
-            Dependence::Tolerance(calibration, sd) => Some((calibration.name(), dependence.value(*x), *sd)),
-            Dependence::Effect(..) => None,
-        })
     }
 
     /// Standard deviations of the logarithms of the factors of [`adjusted`](Self::adjusted) by their tolerances.

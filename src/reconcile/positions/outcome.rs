@@ -14,7 +14,7 @@ use crate::arm::effect::entry::Effect;
 use crate::arm::effect::kind::ElasticRotation;
 use crate::reconcile::fit::held_out::{HeldOut, rms};
 use crate::reconcile::fit::noise::Noise;
-use crate::reconcile::model::estimate::{Estimate, Finding};
+use crate::reconcile::model::estimate::{Estimate, Finding, Z_95};
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::components::POSITION;
 use crate::reconcile::readings::rows::PositionRow;
@@ -50,8 +50,8 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let competitors: Vec<Vec<(usize, Fitted)>> =
         (0..found.fitted.effects.len()).map(|i| found.competitors(i)).collect();
     let findings = found.findings(campaign, &competitors);
-    let (verdict, mut reasons) = found.verdict(campaign, &lack_of_fit, &findings);
     let adjusted = found.adjusted(&found.fitted);
+    let (verdict, mut reasons) = found.verdict(campaign, &lack_of_fit, &findings, &adjusted);
     reasons.extend(found.remarks(campaign, &adjusted));
     let next_tests = found.next_tests(campaign, verdict, &lack_of_fit, &competitors);
     // a model that predicts held-out poses far better is useful even if something else is missing
@@ -129,7 +129,13 @@ impl Positions {
         out
     }
 
-    fn verdict(&self, campaign: &Campaign, left: &LackOfFit, findings: &[Finding]) -> (Verdict, Vec<String>) {
+    fn verdict(
+        &self,
+        campaign: &Campaign,
+        left: &LackOfFit,
+        findings: &[Finding],
+        adjusted: &[Calibrated],
+    ) -> (Verdict, Vec<String>) {
         let count = campaign.positions.len();
         if count < FEWEST {
             let text = format!("{count} positions are too few: give at least {FEWEST}");
@@ -148,7 +154,7 @@ impl Positions {
             );
             return (Verdict::InsufficientData, vec![text]);
         }
-        if let Some(text) = caution::impossible_calibration(campaign, self.factors()) {
+        if let Some(text) = caution::impossible_calibration(campaign, self.tolerances(), adjusted) {
             return (Verdict::Unexplained, vec![text]);
         }
         if findings.is_empty() {
@@ -421,7 +427,7 @@ pub(crate) fn located(campaign: &Campaign, residuals: &[ReadingResidual]) -> Vec
 /// deviation is infinite.
 fn within(value: f64, deviation: f64) -> Estimate {
     let end = |by: f64| Some(value + by * deviation).filter(|e| e.is_finite());
-    Estimate { value, low: end(-1.96), high: end(1.96) }
+    Estimate { value, low: end(-Z_95), high: end(Z_95) }
 }
 
 /// Stiffness with its 95 % interval \[N m/rad\], as the reciprocal of a compliance with the standard deviation
@@ -430,8 +436,8 @@ fn stiffness(compliance: f64, deviation: f64) -> Estimate {
     let end = |c: f64| (c > 0.0).then(|| 1.0 / c);
     Estimate {
         value: end(compliance).unwrap_or(1e15),
-        low: end(compliance + 1.96 * deviation),
-        high: end(compliance - 1.96 * deviation),
+        low: end(compliance + Z_95 * deviation),
+        high: end(compliance - Z_95 * deviation),
     }
 }
 

@@ -11,6 +11,7 @@
 //! torque of the load `T_l` comes from a first fit, without the terms of friction.
 
 use super::blocks::Fitted;
+use super::intervals::is_positive;
 use super::reading::Record;
 use super::signals::{JointRows, Sample};
 use super::smooth::{half_width, smooth};
@@ -220,9 +221,4 @@ pub(crate) fn friction(rows: &JointRows, records: &[Record], shift_s: f64) -> Op
         most_viscous_nms_per_rad: largest_nm / fastest.max(1e-12),
         left_share: chosen.squares / fit(&(0..rows.record_count()).collect::<Vec<_>>())?.squares.max(1e-300),
     })
-}
-
-/// Whether the whole interval of the estimate lies above zero.
-pub(crate) fn is_positive(estimate: &Estimate) -> bool {
-    estimate.low.is_some_and(|low| low > 0.0)
 }

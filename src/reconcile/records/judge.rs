@@ -1,13 +1,15 @@
 //! Judges the records of one joint: which effects are found, which are absent, and which the records cannot tell.
 
 use super::blocks::Fitted;
+use super::compliance::{GRAVITY_OR_ERROR, compliance};
 use super::curve::{Curve, Law, TORSION_CURVE, curve};
 use super::finding::{JointRecord, State, Stated, Step, Traced};
-use super::friction::{Friction, friction, is_positive};
+use super::friction::{Friction, friction};
+use super::intervals::{covering, excludes_zero, half, is_positive, widened};
 use super::reading::Record;
 use super::ringing::{joined, swings};
 use super::signals::JointRows;
-use super::twist::{CLEARLY, Group, TwistModel, fill};
+use super::twist::{Group, TwistModel, fill};
 use super::wave::Wave;
 use crate::arm::effect::{hysteresis, lost_motion};
 use crate::reconcile::model::estimate::Estimate;
@@ -18,18 +20,6 @@ const BLOCKS: usize = 30;
 const FEWEST_BLOCKS: usize = 10;
 /// A block of time lasts at least this many times the correlation time of the errors.
 const LONG_BLOCK: f64 = 3.0;
-/// The compliance is identified if at least this fraction of the torque's variance is not explained by the joint's
-/// own acceleration and friction. This remainder is what tells the compliance from rotor inertia and friction. See
-/// also [`WELL_BALANCED`].
-const OWN_SHARE: f64 = 0.1;
-/// A fraction below [`OWN_SHARE`] is also enough if it is at least this many times the fraction of the torque's
-/// variance that the balance of torques leaves unexplained. Friction then follows its formula closely.
-const WELL_BALANCED: f64 = 20.0;
-/// A compliance is not identified if the upper end of its interval is more than this many times the lower end.
-const WIDE: f64 = 5.0;
-/// Smallest half width of the interval of a compliance, as a fraction of the value, because the scale factors of
-/// sensors are not known better.
-const LEAST_PART: f64 = 5e-3;
 /// Smallest half width of an interval of friction, as a fraction of the value, because the friction of a joint is
 /// never constant.
 const LEAST_FRICTION_PART: f64 = 0.01;
@@ -38,17 +28,10 @@ const LEAST_FRICTION_PART: f64 = 0.01;
 const LEAST_LAW_PART: f64 = 0.05;
 /// Smallest half width of the interval of a time shift, as a fraction of the time between rows.
 const LEAST_STEP_PART: f64 = 0.01;
-/// Largest compliance beside a transmission error, as a multiple of the compliance with a rotor without inertia: the rotor has
-/// at most the inertia of its load.
-const MOST_ROTOR: f64 = 2.0;
 /// Approximate number of points of a picture.
 const POINTS: usize = 600;
 /// Smallest range of the joint's angle at which transmission errors once and twice a turn can be told apart \[rad\].
 const TELLING_RANGE_RAD: f64 = 2.0;
-
-/// Why a compliance or a transmission error is not identified where each of them explains the twist by gravity.
-pub(crate) const GRAVITY_OR_ERROR: &str = "the twist by gravity and a transmission error both follow the angle of the joint, and the rotor's inertia is not \
-     stated: the records cannot tell them apart";
 
 /// Judges one joint from all records. `None` if no record has the angles on both sides of its gear, or a fit is
 /// impossible.
@@ -452,143 +435,6 @@ fn error_size(fitted: &Fitted, columns: [usize; 4], low: f64, high: f64, ratio: 
         });
         most - least
     })
-}
-
-/// The estimate `one` with its interval widened to cover that of `other`.
-fn covering(one: Estimate, other: Estimate) -> Estimate {
-    Estimate {
-        value: one.value,
-        low: one.low.zip(other.low).map(|(a, b)| a.min(b)),
-        high: one.high.zip(other.high).map(|(a, b)| a.max(b)),
-    }
-}
-
-fn half(estimate: &Estimate) -> f64 {
-    estimate.high.zip(estimate.low).map_or(0.0, |(high, low)| 0.5 * (high - low))
-}
-
-/// The estimate with its interval widened so that each end is at least `least` away from the value.
-fn widened(estimate: Estimate, least: f64) -> Estimate {
-    Estimate {
-        low: estimate.low.map(|low| low.min(estimate.value - least)),
-        high: estimate.high.map(|high| high.max(estimate.value + least)),
-        ..estimate
-    }
-}
-
-fn excludes_zero(estimate: &Estimate) -> bool {
-    is_positive(estimate) || estimate.high.is_some_and(|h| h < 0.0)
-}
-
-/// Result for the compliance of a joint: whether it is identified, and the stiffness with its interval. `left_share`
-/// is the fraction of the torque's variance that the balance of torques leaves unexplained.
-fn compliance(model: &TwistModel, left_share: f64) -> Stated {
-    const WHAT: &str = "compliance";
-    const NAME: &str = "stiffness_nm_per_rad";
-    if !model.rows.has_torque {
-        return Stated::none(WHAT, State::NotIdentified, "the torque is not recorded");
-    }
-    let share = model.own_share_of_torque();
-    let c = model.fitted.coefficient(model.places.torque());
-    if share < OWN_SHARE.min(WELL_BALANCED * left_share) {
-        let known = if model.rows.rotor_inertia_kgm2.is_none() {
-            " and the rotor's inertia is not stated"
-        } else {
-            ""
-        };
-        let words = format!(
-            "insufficient excitation: {:.0} % of the torque's variance is the joint's own acceleration and friction{known}; \
-             {:.1} % are explained by neither friction nor load, so that compliance cannot be told from them",
-            100.0 * (1.0 - share),
-            100.0 * left_share
-        );
-        let parameters = open(&beside_gear_error(model, c));
-        return Stated { parameters, ..Stated::none(WHAT, State::NotIdentified, words) };
-    }
-    if c.high.is_some_and(|high| high < 0.0) {
-        return Stated::none(WHAT, State::Refused, "the twist falls as the torque grows");
-    }
-    let c = widened(c, LEAST_PART * c.value.abs());
-    let has_error = model.groups.contains(&Group::Output);
-    if model.error_or_gravity.as_ref().is_some_and(|b| b.is_doubtful || (has_error && b.is_held)) {
-        let parameters = open(&beside_gear_error(model, c));
-        return Stated { parameters, ..Stated::none(WHAT, State::NotIdentified, GRAVITY_OR_ERROR) };
-    }
-    let (low, high) = (c.low.unwrap_or(0.0), c.high.unwrap_or(f64::INFINITY));
-    let is_wide = |low: f64, high: f64| low <= 0.0 || high / low > WIDE;
-    if is_wide(low, high) || model.gain(Group::Compliance) < CLEARLY {
-        let words = "the interval of the compliance contains zero or spans a factor of more than 5: the record hardly loads the joint";
-        let parameters = open(&beside_gear_error(model, c));
-        return Stated { parameters, ..Stated::none(WHAT, State::NotIdentified, words) };
-    }
-    let (low, high, mut words) = with_gear_error(model, low, high);
-    let both = beside_gear_error(model, Estimate { value: c.value, low: Some(low), high: Some(high) });
-    let (low, high) = (both.low.unwrap_or(low), both.high.unwrap_or(high));
-    if is_wide(low, high) {
-        let c = Estimate { value: c.value, low: Some(low), high: Some(high) };
-        return Stated { parameters: open(&c), ..Stated::none(WHAT, State::NotIdentified, GRAVITY_OR_ERROR) };
-    }
-    let stiffness = Estimate { value: 1.0 / c.value, low: Some(1.0 / high), high: Some(1.0 / low) };
-    let p = model.places;
-    let plain =
-        model.fit_with(&[p.offsets(), vec![p.torque()]].concat()).map_or(0.0, |f| f.value(p.torque()));
-    if model.groups.contains(&Group::Shift) && plain > 0.0 && plain / c.value > 1.1 {
-        words.push(format!(
-            "without time shift and friction it would come out {:.1} times too soft",
-            plain / c.value
-        ));
-    }
-    Stated::one(WHAT, State::Found, NAME, stiffness, &words.join("; "))
-}
-
-/// The compliance `c` \[rad/(N m)\] of a joint whose compliance is not identified, with its interval widened so that it
-/// covers the fits with and without a transmission error of the output, where the compliance shows without that error.
-fn beside_gear_error(model: &TwistModel, c: Estimate) -> Estimate {
-    let Some(beside) = &model.error_or_gravity else { return c };
-    if !beside.is_doubtful && !model.groups.contains(&Group::Output) {
-        return c;
-    }
-    let torque = model.places.torque();
-    let with = beside.with.coefficient(torque);
-    let mut out = covering(c, with);
-    if beside.shows {
-        out = covering(out, beside.without.coefficient(torque));
-    }
-    if beside.is_held {
-        // without a rotor the compliance is the least; with one of the load's own inertia it is twice that
-        let most = |high: f64| high.max(MOST_ROTOR * with.high.unwrap_or(high));
-        out.high = out.high.map(most);
-    }
-    out
-}
-
-/// The limits `low` and `high` of the compliance \[rad/(N m)\], widened so that they include the value without a
-/// transmission error in the model, and a sentence on it. Gravity and a transmission error both vary with the joint's
-/// angle and are hard to tell apart.
-fn with_gear_error(model: &TwistModel, low: f64, high: f64) -> (f64, f64, Vec<String>) {
-    if !model.groups.contains(&Group::Output) {
-        return (low, high, Vec::new());
-    }
-    let others: Vec<Group> = model.groups.iter().copied().filter(|g| *g != Group::Output).collect();
-    let without = model.fit(&others).map(|f| f.coefficient(model.places.torque()));
-    let Some(c) = without.filter(is_positive) else { return (low, high, Vec::new()) };
-    let words = format!(
-        "{:.3e} Nm/rad without the transmission error, which turns with the joint as gravity does; the interval has both",
-        1.0 / c.value
-    );
-    (low.min(c.low.unwrap_or(low)), high.max(c.high.unwrap_or(high)), vec![words])
-}
-
-/// Stiffness with its interval \[N m/rad\], as a parameter, for a compliance `c` that is not identified. The upper
-/// end is `None` where the compliance may be zero. Empty if the best compliance or its upper end is not positive.
-fn open(c: &Estimate) -> Vec<(String, Vec<Estimate>)> {
-    let stiffness = |c: Option<f64>| c.filter(|c| *c > 0.0).map(|c| 1.0 / c);
-    let Some(low) = stiffness(c.high) else { return Vec::new() };
-    let value = if c.value > 0.0 { 1.0 / c.value } else { f64::MAX };
-    if value == f64::MAX {
-        return Vec::new();
-    }
-    vec![("stiffness_nm_per_rad".into(), vec![Estimate { value, low: Some(low), high: stiffness(c.low) }])]
 }
 
 fn law_stated(curve: &Curve, law: Law, model: &TwistModel) -> Stated {

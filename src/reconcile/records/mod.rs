@@ -7,13 +7,16 @@
 //! - `blocks` fits columns to rows, with intervals and held-out errors by blocks.
 //! - `twist` chooses the terms of the twist, `friction` balances the torques, `curve` looks for torsion laws beyond a
 //!   single compliance, and `ringing` for free vibration.
-//! - `judge` says of each effect whether it is found. [`finding`] defines the results.
+//! - `judge` says of each effect whether it is found, `compliance` of the compliance, by their `intervals`. [`finding`]
+//!   defines the results.
 //! - `outcome` reaches the verdict, and `report` writes it in words and pictures.
 
 pub(crate) mod blocks;
+pub(crate) mod compliance;
 pub(crate) mod curve;
 pub mod finding;
 pub(crate) mod friction;
+pub(crate) mod intervals;
 pub(crate) mod judge;
 pub(crate) mod outcome;
 pub mod reading;

@@ -1,8 +1,9 @@
 //! Verdict from records: named effects, calibrated stiffnesses and the corrected arm.
 
+use super::compliance::GRAVITY_OR_ERROR;
 use super::curve::TORSION_CURVE;
 use super::finding::{JointRecord, State, Stated};
-use super::judge::{GRAVITY_OR_ERROR, judge};
+use super::judge::judge;
 use super::twist::Group;
 use crate::arm::effect::entry::Effect;
 use crate::arm::effect::kind::Place;

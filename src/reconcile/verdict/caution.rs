@@ -103,17 +103,10 @@ pub(crate) fn beyond_tolerance(
     deviations: impl Iterator<Item = f64>,
     calibrated: &[Calibrated],
 ) -> Option<String> {
-    let beyond = deviations.zip(calibrated).filter_map(|(sd, calibrated)| {
-        let (part, tolerance) = (calibrated.factor.value - 1.0, TOLERANCE * sd);
-        let one_in = honest_parts_for_one(libm::log(calibrated.factor.value) / sd);
-        let words = format!(
-            "{} by {:+.1} % (tolerance {:.1} %; {})",
-            calibrated.name,
-            100.0 * part,
-            100.0 * tolerance,
-            rarity_words(one_in)
-        );
-        (part.abs() > tolerance).then_some((one_in, words))
+    let beyond = deviations.zip(calibrated).filter_map(|(sd, of)| {
+        let one_in = one_in(sd, of);
+        let words = format!("{}; {})", departure_words(sd, of), rarity_words(one_in));
+        ((of.factor.value - 1.0).abs() > TOLERANCE * sd).then_some((one_in, words))
     });
     let (rarity, beyond): (Vec<f64>, Vec<String>) = beyond.unzip();
     let doubt = match rarity.iter().any(|one_in| *one_in > RARE) {
@@ -127,17 +120,14 @@ pub(crate) fn beyond_tolerance(
 }
 
 /// Sentence that calibration explains the readings only with a factor that no faultless part has; `None` if there is no
-/// such factor. `numbers` has the name of each factor, the factor, and the standard deviation of its logarithm by the
-/// tolerance.
+/// such factor. `deviations` are the standard deviations of the logarithms of the factors by their tolerances.
 pub(crate) fn impossible_calibration(
     campaign: &Campaign,
-    numbers: impl Iterator<Item = (String, f64, f64)>,
+    deviations: impl Iterator<Item = f64>,
+    calibrated: &[Calibrated],
 ) -> Option<String> {
-    let impossible =
-        numbers.filter(|(_, factor, sd)| honest_parts_for_one(libm::log(*factor) / sd) > IMPOSSIBLE);
-    let words = impossible.map(|(name, factor, sd)| {
-        format!("{name} by {:+.1} % (tolerance {:.1} %)", 100.0 * (factor - 1.0), 100.0 * TOLERANCE * sd)
-    });
+    let impossible = deviations.zip(calibrated).filter(|(sd, of)| one_in(*sd, of) > IMPOSSIBLE);
+    let words = impossible.map(|(sd, of)| format!("{})", departure_words(sd, of)));
     let words: Vec<String> = words.collect();
     if words.is_empty() {
         return None;
@@ -152,6 +142,19 @@ pub(crate) fn impossible_calibration(
          part is another than the arm file says, something else deflects or has mass there{stated}",
         words.join(", ")
     ))
+}
+
+/// A calibrated factor, its departure from nominal and its tolerance, in words with an open bracket. `sd` is the standard
+/// deviation of its logarithm by the tolerance.
+fn departure_words(sd: f64, of: &Calibrated) -> String {
+    let (part, tolerance) = (of.factor.value - 1.0, TOLERANCE * sd);
+    format!("{} by {:+.1} % (tolerance {:.1} %", of.name, 100.0 * part, 100.0 * tolerance)
+}
+
+/// The number n such that one in n faultless parts departs from nominal as far as a calibrated factor. `sd` is the standard
+/// deviation of its logarithm by the tolerance.
+fn one_in(sd: f64, of: &Calibrated) -> f64 {
+    honest_parts_for_one(libm::log(of.factor.value) / sd)
 }
 
 /// Largest number of honest parts that is printed. Beyond it, the normal distribution says nothing about parts.

@@ -4,7 +4,7 @@ use super::outcome::{Calibrated, Law};
 use crate::arm::effect::empirical::KIND;
 use crate::reconcile::fit::descent::Fit;
 use crate::reconcile::fit::interval::deviations;
-use crate::reconcile::model::estimate::{Estimate, Finding, Interval};
+use crate::reconcile::model::estimate::{Estimate, Finding, Interval, Z_95};
 use crate::reconcile::model::fitted_parameters::fitted_parameters;
 use crate::reconcile::select::empirical;
 
@@ -43,6 +43,11 @@ pub(crate) fn laws(fit: &Fit, findings: &[Finding]) -> Vec<Law> {
         .collect()
 }
 
+/// Standard deviations of the logarithms of the calibrated factors by their tolerances, in the order of [`calibrated`].
+pub(crate) fn tolerances<'f>(fit: &'f Fit<'f>) -> impl Iterator<Item = f64> + 'f {
+    fit.model.nuisance.numbers.iter().map(|(_, sd)| *sd)
+}
+
 /// The calibrated factors of the model `fit` on nominal values, with 95 % intervals, and how much of the tolerance of
 /// each the readings leave.
 pub(crate) fn calibrated(fit: &Fit) -> Vec<Calibrated> {
@@ -56,8 +61,8 @@ pub(crate) fn calibrated(fit: &Fit) -> Vec<Calibrated> {
                 name: calibration.name(),
                 factor: Estimate {
                     value: factor(u),
-                    low: Some(factor(u - 1.96 * sd)),
-                    high: Some(factor(u + 1.96 * sd)),
+                    low: Some(factor(u - Z_95 * sd)),
+                    high: Some(factor(u + Z_95 * sd)),
                 },
                 learnt: sd,
             }

@@ -1,14 +1,12 @@
 //! The law of an arm that is out of level: the weight of every payload pulls in another direction than stated.
 
-use super::{Builder, Law};
+use super::{Builder, FULL_ANGLE_DEG, Law};
 use crate::reconcile::forward::prepared::Forward;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
 /// Angle over which the readings are compared \[rad\].
 const STEP_RAD: f64 = 2e-3;
-/// The angle that counts as the full size of the law \[rad\]: 30 degrees.
-const FULL_SIZE_RAD: f64 = std::f64::consts::FRAC_PI_6;
 
 impl Builder<'_> {
     /// The law that gravity is turned about both horizontal axes.
@@ -22,14 +20,15 @@ impl Builder<'_> {
     }
 
     /// For each horizontal axis of the world, the change of every reading of the nominal arm, in its unit, per full
-    /// size of the angle. Frequencies do not depend on the direction of gravity to first order, and the arm's own
-    /// weight deflects it in the reference of every reading too.
+    /// size of the angle. Frequencies depend on the direction of gravity through the gears' curves alone, and the arm's own
+    /// weight deflects it in the reference of every reading too. Both are left out.
     fn level_columns(&self) -> Vec<Vec<f64>> {
         let stated = self.static_readings_with(Vector3::zeros());
         let column = |axis: Vector3<f64>| {
             let turned = self.static_readings_with(axis);
-            let change = turned.iter().zip(&stated).map(|(turned, stated)| (turned - stated) / STEP_RAD);
-            let mut column: Vec<f64> = change.map(|per_rad| FULL_SIZE_RAD * per_rad).collect();
+            let per_step = FULL_ANGLE_DEG.to_radians() / STEP_RAD;
+            let change = turned.iter().zip(&stated).map(|(turned, stated)| per_step * (turned - stated));
+            let mut column: Vec<f64> = change.collect();
             column.resize(self.forward.data.len(), 0.0);
             column
         };

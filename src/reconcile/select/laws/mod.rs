@@ -22,6 +22,9 @@ use nalgebra::DVector;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
+/// The angle that counts as the full size of a law of an angle \[deg\].
+const FULL_ANGLE_DEG: f64 = 30.0;
+
 /// A law without a name: a way in which readings can differ from the model.
 pub(crate) struct Law {
     /// Description of the law in words.

@@ -1,14 +1,12 @@
 //! Laws of joint angles whose zero is off: every pose of the campaign is another one than stated.
 
-use super::{Builder, Law};
+use super::{Builder, FULL_ANGLE_DEG, Law};
 use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::prepared::Forward;
 use rayon::prelude::*;
 
 /// Angle over which the readings are compared \[deg\].
 const STEP_DEG: f64 = 0.1;
-/// The angle that counts as the full size of the law \[deg\].
-const FULL_SIZE_DEG: f64 = 30.0;
 
 impl Builder<'_> {
     /// For each driven joint, the law that its angle is another than stated, by the same amount in every pose.
@@ -29,7 +27,7 @@ impl Builder<'_> {
     fn zero_columns(&self, joints: usize) -> Vec<Vec<f64>> {
         let nominal = self.forward.coefficients(&self.forward.nominal);
         let stated = self.readings_turned_by(0, 0.0, &nominal);
-        let per_step = FULL_SIZE_DEG / STEP_DEG;
+        let per_step = FULL_ANGLE_DEG / STEP_DEG;
         let column = |index: usize| {
             let turned = self.readings_turned_by(index, STEP_DEG, &nominal);
             turned.iter().zip(&stated).map(|(turned, stated)| per_step * (turned - stated)).collect()

@@ -1,0 +1,36 @@
+//! Intervals of estimates: whether they exclude zero, and how they are widened.
+
+use crate::reconcile::model::estimate::Estimate;
+
+/// Whether the whole interval of the estimate lies above zero.
+pub(super) fn is_positive(estimate: &Estimate) -> bool {
+    estimate.low.is_some_and(|low| low > 0.0)
+}
+
+/// The estimate `one` with its interval widened to cover that of `other`.
+pub(super) fn covering(one: Estimate, other: Estimate) -> Estimate {
+    Estimate {
+        value: one.value,
+        low: one.low.zip(other.low).map(|(a, b)| a.min(b)),
+        high: one.high.zip(other.high).map(|(a, b)| a.max(b)),
+    }
+}
+
+/// Half of the width of the interval; 0 if an end is open.
+pub(super) fn half(estimate: &Estimate) -> f64 {
+    estimate.high.zip(estimate.low).map_or(0.0, |(high, low)| 0.5 * (high - low))
+}
+
+/// The estimate with its interval widened so that each end is at least `least` away from the value.
+pub(super) fn widened(estimate: Estimate, least: f64) -> Estimate {
+    Estimate {
+        low: estimate.low.map(|low| low.min(estimate.value - least)),
+        high: estimate.high.map(|high| high.max(estimate.value + least)),
+        ..estimate
+    }
+}
+
+/// Whether the whole interval lies on one side of zero.
+pub(super) fn excludes_zero(estimate: &Estimate) -> bool {
+    is_positive(estimate) || estimate.high.is_some_and(|h| h < 0.0)
+}
