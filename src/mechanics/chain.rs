@@ -4,6 +4,7 @@
 //! bodies with their inertia.
 
 use super::beam::{PreparedBeam, pull_on};
+use super::hanging::{Deflections, screw};
 use super::{Twist, Wrench, body_inertia, force_wrench, rotation_twist, stack};
 use crate::arm::LinkModel;
 use crate::arm::base_lift::BaseLift;
@@ -212,7 +213,19 @@ impl Chain {
     /// Puts the arm into a pose given in radians (metres for prismatic joints), with a payload and a force at the tip
     /// \[N\].
     pub fn pose_rad(&self, pose_rad: &[f64], payload: &Payload, tip_force_n: Vector3<f64>) -> Posed<'_> {
-        let mut walk = self.walk(pose_rad, self.spring_loads(pose_rad));
+        self.pose_with(pose_rad, payload, tip_force_n, Deflections::default())
+    }
+
+    /// The same, with the deflections `deflections` of the elements.
+    pub(crate) fn pose_with(
+        &self,
+        pose_rad: &[f64],
+        payload: &Payload,
+        tip_force_n: Vector3<f64>,
+        deflections: Deflections,
+    ) -> Posed<'_> {
+        let springs = self.spring_loads(pose_rad, &deflections);
+        let mut walk = self.walk(pose_rad, springs, deflections);
         // the payload is the last body, so every element moves it
         walk.items.push(Item::Body(self.payload_body(payload, &walk)));
         Posed {
@@ -226,14 +239,15 @@ impl Chain {
     }
 
     /// Walks from base to tip and collects the elements and bodies. `springs` are the forces of the springs, which are
-    /// inserted on the way.
-    fn walk(&self, pose_rad: &[f64], springs: Vec<EndLoad>) -> Walk {
+    /// inserted on the way, and `deflections` those of the elements.
+    fn walk(&self, pose_rad: &[f64], springs: Vec<EndLoad>, deflections: Deflections) -> Walk {
         let mut walk = Walk {
             items: Vec::new(),
             at_m: Vector3::zeros(),
             rotation: Rotation3::identity(),
             gravity: (self.gravity_m_s2, self.down),
             springs,
+            deflections,
             frames: Vec::with_capacity(self.pieces.len()),
         };
         if self.base_tilt_rad_per_nm > 0.0 {
@@ -257,17 +271,17 @@ impl Chain {
 
     /// Forces of the springs on the arm in a pose. The forces depend on the positions of the springs' ends, so a first
     /// walk from base to tip without springs finds these positions.
-    fn spring_loads(&self, pose_rad: &[f64]) -> Vec<EndLoad> {
+    fn spring_loads(&self, pose_rad: &[f64], deflections: &Deflections) -> Vec<EndLoad> {
         match self.springs.is_empty() {
             true => Vec::new(),
-            false => end_loads(&self.springs, &self.walk(pose_rad, Vec::new()).frames),
+            false => end_loads(&self.springs, &self.walk(pose_rad, Vec::new(), deflections.clone()).frames),
         }
     }
 
     /// The springs in the pose `pose_rad` \[rad, m\], each with its name. Springs whose ends are not in the chain are
     /// left out.
     pub fn springs_in(&self, pose_rad: &[f64]) -> Vec<(&str, Drawn)> {
-        let frames = self.walk(pose_rad, Vec::new()).frames;
+        let frames = self.walk(pose_rad, Vec::new(), Deflections::default()).frames;
         let drawn = |spring: &'_ Spring| spring.drawn(&frames);
         self.springs.iter().filter_map(|spring| Some((spring.name.as_str(), drawn(spring)?))).collect()
     }
@@ -312,6 +326,8 @@ pub(super) struct Walk {
     gravity: (f64, Vector3<f64>),
     /// Forces that the springs put on the arm.
     springs: Vec<EndLoad>,
+    /// Deflections of the elements; none in the undeflected pose.
+    deflections: Deflections,
     /// Position and attitude of each piece passed so far.
     pub(super) frames: Vec<ElementFrame>,
 }
@@ -325,14 +341,14 @@ impl Walk {
         self.load(Side::Fixed(index));
         let axis = self.rotation * joint.axis;
         self.bearing(joint);
-        self.items.push(Item::Elastic(ElasticElement {
+        self.elastic(ElasticElement {
             name: joint.name.clone(),
             at_m: self.at_m,
             twists: vec![rotation_twist(&axis, &self.at_m)],
             compliance: Compliance::Joint(joint.law.at_angle(angle_rad)),
             torque_nm: joint.torque.at(angle_rad),
             own: None,
-        }));
+        });
         self.rotation *= Rotation3::from_axis_angle(&joint.axis, angle_rad);
         self.bodies(&joint.bodies.rotating);
         self.load(Side::Moving(index));
@@ -347,9 +363,7 @@ impl Walk {
         let vector = self.rotation * link.vector_m;
         self.point_mass(link.point_mass_kg, self.at_m + vector / 2.0);
         let end_m = self.at_m + vector;
-        if let Some(beam) = beam {
-            self.items.push(Item::Elastic(self.beam_element(piece, link, beam, &end_m)));
-        }
+        let element = beam.map(|beam| self.beam_element(piece, link, beam, &end_m));
         // bodies on a tube are part of its beam, where each moves with a point of the axis; here only those on a
         // rigid offset are added
         if link.beam.is_none() {
@@ -358,6 +372,18 @@ impl Walk {
         }
         self.frames.push(ElementFrame { at_m: self.at_m, rotation: self.rotation, hinge: None });
         self.at_m = end_m;
+        if let Some(element) = element {
+            self.elastic(element);
+        }
+    }
+
+    /// Adds an elastic element. If the arm is walked as it hangs, the deflection of the element then moves the frame
+    /// that the walk has reached.
+    pub(super) fn elastic(&mut self, element: ElasticElement) {
+        if let Some(motion) = self.deflections.motion_of_next(&element.twists) {
+            screw(&motion, &mut self.at_m, &mut self.rotation);
+        }
+        self.items.push(Item::Elastic(element));
     }
 
     /// The elastic element of a link. `piece` is the index of the link in the chain, and its end is at `end_m` in the
@@ -423,27 +449,27 @@ impl Walk {
         if axes.is_empty() {
             return;
         }
-        self.items.push(Item::Elastic(ElasticElement {
+        self.elastic(ElasticElement {
             name,
             at_m: self.at_m,
             twists: axes.iter().map(|axis| rotation_twist(axis, &self.at_m)).collect(),
             compliance: Compliance::Linear(compliances),
             torque_nm: 0.0,
             own: None,
-        }));
+        });
     }
 
     /// Adds the feet of a base that can lift off, which tilt about world x and y; nothing for `None`.
     fn lift(&mut self, lift: Option<BaseLift>) {
         let Some(lift) = lift else { return };
-        self.items.push(Item::Elastic(ElasticElement {
+        self.elastic(ElasticElement {
             name: base_lift::KIND.name.into(),
             at_m: self.at_m,
             twists: [Vector3::x(), Vector3::y()].map(|axis| rotation_twist(&axis, &self.at_m)).to_vec(),
             compliance: Compliance::Lift(lift),
             torque_nm: 0.0,
             own: None,
-        }));
+        });
     }
 
     /// Adds the springs of a compliant frame at the position that the walk has reached; nothing if the frame is rigid.
@@ -453,14 +479,14 @@ impl Walk {
             return;
         }
         let turn = |axis: &Vector3<f64>| rotation_twist(&(self.rotation * axis), &self.at_m);
-        self.items.push(Item::Elastic(ElasticElement {
+        self.elastic(ElasticElement {
             name: format!("{name}.frame_compliance"),
             at_m: self.at_m,
             twists: axes.iter().map(turn).collect(),
             compliance: Compliance::Linear(compliances),
             torque_nm: 0.0,
             own: None,
-        }));
+        });
     }
 
     /// Adds rigid bodies. Their centres of gravity are given from the position that the walk has reached, in the

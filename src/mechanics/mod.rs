@@ -12,7 +12,7 @@
 //!   inertia and each pair of twists. The compliance matrix `C` is diagonal, and `C^½ M C^½ ψ = ψ/ω²`.
 //! - Response (`response`; F(t) of Eq 16): the sum of the modes under a harmonic force at the tip.
 //!
-//! `centre_line` turns strain coordinates into the displacement of points of the arm, for drawings. `condensed`,
+//! `hanging` repeats the statics in the deflected pose, for large displacements. `centre_line` turns strain coordinates into the displacement of points of the arm, for drawings. `condensed`,
 //! `lowest` and `lowest_lanes` are the fast computation of the lowest mode that the search uses.
 //!
 //! Twists and wrenches are taken about the world's origin. A twist is `(v, ω)`, where `v` is the velocity of that
@@ -22,6 +22,7 @@ pub(crate) mod beam;
 pub(crate) mod centre_line;
 pub(crate) mod chain;
 pub(crate) mod condensed;
+pub(crate) mod hanging;
 pub(crate) mod lanes;
 pub(crate) mod linkage;
 pub(crate) mod lowest;

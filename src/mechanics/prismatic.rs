@@ -7,7 +7,7 @@
 //! the carriage; if a ram moves, it stays where the joint begins.
 
 use super::beam::section_frame;
-use super::chain::{Compliance, ElasticElement, Item, Walk};
+use super::chain::{Compliance, ElasticElement, Walk};
 use super::{Wrench, angular, linear, rotation_twist, stack};
 use crate::arm::prismatic::{Moves, PrismaticPiece};
 use crate::arm::springs::{ElementFrame, Side};
@@ -52,22 +52,22 @@ impl Walk {
             Moves::Carriage => moved_m,
             Moves::Ram => self.at_m,
         };
+        self.at_m = moved_m;
         if !joint.guide_is_rigid() {
-            self.items.push(Item::Elastic(guide(joint, &frame, &springs_m)));
+            self.elastic(guide(joint, &frame, &springs_m));
         }
-        self.items.push(Item::Elastic(ElasticElement {
+        self.elastic(ElasticElement {
             name: joint.name.clone(),
             at_m: springs_m,
             twists: vec![stack(&frame.column(0).into(), &Vector3::zeros())],
             compliance: Compliance::Slide { m_per_n: joint.m_per_n, frame },
             torque_nm: 0.0,
             own: None,
-        }));
-        self.at_m = moved_m;
-        self.point_mass(joint.mass_kg, moved_m);
+        });
+        self.point_mass(joint.mass_kg, self.at_m);
         self.bodies(&joint.bodies.rotating);
         // a spring that is attached to this joint acts on the part that travels
-        self.frames.push(ElementFrame { at_m: moved_m, rotation: self.rotation, hinge: None });
+        self.frames.push(ElementFrame { at_m: self.at_m, rotation: self.rotation, hinge: None });
         self.load(Side::Moving(index));
     }
 }

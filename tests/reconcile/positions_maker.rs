@@ -67,6 +67,33 @@ impl Made {
         self.truth(pose_rad, Truths { sag: true, ..Truths::default() })
     }
 
+    /// Joints yield by finite angles, until springs and weights are in equilibrium in the pose in which the arm hangs.
+    pub fn hanging(&self, pose_rad: &[f64; 3], _row: usize) -> Truth {
+        let mut yielded_rad = [0.0; 3];
+        let mut tip = Vector3::zeros();
+        for _ in 0..60 {
+            let (mut joints, mut bodies) = (Vec::new(), Vec::new());
+            let (mut at, mut rotation) = (Vector3::zeros(), Rotation3::identity());
+            for j in 0..3 {
+                let axis = Unit::new_normalize(Vector3::from(AXES[j]));
+                joints.push((rotation * axis.into_inner(), at));
+                rotation *= Rotation3::from_axis_angle(&axis, pose_rad[j] + ZEROS_RAD[j] + yielded_rad[j]);
+                let link = rotation * Vector3::from(LINKS_M[j]);
+                bodies.push((MASSES_KG[j], at + link / 2.0));
+                at += link;
+            }
+            tip = at + rotation * Vector3::from(TOOL_M);
+            for (j, (axis, pivot)) in joints.into_iter().enumerate() {
+                let weights = bodies[j..].iter();
+                let torque_nm: f64 = weights
+                    .map(|(m, cg)| axis.dot(&(cg - pivot).cross(&(-Vector3::z() * GRAVITY_M_S2 * *m))))
+                    .sum();
+                yielded_rad[j] = torque_nm / STIFFNESS_NM_PER_RAD[j];
+            }
+        }
+        Truth { position_m: askew() * tip + Vector3::new(1.0, -2.0, 0.5) }
+    }
+
     /// Joints yield, and the base leans.
     pub fn leaning(&self, pose_rad: &[f64; 3], _row: usize) -> Truth {
         self.truth(pose_rad, Truths { sag: true, lean_rad: 0.12, ..Truths::default() })
@@ -154,8 +181,7 @@ impl Made {
         }
         let moment: Vector3<f64> = bodies.iter().map(|(m, cg)| cg.cross(&(down * *m))).sum();
         sag += (truths.base_rad_per_nm * moment).cross(&point);
-        let askew = Rotation3::from_euler_angles(0.3, -0.2, 2.1);
-        Truth { position_m: askew * (point + sag) + Vector3::new(1.0, -2.0, 0.5) }
+        Truth { position_m: askew() * (point + sag) + Vector3::new(1.0, -2.0, 0.5) }
     }
 
     /// A campaign folder of a truth whose rows were taken configuration by configuration: first all in which the third joint
@@ -202,6 +228,11 @@ impl Made {
         write("campaign.json", statement.to_string());
         folder
     }
+}
+
+/// How the arm stands in the frame of the instrument.
+fn askew() -> Rotation3<f64> {
+    Rotation3::from_euler_angles(0.3, -0.2, 2.1)
 }
 
 fn arm() -> Value {

@@ -121,9 +121,7 @@ impl<'a> Exact<'a> {
             let pose_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
             let pose_rad = self.subject.turned_rad(&pose_rad);
             let payload = seen_from_tool(&self.subject.payload(&row.payload), &tool_m);
-            let posed = chain.pose_rad(&pose_rad, &payload, Vector3::zeros());
-            let own = posed.tip_m + posed.statics().tip_displacement_m;
-            let at = stand.rotation * own + stand.origin_m;
+            let at = stand.rotation * chain.hanging_tip_m(&pose_rad, &payload) + stand.origin_m;
             out.push(std::array::from_fn(|c| reading.of(1e3 * at[c], c, row.row)));
         }
         out

@@ -289,6 +289,7 @@ impl Positions {
             }
             sample.deflection = Arc::new(deflection);
         });
+        self.hang(campaign);
     }
 
     /// Adds a row for the current model to the table of position errors. `added` and `dropped` name the effects or
@@ -368,6 +369,7 @@ pub(super) fn samples(
                 precision: precision(&row.measured),
                 deflection: Arc::new(loads.deflection(row, point)),
                 nominal_m: Vec::new(),
+                second_order_m: Vector3::zeros(),
             }
         })
         .collect()

@@ -32,6 +32,9 @@ pub(crate) struct Sample {
     pub deflection: Arc<Deflection>,
     /// Change of the known deflection per unit of each dependence of it, in the level frame \[m\].
     pub nominal_m: Vec<Vector3<f64>>,
+    /// What the linear displacement by the whole model lacks, in the level frame \[m\]. It is that of the model before the
+    /// present fit.
+    pub second_order_m: Vector3<f64>,
 }
 
 impl Sample {
@@ -129,13 +132,14 @@ impl Fitted {
     }
 
     /// Displacement of the measured point of a sample by gravity, in the level frame \[m\]: the known deflection,
-    /// plus the deflection by the effects of the model.
+    /// plus the deflection by the effects of the model, plus what the linear statics lack.
     pub(crate) fn displacement(&self, sample: &Sample) -> Vector3<f64> {
         let gravity = &self.geometry.gravity;
         let [by_x, by_y] = &sample.deflection.known_slopes_m;
         let dependent = self.geometry.dependences.iter().zip(&sample.nominal_m);
         let known_m = dependent.fold(sample.deflection.known_m, |sum, (x, by)| sum + by * *x);
-        known_m + by_x * gravity.x + by_y * gravity.y + self.displaced_m(sample, gravity)
+        let linear_m = known_m + by_x * gravity.x + by_y * gravity.y + self.displaced_m(sample, gravity);
+        linear_m + sample.second_order_m
     }
 
     /// How far the effects of the model let the measured point of a sample move under gravity along the direction

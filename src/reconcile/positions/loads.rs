@@ -19,6 +19,7 @@ use crate::arm::structure::{FrameCompliance, Piece, Structure};
 use crate::arm::{Arm, JointModel, LinkModel};
 use crate::mechanics::chain::Chain;
 use crate::mechanics::chain::{Item, Posed};
+use crate::mechanics::hanging::hanging_tip_m;
 use crate::mechanics::{Twist, angular, displacement_at, linear};
 use crate::reconcile::model::exact::{seen_from_tool, with_tool};
 use crate::reconcile::readings::campaign::Campaign;
@@ -327,6 +328,23 @@ impl<'a> Loads<'a> {
         let mut known = own.pose(&own.known, &self.tree.pose_of(row.arm, &pose_rad), &row.payload);
         self.load_trunk(&mut known, self.trunk[1], row, &pose_rad);
         known.statics().tip_displacement_m
+    }
+
+    /// What the linear displacement of [`known_m`](Self::known_m) lacks: displacement of the point as the arm hangs, with
+    /// the levers of the deflected pose, less the linear one \[m\]. The bodies of other arms stay where they are without
+    /// deflection.
+    pub(crate) fn second_order_m(&self, row: &PositionRow, point: usize) -> Vector3<f64> {
+        let pose_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
+        let own = &self.ready[row.arm][point];
+        let own_rad = self.tree.pose_of(row.arm, &pose_rad);
+        let payload = seen_from_tool(&row.payload, &own.point_m);
+        let hanging_m = hanging_tip_m(|deflections| {
+            let mut posed = own.known.pose_with(&own_rad, &payload, Vector3::zeros(), deflections);
+            self.load_trunk(&mut posed, self.trunk[1], row, &pose_rad);
+            posed
+        });
+        let straight_m = own.pose(&own.known, &own_rad, &row.payload).tip_m;
+        hanging_m - straight_m - self.known_m(row, point)
     }
 
     /// Adds the bodies of the other arms to the trunk of a posed arm. Their weight deflects the trunk and so moves

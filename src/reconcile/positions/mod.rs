@@ -8,6 +8,7 @@
 //! - [`analysis`] is the whole analysis. `sessions` finds sessions, `boundary` judges each boundary between two of them
 //!   (`moved`), and `standing` finds where the arm stands in each session. `search` finds compliances,
 //!   `nominal` stiffnesses, moduli and masses other than stated (`dependence`), and `transmission` joints with a transmission error.
+//!   `second_order` is what the linear displacement lacks.
 //! - `setups` brings the positions of several campaigns into one frame.
 //! - `conventions` asks whether the file was written by another convention, `structure` tests the errors that are left,
 //!   `next_test` proposes what to measure, and [`outcome`] reaches the verdict.
@@ -34,6 +35,7 @@ pub(crate) mod points;
 pub(crate) mod predict;
 pub(crate) mod rows;
 pub(crate) mod search;
+pub(crate) mod second_order;
 pub(crate) mod sessions;
 pub(crate) mod setups;
 pub(crate) mod springs;

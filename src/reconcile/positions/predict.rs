@@ -8,6 +8,7 @@ use crate::arm::effect::subject::Subject;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::placement::Placed;
 use crate::reconcile::readings::placement::Stand;
+use crate::reconcile::readings::rows::PositionRow;
 use nalgebra::Rotation3;
 use rayon::prelude::*;
 
@@ -31,8 +32,10 @@ pub(crate) fn predicted_mm(mut campaign: Campaign, arms: &[Placed], subjects: &[
         }
     }
     let loads = Loads::new(&campaign, &tree, &geometry, &[]);
+    let displaced_m =
+        |row: &PositionRow, point: usize| loads.known_m(row, point) + loads.second_order_m(row, point);
     let known_m: Vec<_> =
-        campaign.positions.par_iter().zip(&points).map(|(row, &point)| loads.known_m(row, point)).collect();
+        campaign.positions.par_iter().zip(&points).map(|(row, &point)| displaced_m(row, point)).collect();
     let rows = campaign.positions.iter().zip(&points).zip(known_m);
     rows.enumerate()
         .map(|(i, ((row, &point), known_m))| {

@@ -10,7 +10,7 @@ use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::placement::{
     Placement, Session, Stand, pose_mark, test_numbers, tests_in_order,
 };
-use nalgebra::Rotation3;
+use nalgebra::{Rotation3, Vector3};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -122,6 +122,7 @@ impl Positions {
             .map(|(sample, row)| {
                 let mut out = sample.clone();
                 out.deflection = Arc::new(Deflection::known(shown.displacement(sample)));
+                out.second_order_m = Vector3::zeros();
                 out.point = named.iter().position(|p| *p == Point::of(row)).unwrap_or_default();
                 out.station = 0;
                 out

@@ -1,0 +1,226 @@
+//! The arm as it hangs: statics about the deflected pose, with large displacements.
+//!
+//! [`Posed::statics`] is linear about the undeflected pose. In truth each element turns everything outboard of it by a
+//! finite angle, and the loads then act with the levers of the deflected pose. Both change the displacement by terms of
+//! the order of `δ²/L`, with `δ` the displacement and `L` the reach: 0.03 mm if a reach of 1 m deflects by 5 mm, which is
+//! more than a laser tracker's error.
+//!
+//! The arm is walked from base to tip, and each element moves everything outboard by the screw motion (exponential) of
+//! its deflection. Statics in this pose give new deflections, until the tip rests. For a link this is exact in the
+//! rotation of its end. It shortens a cantilever with a load at its end by `δ²/L` times 0.75, where the exact factor is
+//! 0.6 (elastica to second order).
+
+use super::chain::{Chain, Posed};
+use super::{Twist, angular, displacement_at};
+use crate::arm::load::Payload;
+use nalgebra::{DVector, Rotation3, Vector3};
+
+/// Largest number of times that the statics are repeated in the pose of the last deflections.
+const MOST_ROUNDS: usize = 20;
+/// The tip rests if it moves by less than this from one round to the next \[m\].
+const RESTS_M: f64 = 1e-9;
+/// Of a displacement below this size the terms of second order are below 1e-8 m, and left out \[m\].
+const SMALL_M: f64 = 1e-4;
+
+/// The deflections that a walk from base to tip applies to the arm.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Deflections {
+    /// The strain coordinates of all elements, base to tip, those of passive joints with what their linkages add.
+    strains: Vec<f64>,
+    /// Number of strain coordinates that have been applied.
+    next: usize,
+}
+
+impl Deflections {
+    /// The motion of everything outboard of the next element, whose twists are `twists`; `None` in the undeflected pose.
+    pub(super) fn motion_of_next(&mut self, twists: &[Twist]) -> Option<Twist> {
+        if self.strains.is_empty() {
+            return None;
+        }
+        let own = self.strains.get(self.next..self.next + twists.len())?;
+        self.next += twists.len();
+        Some(twists.iter().zip(own).map(|(twist, strain)| twist * *strain).sum())
+    }
+}
+
+impl Chain {
+    /// Position of the tip of the arm as it hangs in the pose `pose_rad` \[rad, m\] under gravity, with a payload, in the
+    /// world \[m\].
+    pub(crate) fn hanging_tip_m(&self, pose_rad: &[f64], payload: &Payload) -> Vector3<f64> {
+        hanging_tip_m(|deflections| self.pose_with(pose_rad, payload, Vector3::zeros(), deflections))
+    }
+}
+
+/// Position of the tip of an arm as it hangs, in the world \[m\]. `posed` puts the arm into its pose, with its loads and
+/// with the deflections that it is given. If the deflections do not settle, because the arm would buckle or turn over,
+/// the position is that of the linear statics.
+pub(crate) fn hanging_tip_m<'a>(posed: impl Fn(Deflections) -> Posed<'a>) -> Vector3<f64> {
+    let straight = posed(Deflections::default());
+    let statics = straight.statics();
+    let linear_m = straight.tip_m + statics.tip_displacement_m;
+    if statics.tip_displacement_m.norm() < SMALL_M {
+        return linear_m;
+    }
+    let mut hanging = straight;
+    for _ in 0..MOST_ROUNDS {
+        let next = posed(hanging.deflections());
+        let moved_m = (next.tip_m - hanging.tip_m).norm();
+        hanging = next;
+        if moved_m < RESTS_M {
+            return hanging.tip_m;
+        }
+    }
+    linear_m
+}
+
+impl Posed<'_> {
+    /// The deflections of all elements under weight and load, in this pose.
+    fn deflections(&self) -> Deflections {
+        let strains: Vec<f64> = self.statics().deformations.into_iter().flatten().collect();
+        Deflections { strains: self.with_passive(&DVector::from_vec(strains)).as_slice().to_vec(), next: 0 }
+    }
+}
+
+/// Moves a frame at `at_m` with the attitude `rotation` by the screw motion of the twist `motion` (Murray, Li and Sastry,
+/// A Mathematical Introduction to Robotic Manipulation, eq. 2.36).
+pub(super) fn screw(motion: &Twist, at_m: &mut Vector3<f64>, rotation: &mut Rotation3<f64>) {
+    let turn = angular(motion);
+    let angle_rad = turn.norm();
+    let by_m = displacement_at(motion, at_m);
+    *at_m += match angle_rad > 0.0 {
+        true => {
+            // the velocity at the frame turns with it: its integral over the motion
+            let cross = turn.cross_matrix() / angle_rad;
+            let (sin, cos) = (libm::sin(angle_rad), libm::cos(angle_rad));
+            by_m + cross * by_m * ((1.0 - cos) / angle_rad) + cross * cross * by_m * (1.0 - sin / angle_rad)
+        }
+        false => by_m,
+    };
+    *rotation = Rotation3::from_scaled_axis(turn) * *rotation;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::file::read_arm_document;
+    use crate::arm::{JointModel, LinkModel};
+    use crate::catalog::Catalogs;
+    use crate::input::Document;
+
+    /// The prepared arm of the text of an arm file.
+    fn chain(text: &str) -> Chain {
+        let document = Document::parse("arm.json", text).expect("JSON");
+        let arm = read_arm_document(document, &Catalogs::default()).expect("a sound arm");
+        Chain::new(&arm.structure(JointModel::ThreeSegment), LinkModel::Full)
+    }
+
+    fn payload(mass_kg: f64) -> Payload {
+        Payload { mass_kg, ..Payload::default() }
+    }
+
+    #[test]
+    fn a_lever_hangs_where_its_spring_balances_the_turned_load() {
+        let chain = chain(
+            r#"{"gravity_m_s2": 9.81, "chain": [
+            {"type": "joint", "name": "j1", "axis": [0, 1, 0], "stiffness_nm_per_rad": 2000},
+            {"type": "link", "name": "arm", "vector_m": [1, 0, 0]}]}"#,
+        );
+        for above_deg in [-60.0f64, 0.0, 30.0, 45.0] {
+            let above_rad = above_deg.to_radians();
+            let tip_m = chain.hanging_tip_m(&[-above_rad], &payload(10.0));
+            let mut turned_rad: f64 = 0.0;
+            for _ in 0..200 {
+                turned_rad = 98.1 / 2000.0 * (above_rad - turned_rad).cos();
+            }
+            let (sin, cos) = (above_rad - turned_rad).sin_cos();
+            assert!((tip_m - Vector3::new(cos, 0.0, sin)).norm() < 1e-8, "{above_deg}: {tip_m}");
+        }
+    }
+
+    /// Joints about three axes with bearings that tilt, on a base that tilts: the tip is where the energy of springs and
+    /// weight is smallest, found by Newton's method on the energy alone.
+    #[test]
+    fn an_arm_hangs_where_its_energy_is_smallest() {
+        let chain = chain(
+            r#"{"gravity_m_s2": 9.81, "chain": [
+            {"type": "joint", "name": "j1", "axis": [0, 0, 1], "stiffness_nm_per_rad": 3000, "mass_kg": 4},
+            {"type": "link", "name": "post", "vector_m": [0.1, 0, 0.4]},
+            {"type": "joint", "name": "j2", "axis": [0, 1, 0], "stiffness_nm_per_rad": 5000, "mass_kg": 3},
+            {"type": "link", "name": "arm", "vector_m": [0.5, 0, 0]},
+            {"type": "joint", "name": "j3", "axis": [1, 0, 0], "stiffness_nm_per_rad": 2000, "mass_kg": 2},
+            {"type": "link", "name": "hand", "vector_m": [0.3, 0.2, 0]}]}"#,
+        );
+        let (pose_rad, stiffness) = ([0.3, -0.4, 0.5], [3000.0, 5000.0, 2000.0]);
+        let place = |q: &Vector3<f64>| {
+            let turn =
+                |axis: Vector3<f64>, j: usize| Rotation3::from_scaled_axis(axis * (pose_rad[j] + q[j]));
+            let first = turn(Vector3::z(), 0);
+            let elbow_m = first * Vector3::new(0.1, 0.0, 0.4);
+            let second = first * turn(Vector3::y(), 1);
+            let wrist_m = elbow_m + second * Vector3::new(0.5, 0.0, 0.0);
+            let tip_m = wrist_m + second * turn(Vector3::x(), 2) * Vector3::new(0.3, 0.2, 0.0);
+            (elbow_m, wrist_m, tip_m)
+        };
+        let energy = |q: &Vector3<f64>| {
+            let (elbow_m, wrist_m, tip_m) = place(q);
+            let springs: f64 = (0..3).map(|j| 0.5 * stiffness[j] * q[j] * q[j]).sum();
+            springs + 9.81 * (3.0 * elbow_m.z + 2.0 * wrist_m.z + 8.0 * tip_m.z)
+        };
+        let slope = |q: &Vector3<f64>| {
+            let h = 1e-5;
+            Vector3::from_fn(|j, _| {
+                let by = Vector3::ith(j, h);
+                (energy(&(q + by)) - energy(&(q - by))) / (2.0 * h)
+            })
+        };
+        let mut q = Vector3::zeros();
+        for _ in 0..200 {
+            // the springs are far stiffer than the weight, so that their stiffness alone leads down
+            q -= slope(&q).component_div(&Vector3::from(stiffness));
+        }
+        let tip_m = chain.hanging_tip_m(&pose_rad, &payload(8.0));
+        let linear_m = {
+            let posed = chain.pose_rad(&pose_rad, &payload(8.0), Vector3::zeros());
+            posed.tip_m + posed.statics().tip_displacement_m
+        };
+        assert!((tip_m - place(&q).2).norm() < 2e-7, "{tip_m} {}", place(&q).2);
+        assert!((linear_m - tip_m).norm() > 1e-4, "the linear displacement is far from it");
+    }
+
+    /// The elastica (Bisshopp and Drucker 1945): a cantilever with a load at its end, P L²/(E I) = 0.25 sinks by 0.0831 of
+    /// its length and shortens by 0.6 of the square of this.
+    #[test]
+    fn a_cantilever_that_bends_far_shortens_nearly_as_the_elastica() {
+        let chain = chain(
+            r#"{"gravity_m_s2": 9.81, "chain": [
+            {"type": "link", "name": "arm", "vector_m": [1, 0, 0],
+             "section": {"shape": "round_tube", "diameter_m": 0.02, "wall_m": 0.002},
+             "material": {"youngs_modulus_pa": 7e10, "shear_modulus_pa": 2.6e10, "density_kg_m3": 1e-6}}]}"#,
+        );
+        let area_m4 = std::f64::consts::PI / 64.0 * (0.02f64.powi(4) - 0.016f64.powi(4));
+        let mass_kg = 0.25 * 7e10 * area_m4 / 9.81;
+        let tip_m = chain.hanging_tip_m(&[], &payload(mass_kg));
+        assert!((tip_m.z + 0.0831).abs() < 4e-4, "{tip_m}");
+        let shortened_m = 1.0 - tip_m.x;
+        assert!((shortened_m / (0.6 * 0.0831f64.powi(2)) - 1.0).abs() < 0.3, "{shortened_m}");
+    }
+
+    #[test]
+    fn what_a_linkage_keeps_level_stays_level_as_the_arm_hangs() {
+        let chain = chain(
+            r#"{"gravity_m_s2": 9.81, "chain": [
+            {"type": "joint", "name": "shoulder", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e4},
+            {"type": "link", "name": "arm", "vector_m": [0.6, 0, 0]},
+            {"type": "joint", "name": "wrist", "axis": [0, 1, 0], "stiffness_nm_per_rad": null,
+             "coupled": {"shoulder": -1}},
+            {"type": "link", "name": "hand", "vector_m": [0.2, 0, 0]}]}"#,
+        );
+        let mut turned_rad: f64 = 0.0;
+        for _ in 0..100 {
+            turned_rad = 40.0 * 9.81 * 0.6 * turned_rad.cos() / 1e4;
+        }
+        let tip_m = chain.hanging_tip_m(&[0.0], &payload(40.0));
+        let (sin, cos) = turned_rad.sin_cos();
+        assert!((tip_m - Vector3::new(0.6 * cos + 0.2, 0.0, -0.6 * sin)).norm() < 1e-8, "{tip_m}");
+    }
+}

@@ -1,0 +1,59 @@
+//! What the linear displacement lacks, because the arm deflects so far that the levers of its loads change.
+//!
+//! Compliances are fitted with a displacement that is linear in them. An arm that deflects by 5 mm at a reach of 1 m is
+//! 0.03 mm from where this puts it, which is more than the error of a laser tracker, and changes with the angles of the
+//! joints as a transmission error does. So the displacement of the fitted arm as it hangs is computed too. Its difference
+//! from the linear one is small and hardly changes with the compliances: it is kept while they are fitted, and computed
+//! again after that.
+
+use super::analysis::Positions;
+use super::loads::{CompliantPlace, Loads};
+use super::springs::frame_matrix;
+use crate::arm::effect::entry::Effect;
+use crate::arm::effect::kind::ElasticRotation;
+use crate::arm::effect::subject::Subject;
+use crate::reconcile::readings::campaign::Campaign;
+use rayon::prelude::*;
+
+impl Positions {
+    /// Computes for each sample what its linear displacement lacks, with the effects of the present fit.
+    pub(super) fn hang(&mut self, campaign: &Campaign) {
+        let fitted = &self.fitted;
+        let named = fitted.effects.iter().zip(&fitted.compliances);
+        let effects: Vec<Effect> =
+            named.filter_map(|(&c, compliances)| self.candidates[c].as_effect(compliances)).collect();
+        let change = |subject: &mut Subject| {
+            let dependent = self.dependences.iter().zip(&fitted.geometry.dependences);
+            dependent.for_each(|(dependence, x)| dependence.change(*x, subject));
+            effects.iter().for_each(|effect| subject.apply(effect));
+        };
+        let loads = Loads::changed(campaign, &self.tree, &fitted.geometry, &[], &change);
+        let samples = self.samples.par_iter_mut().zip(&campaign.positions);
+        samples.for_each(|(sample, row)| sample.second_order_m = loads.second_order_m(row, sample.point));
+    }
+}
+
+impl CompliantPlace {
+    /// The candidate as an effect of an arm, with the compliances `compliances` \[rad/(N m)\], or the half width of its
+    /// play \[rad\]. `None` if it does not deflect.
+    fn as_effect(&self, compliances: &[f64]) -> Option<Effect> {
+        let first = *compliances.first()?;
+        let list = |name: &str, values: Vec<f64>| (name.to_string(), values);
+        let parameters = match (self.play_nm, self.rotation) {
+            (Some(torque_nm), _) => {
+                vec![list("half_width_rad", vec![first]), list("torque_nm", vec![torque_nm])]
+            }
+            (None, ElasticRotation::Frame) => {
+                let matrix = frame_matrix(compliances);
+                let entries = |of: [(usize, usize); 3]| of.map(|at| matrix[at]).to_vec();
+                vec![
+                    list("diagonal_rad_per_nm", entries([(0, 0), (1, 1), (2, 2)])),
+                    list("coupling_rad_per_nm", entries([(0, 1), (0, 2), (1, 2)])),
+                ]
+            }
+            (None, _) if first > 0.0 => vec![list("stiffness_nm_per_rad", vec![1.0 / first])],
+            (None, _) => return None,
+        };
+        Some(Effect { effect: self.effect.into(), at: self.at.clone(), parameters, source: None })
+    }
+}
