@@ -9,7 +9,7 @@ use crate::report::number::fixed;
 use crate::report::whole_file::folder_of;
 use crate::report::words::{TERMINAL, wrap};
 use crate::study::arm_capacity::{arm_capacity, has_rated_bearings};
-use crate::study::capacity::{Capacity, capacity_of};
+use crate::study::capacity::{AtPose, Capacity, capacity_of};
 use crate::study::load::load_study;
 use crate::study::load_limits::{example, limits_of_parts, read_limits};
 use crate::study::window::{Limit, Window};
@@ -61,7 +61,11 @@ pub(super) fn run(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Fa
         return Err(Failure::Usage(words.into()));
     }
     let (study, _) = load_study(&args.study, catalogs)?;
-    Ok(said(args, &study.name, &capacity_of(&study, args.design.as_deref(), catalogs)?, &study.remarks))
+    let name = match &args.design {
+        Some(id) => format!("{}, design {id},", study.name),
+        None => study.name.clone(),
+    };
+    Ok(said(args, &name, &capacity_of(&study, args.design.as_deref(), catalogs)?, &study.remarks))
 }
 
 /// The capacity as text or JSON, with the remarks that a reader should know.
@@ -79,6 +83,9 @@ fn said(args: &CapacityArgs, name: &str, found: &Capacity, remarks: &[String]) -
 
 /// The remark on the capacity of an arm file that says what is checked and what is not.
 const AT_REST: &str = "Judged are torques, forces and output bearings at rest, as far as their limits are known. Motion, heat and strength are not checked.";
+
+/// The remark on the capacity of an arm file without `--cases`.
+const ONE_POSE: &str = "Asked is one pose only, with every joint at zero and the payload at the tip: give your poses with --cases FILE.";
 
 /// Whether the file at `path` is an arm file. It then has a chain and, in contrast to a study file, no poses.
 fn is_arm_file(path: &str) -> bool {
@@ -117,7 +124,9 @@ fn of_arm(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Failure> {
             example(&arm)
         )));
     }
-    Ok(said(args, &arm.name, &arm_capacity(&arm, &cases, &limits), &[AT_REST.to_string()]))
+    let mut remarks = vec![AT_REST.to_string()];
+    remarks.extend(args.cases.is_none().then(|| ONE_POSE.to_string()));
+    Ok(said(args, &arm.name, &arm_capacity(&arm, &cases, &limits), &remarks))
 }
 
 /// The largest payload of a window in words.
@@ -187,39 +196,37 @@ fn headline(name: &str, found: &Capacity) -> String {
 
 fn to_text(name: &str, found: &Capacity) -> String {
     let mut out = headline(name, found);
-    let _ =
-        writeln!(out, "\n{:>8}  {:>10}  {:<14}  {:<22}  pose", "reach m", "payload kg", "ends at", "check");
-    for at in &found.table {
+    let ends = found.table.iter().map(|at| {
         let end = if at.window.holds() { &at.window.most } else { &at.window.least };
-        let _ = writeln!(
-            out,
-            "{:>8}  {:>10}  {:<14}  {:<22}  {}",
-            fixed(at.reach_m, 3),
-            kilograms(&at.window),
-            end.piece,
-            end.check,
-            at.pose
-        );
-    }
-    let needy: Vec<_> = found.table.iter().filter(|at| at.window.least.payload_kg > 0.0).collect();
-    if !needy.is_empty() {
-        let _ = writeln!(
-            out,
-            "\n{:>8}  {:>10}  {:<14}  {:<22}  pose",
-            "reach m", "least kg", "begins at", "check"
-        );
-    }
-    for at in needy {
+        (at, kilograms(&at.window), end)
+    });
+    out.push_str(&table(["payload kg", "ends at"], &ends.collect::<Vec<_>>()));
+    let needy = found.table.iter().filter(|at| at.window.least.payload_kg > 0.0).map(|at| {
         let least = &at.window.least;
         let least_kg = if at.window.holds() { fixed(least.payload_kg, 3) } else { "none".into() };
+        (at, least_kg, least)
+    });
+    let needy: Vec<_> = needy.collect();
+    if !needy.is_empty() {
+        out.push_str(&table(["least kg", "begins at"], &needy));
+    }
+    out
+}
+
+/// A table of the poses: the payload at one end of its window in words, and what fails beyond it.
+fn table([payload, end]: [&str; 2], rows: &[(&AtPose, String, &Limit)]) -> String {
+    let widest = |head: &str, of: fn(&Limit) -> &str| {
+        let widths = rows.iter().map(|(_, _, limit)| of(limit).chars().count());
+        widths.max().unwrap_or_default().max(head.len())
+    };
+    let (at, what) = (widest(end, |limit| &limit.piece), widest("check", |limit| &limit.check));
+    let mut out = format!("\n{:>8}  {payload:>10}  {end:<at$}  {:<what$}  pose\n", "reach m", "check");
+    for (pose, kg, limit) in rows {
+        let reach = fixed(pose.reach_m, 3);
         let _ = writeln!(
             out,
-            "{:>8}  {:>10}  {:<14}  {:<22}  {}",
-            fixed(at.reach_m, 3),
-            least_kg,
-            least.piece,
-            least.check,
-            at.pose
+            "{reach:>8}  {kg:>10}  {:<at$}  {:<what$}  {}",
+            limit.piece, limit.check, pose.pose
         );
     }
     out

@@ -1,7 +1,7 @@
 //! The results of an arm in one load case (torques, tip displacement, modes and response) as JSON and as text.
 
 use super::divided::{divided_lowest_hz, too_high};
-use super::number::percent;
+use super::number::{percent, shortest};
 use super::pose::pose_words;
 use super::small_displacement::too_far;
 use super::springs::{spring_json, springs_in, springs_text};
@@ -10,7 +10,8 @@ use crate::arm::extras::Extras;
 use crate::arm::load::LoadCase;
 use crate::arm::pose::any_slides;
 use crate::arm::springs::Drawn;
-use crate::arm::{Arm, Bearing, Element, LinkModel};
+use crate::arm::structure::{JointAngle, JointPiece};
+use crate::arm::{Arm, Bearing, Element, JointModel, LinkModel};
 use crate::mechanics::chain::Chain;
 use crate::mechanics::modes::Mode;
 use crate::mechanics::prismatic::GuideLoad;
@@ -30,6 +31,21 @@ pub struct Harmonic {
     pub damping: f64,
     /// Frequencies at which the response is computed \[Hz\].
     pub frequencies_hz: Vec<f64>,
+}
+
+/// The load of a case in words: `payload 3 kg`, with force and moment at the tip if there are any.
+fn load_words(case: &LoadCase) -> String {
+    let axes = |v: &Vector3<f64>| v.iter().map(|x| shortest(*x)).collect::<Vec<_>>().join(", ");
+    let payload = match case.payload.mass_kg {
+        0.0 => "no payload".to_string(),
+        kg => format!("payload {} kg", shortest(kg)),
+    };
+    let with = |what: &str, v: &Vector3<f64>, unit: &str| {
+        (v.norm() > 0.0).then(|| format!(", {what} ({}) {unit} at the tip", axes(v)))
+    };
+    let force = with("force", &case.tip_force_n, "N").unwrap_or_default();
+    let moment = with("moment", &case.tip_moment_nm, "N m").unwrap_or_default();
+    payload + &force + &moment
 }
 
 /// The results of an arm in one load case.
@@ -232,7 +248,8 @@ impl Analysis {
             true => pose_words(&driven, &self.case.pose_deg),
             false => format!("{:?} deg", self.case.pose_deg),
         };
-        let mut out = format!("{}, case \"{}\": pose {pose}\n", arm.name, self.case.name);
+        let mut out =
+            format!("{}, case \"{}\": pose {pose}, {}\n", arm.name, self.case.name, load_words(&self.case));
         self.mass_and_tip_text(arm, &mut out);
         if !self.unbent.is_empty() {
             let _ = writeln!(out, "  ignored, because links are held rigid: {}", self.unbent.join(", "));
@@ -333,9 +350,23 @@ impl Analysis {
     }
 }
 
-/// Adds remarks on the joints: bodies with an inertia that no solid can have, bearings that count as rigid, and joints
-/// for which the file states no masses in addition to gear, motor and bearing.
+/// Whether a joint does not turn under its torque, and no linkage turns it either.
+fn is_rigid(joint: &JointPiece) -> bool {
+    joint.law.is_rigid() && matches!(joint.angle, JointAngle::Driven(_))
+}
+
+/// Adds remarks on the joints: those without torsion, bodies with an inertia that no solid can have, bearings that count
+/// as rigid, and joints for which the file states no masses in addition to gear, motor and bearing.
 fn joints_remarks_text(arm: &Arm, out: &mut String) {
+    let structure = arm.structure(JointModel::ThreeSegment);
+    let stiff: Vec<&str> = structure.joints().filter(|j| is_rigid(j)).map(|j| j.name.as_str()).collect();
+    if !stiff.is_empty() {
+        let _ = writeln!(
+            out,
+            "  rigid about their axes, as in the file (a real joint lets the tip deflect further): {}",
+            stiff.join(", ")
+        );
+    }
     let impossible = arm.impossible_bodies();
     if !impossible.is_empty() {
         let _ = writeln!(

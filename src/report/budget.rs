@@ -283,7 +283,9 @@ fn bounds_table(budgets: &[PickBudget]) -> Option<Table> {
     (!table.rows().is_empty()).then_some(table)
 }
 
-const BOUND_WORDS: &str = "Lower bound: no arm of this study that is as stiff and has as high a lowest mode weighs less. \
+const BOUND_WORDS: &str = "Lower bound: no arm of this study that is as stiff and has as high a lowest mode weighs less. It is \
+                           proved without visiting designs and may be far too low: where the search is complete, no \
+                           design as good as a pick weighs less than the pick itself. \
                            Mixture: the mass if parts could be blended between catalog options.";
 const OPPOSED_WORDS: &str = "* Loads may oppose each other, which weakens the bound.";
 const IN_PLACE_WORDS: &str = "Changes per kilogram added to a piece whose stiffness grows in proportion; a negative number \

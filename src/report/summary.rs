@@ -115,7 +115,10 @@ pub fn terminal_summary(input: &SummaryInput) -> String {
     let mut out = wrap(&format!("{}: {}", facts.study, facts.question), TERMINAL, "");
     out.push_str(&format!("\n{}", wrap(&answer(input, &found), TERMINAL, "")));
     if !found.picks.is_empty() {
-        out.push_str(&format!("\n{}", small_plots(&found.designs)));
+        // one point makes no plot
+        if found.designs.len() > 1 {
+            out.push_str(&format!("\n{}", small_plots(&found.designs)));
+        }
         out.push_str(&format!("\n{}", picks_table(&found.picks, TERMINAL_PICKS).to_text()));
         let tightest = tightest_words(&input.overall, &found.picks);
         if !tightest.is_empty() {
@@ -211,7 +214,30 @@ fn answer(input: &SummaryInput, found: &Found) -> String {
         }
         _ => String::new(),
     };
-    format!("{caution}{} {}", winners(input, found), compromise(input, found, knee))
+    match found.picks.as_slice() {
+        [only] if found.designs.len() == 1 => format!("{caution}{}", only_design(input, only)),
+        _ => format!("{caution}{} {}", winners(input, found), compromise(input, found, knee)),
+    }
+}
+
+/// The only design of a front: what is achieved with which parts, and how near the drives are to their limits.
+fn only_design(input: &SummaryInput, only: &Pick) -> String {
+    let amounts =
+        [Objective::Mass, Objective::Deflection, Objective::Mode].map(|o| o.amount(o.of(&only.design)));
+    let how_many = match input.facts.designs_total {
+        1 => "The study has one design, and it meets every requirement",
+        _ => "One design is at least as good as every other in all three objectives",
+    };
+    let choices = marked_choices(&input.overall, only.design.row, &input.facts.caveats);
+    let parts = if choices.is_empty() { String::new() } else { format!(" It has {}.", choices.join("; ")) };
+    let margin = tightest_check(&input.overall, only.design.row).map_or(String::new(), |tightest| {
+        let TightestCheck { joint, check, margin } = tightest;
+        format!(
+            " Of the checks that were made, the tightest is {check} at {joint}: {} times what is needed is allowed.",
+            fixed(margin, 3)
+        )
+    });
+    format!("{how_many}: {}.{parts}{margin}", amounts.join(", "))
 }
 
 /// The materials with the best value of each objective: `A gives the lightest arm (31 kg); B the stiffest (0.8 mm)
@@ -395,8 +421,9 @@ fn counts(facts: &SummaryFacts) -> String {
         );
     }
     format!(
-        "{} designs: {} evaluated, {} excluded by a limit; search {}.",
+        "{} {}: {} evaluated, {} excluded by a limit; search {}.",
         grouped(facts.designs_total),
+        if facts.designs_total == 1 { "design" } else { "designs" },
         grouped(facts.designs_evaluated),
         grouped(facts.designs_excluded),
         facts.status

@@ -13,7 +13,9 @@ use super::definition::Study;
 use super::refusal::Refusal;
 use super::window::{Overload, Window, window_around};
 use crate::catalog::Catalogs;
+use crate::report::number::{fixed, significant};
 use crate::space::design_space::{DesignSpace, SpacePiece};
+use crate::space::full_model::full_objectives;
 use crate::space::problem::ArmProblem;
 use crate::space::station::Walk;
 use nalgebra::Vector3;
@@ -122,7 +124,55 @@ fn capacity(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], own: &[us
         window: window(&[case], &[case]),
     };
     let table = loaded.iter().map(at_pose).collect();
+    remarks.extend(limits_remark(space, catalogs, options, own));
     Capacity::new(window(&space.sizing_cases, &loaded), table, remarks)
+}
+
+/// Up to which payload the design with these options meets the study's limits on deflection and lowest mode in the judged
+/// cases, as a sentence; `None` if the study has no such limits. Drives that hold a payload do not care for them. The
+/// cases with the indices `own` keep their payload, unless all cases have one.
+fn limits_remark(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], own: &[usize]) -> Option<String> {
+    let limits = &space.constraints;
+    let [deflection, mode] = [limits.tip_deflection_max_m.is_some(), limits.required_mode_hz() > 0.0];
+    if !deflection && !mode {
+        return None;
+    }
+    let keeps_own = |case: &usize| own.contains(case) && own.len() < space.cases.len();
+    let varied: Vec<usize> = (0..space.cases.len()).filter(|case| !keeps_own(case)).collect();
+    let breaks = |payload_kg: f64| {
+        let mut loaded = space.clone();
+        varied.iter().for_each(|&case| loaded.cases[case].payload.mass_kg = payload_kg);
+        let problem = ArmProblem::new(&loaded, catalogs);
+        let objectives = full_objectives(&problem.arm(options)?, &problem.load_cases());
+        let [too_far, _, too_low] = limits.broken(&objectives);
+        let check = match too_far {
+            true => format!(
+                "the tip deflects by more than {} mm",
+                significant(1e3 * limits.tip_deflection_max_m.unwrap_or_default(), 4)
+            ),
+            false => format!("the lowest mode falls below {} Hz", significant(limits.required_mode_hz(), 4)),
+        };
+        (too_far || too_low).then(|| Overload { piece: "tip".into(), check })
+    };
+    let stated_kg = varied.iter().map(|&case| space.cases[case].payload.mass_kg).fold(0.0, f64::max);
+    let judged = "Judged are drives, output bearings and the stress in links.";
+    Some(match breaks(stated_kg) {
+        Some(broken) => format!(
+            "{judged} The limits of the study are not met even at {} kg: {} in a judged pose.",
+            fixed(stated_kg, 3),
+            broken.check
+        ),
+        None => match window_around(stated_kg, &breaks).most {
+            most if most.payload_kg.is_finite() => format!(
+                "{judged} The limits of the study are met up to {} kg: with more, {} in a judged pose.",
+                fixed(most.payload_kg, 3),
+                most.check
+            ),
+            _ => format!(
+                "{judged} The limits of the study on deflection and lowest mode are met by any payload."
+            ),
+        },
+    })
 }
 
 /// The payloads that hold in the cases with the indices `cases`, by bisection from the payload that the study states.

@@ -36,6 +36,22 @@ pub struct CorrectedStudy {
     pub corrections: Vec<Correction>,
 }
 
+/// The effects that every design of the study has, in a sentence; `None` if there are none. Effects of a test do not
+/// change the arm and are left out.
+pub(super) fn effects_remark(space: &DesignSpace) -> Option<String> {
+    let of_arm = space.effects.iter().filter(|effect| !effect.is_of_test());
+    let words: Vec<String> = of_arm.map(in_words).collect();
+    (!words.is_empty())
+        .then(|| format!("In every number: the effects that the study states, {}.", words.join("; ")))
+}
+
+/// An effect with its numbers: `connection_compliance at elbow (stiffness_nm_per_rad 58070)`.
+fn in_words(effect: &Effect) -> String {
+    let numbers = |list: &[f64]| list.iter().map(|x| significant(*x, 4)).collect::<Vec<_>>().join(", ");
+    let parameters = effect.parameters.iter().map(|(name, list)| format!("{name} {}", numbers(list)));
+    format!("{} ({})", effect.label(), parameters.collect::<Vec<_>>().join("; "))
+}
+
 /// Records a fault for each effect that is not possible in the study.
 pub(super) fn check_effects(space: &DesignSpace, root: &Object) -> Option<()> {
     let Some(node) = root.optional("effects") else { return Some(()) };

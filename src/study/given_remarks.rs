@@ -1,4 +1,5 @@
-//! Remarks on given drives that are too weak for some designs of a front. They are printed with the front.
+//! Remarks on given drives that are too weak for some designs of a front, or of which a check cannot be made. They are
+//! printed with the front.
 
 use crate::catalog::Catalogs;
 use crate::sizing::check::{Check, CheckState};
@@ -13,6 +14,8 @@ struct Overloaded {
     designs: usize,
     /// For each kind of check that the drive fails, the check with the smallest margin over the designs.
     worst: Vec<Check>,
+    /// The checks that cannot be made because a rating is blank, in words.
+    open: Vec<String>,
 }
 
 impl Overloaded {
@@ -21,6 +24,13 @@ impl Overloaded {
     fn take(&mut self, row: &JointSizingRow) {
         let fails = row.checks.iter().filter(|c| c.state == CheckState::Fails && !c.kind.is_bearing());
         let fails: Vec<&Check> = fails.collect();
+        let is_open = |c: &&Check| matches!(c.state, CheckState::NotChecked(_)) && !c.holds();
+        let open = row.checks.iter().filter(is_open).filter(|c| !c.kind.is_bearing());
+        for words in open.map(with_part) {
+            if !self.open.contains(&words) {
+                self.open.push(words);
+            }
+        }
         self.designs += usize::from(!fails.is_empty());
         for check in fails {
             let margin = |check: &Check| check.margin().unwrap_or(0.0);
@@ -55,7 +65,13 @@ impl GivenDrives {
     pub(crate) fn of(problem: &ArmProblem, catalogs: &Catalogs) -> Self {
         let given = problem.space().pieces.iter().enumerate().filter_map(|(piece, what)| {
             let drive = problem.fixed_drive(piece, catalogs)?.drive.name();
-            Some(Overloaded { joint: what.name().to_string(), drive, designs: 0, worst: Vec::new() })
+            Some(Overloaded {
+                joint: what.name().to_string(),
+                drive,
+                designs: 0,
+                worst: Vec::new(),
+                open: Vec::new(),
+            })
         });
         Self(given.collect())
     }
@@ -69,8 +85,28 @@ impl GivenDrives {
         }
     }
 
-    /// A sentence for each given drive that fails checks in some of the `designs` designs of a front.
+    /// A sentence for each given drive that fails checks in some of the `designs` designs of a front, and one on the checks
+    /// that cannot be made.
     pub(crate) fn remarks(&self, designs: usize) -> Vec<String> {
-        self.0.iter().filter_map(|drive| drive.sentence(designs)).collect()
+        let too_weak = self.0.iter().filter_map(|drive| drive.sentence(designs));
+        too_weak.chain(self.open_sentence()).collect()
+    }
+
+    /// The checks of given drives that cannot be made, with the joints; `None` if all can.
+    fn open_sentence(&self) -> Option<String> {
+        let mut joints: Vec<(&str, Vec<&str>)> = Vec::new();
+        for drive in &self.0 {
+            for words in &drive.open {
+                match joints.iter_mut().find(|(known, _)| known == words) {
+                    Some((_, names)) => names.push(&drive.joint),
+                    None => joints.push((words, vec![&drive.joint])),
+                }
+            }
+        }
+        let listed: Vec<String> =
+            joints.iter().map(|(words, names)| format!("{}: {words}", names.join(", "))).collect();
+        (!listed.is_empty()).then(|| {
+            format!("Checks of given drives that the catalog does not allow: {}.", listed.join("; "))
+        })
     }
 }

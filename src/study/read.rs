@@ -11,7 +11,7 @@ use super::connections::{connections_remark, with_connections};
 use super::creep::creep_remarks;
 use super::definition::Study;
 use super::drives::{Drives, read_drives};
-use super::effects::check_effects;
+use super::effects::{check_effects, effects_remark};
 use super::fit::{fit_remarks, read_fit};
 use super::harness::{harness_effects, harness_remark};
 use super::keys::{CONSTRAINTS, JOINT, LINK, MODELS, STUDY};
@@ -144,6 +144,7 @@ fn read_study_name(node: &Node) -> Option<String> {
 /// Remarks that follow from the whole design space, for the reader of the result.
 fn remarks_on(space: &DesignSpace, harness_kg_per_m: f64, catalogs: &Catalogs) -> Vec<String> {
     let mut out = Vec::new();
+    out.extend(effects_remark(space));
     out.extend(connections_remark(space));
     out.extend(harness_remark(space, harness_kg_per_m));
     out.extend(ramp_remark(&space.motion));

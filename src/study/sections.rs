@@ -299,8 +299,7 @@ fn without_section(materials: &[&Material], sections: &Sections, link: &str) -> 
     })
 }
 
-/// A remark on the links that the material cost leaves out: those whose tube the study gives. `None` if there are none, or
-/// if no tube is chosen.
+/// A remark on the links that the material cost leaves out: those whose tube the study gives. `None` if there are none.
 pub(super) fn cost_remark(space: &DesignSpace) -> Option<String> {
     let chooses = space.pieces.iter().any(|piece| matches!(piece, SpacePiece::Choice(_)));
     let given_tube = |piece: &SpacePiece| match piece {
@@ -308,9 +307,10 @@ pub(super) fn cost_remark(space: &DesignSpace) -> Option<String> {
         _ => None,
     };
     let given: Vec<String> = space.pieces.iter().filter_map(given_tube).collect();
-    (chooses && !given.is_empty()).then(|| {
+    let none = if chooses { "" } else { ", and no tube is chosen" };
+    (!given.is_empty()).then(|| {
         format!(
-            "Material cost is that of the tubes that are chosen: the given tube of {} is not in it.",
+            "Material cost is that of the tubes that are chosen: the given tube of {} is not in it{none}.",
             given.join(", ")
         )
     })

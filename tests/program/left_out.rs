@@ -80,8 +80,8 @@ fn the_size_of_what_is_left_out_is_that_of_the_table() {
     let (_, said) = armwright(here.path(), &["run", "study.json", "--out", "out"]);
     let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
     let sentence = format!(
-        "How much this may be: all starred rows of docs/left-out.md together, connections and cables among them, add {} to {} % to the \
-         deflection and {} to {} % to the mass, and take {} to {} % from the lowest mode, on the knees",
+        "the starred rows of docs/left-out.md together add {} to {} % to the deflection and {} to {} % to the mass, and take {} to {} % \
+         from the lowest mode.",
         tip[0], tip[1], mass[0], mass[1], mode[0], mode[1]
     );
     assert!(said.contains(&sentence), "{sentence}: {said}");
@@ -106,6 +106,14 @@ fn a_study_that_states_connections_or_cables_is_not_told_their_size_again() {
         let said = of(key, value);
         assert!(said.contains("How much each of these may be: docs/left-out.md."), "{key}: {said}");
         assert!(!said.contains("starred rows"), "{key}: {said}");
+        if key == "effects" {
+            assert!(
+                said.contains("between links and joints (except at shoulder, where the study states it)"),
+                "{said}"
+            );
+            let stated = "the effects that the study states, connection_compliance at shoulder (stiffness_nm_per_rad 100000)";
+            assert!(said.contains(stated), "{said}");
+        }
     }
     assert!(of("gravity_m_s2", json!(9.81)).contains("starred rows"), "nothing stated");
 }
