@@ -42,6 +42,8 @@ pub struct Forward {
     pub(crate) zero_columns: OnceLock<Vec<Vec<f64>>>,
     /// For each horizontal axis, the change of every reading by an arm that is out of level; empty until it is asked for.
     pub(crate) level_columns: OnceLock<Vec<Vec<f64>>>,
+    /// For each link, the change of every reading by a length other than drawn; empty until it is asked for.
+    pub(crate) length_columns: OnceLock<Vec<Vec<f64>>>,
     /// Whether some static or modal reading has a temperature.
     pub has_temperatures: bool,
 }
@@ -78,6 +80,7 @@ impl Forward {
             payload_density_kg_m3: campaign.statement.payload_density_kg_m3,
             zero_columns: OnceLock::new(),
             level_columns: OnceLock::new(),
+            length_columns: OnceLock::new(),
             has_temperatures: campaign.statics.iter().any(|r| r.temperature_c.is_some())
                 || campaign.modal.iter().any(|r| r.temperature_c.is_some()),
             largest_payload_kg: payloads_kg.iter().copied().fold(0.0, f64::max),
@@ -110,6 +113,7 @@ impl Forward {
     pub fn find_missed_modes(&mut self, coefficients: &Coefficients) -> Vec<String> {
         // the modes of the readings change
         self.zero_columns = OnceLock::new();
+        self.length_columns = OnceLock::new();
         let mut out = Vec::new();
         for (i, test) in self.modal.iter_mut().enumerate() {
             if let Some(mode) = test.find_missed_mode(&self.layout, coefficients, &self.data) {

@@ -449,8 +449,13 @@ fn frame_parameters(compliances: &[f64], deviations: &[f64]) -> Vec<(String, Vec
         let known = FRAME_ENTRIES[..compliances.len()].iter().position(|e| *e == at);
         within(matrix[at], known.map_or(f64::INFINITY, |k| deviations[k]))
     };
+    // no element turns against its load, so the diagonal has no negative entry
+    let turning = |at: (usize, usize)| {
+        let found = entry(at);
+        Estimate { low: found.low.map(|low| low.max(0.0)), ..found }
+    };
     vec![
-        ("diagonal_rad_per_nm".into(), [(0, 0), (1, 1), (2, 2)].map(entry).to_vec()),
+        ("diagonal_rad_per_nm".into(), [(0, 0), (1, 1), (2, 2)].map(turning).to_vec()),
         ("coupling_rad_per_nm".into(), [(0, 1), (0, 2), (1, 2)].map(entry).to_vec()),
     ]
 }

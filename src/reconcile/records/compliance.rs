@@ -63,8 +63,16 @@ pub(super) fn compliance(model: &TwistModel, left_share: f64) -> Stated {
     }
     let (low, high) = (c.low.unwrap_or(0.0), c.high.unwrap_or(f64::INFINITY));
     let is_wide = |low: f64, high: f64| low <= 0.0 || high / low > WIDE;
-    if is_wide(low, high) || model.gain(Group::Compliance) < CLEARLY {
-        let words = "the interval of the compliance contains zero or spans a factor of more than 5: the record hardly loads the joint";
+    let is_needless = model.gain(Group::Compliance) < CLEARLY;
+    if is_wide(low, high) || is_needless {
+        let words = match is_wide(low, high) {
+            true => {
+                "the interval of the compliance contains zero or spans a factor of more than 5: the record hardly loads the joint"
+            }
+            false => {
+                "friction, inertia and transmission error explain the twist nearly as well without a compliance"
+            }
+        };
         let parameters = open(&beside_gear_error(model, c));
         return Stated { parameters, ..Stated::none(WHAT, State::NotIdentified, words) };
     }

@@ -100,6 +100,8 @@ pub struct Traced {
 pub struct JointRecord {
     /// Name of the joint.
     pub joint: String,
+    /// Whether the campaign states the inertia of the joint's rotor.
+    pub rotor_is_stated: bool,
     /// Number of rows that enter the fit.
     pub rows: usize,
     /// Number of independent readings that have as much information as these rows. It is smaller than `rows` because

@@ -115,6 +115,7 @@ impl<'a> Judged<'a> {
         let steps = self.model.steps.iter().chain(further);
         JointRecord {
             joint: self.rows.joint.clone(),
+            rotor_is_stated: self.rows.rotor_inertia_kgm2.is_some(),
             rows: self.rows.samples.len(),
             effective_rows: self.rows.samples.len() as f64 / self.model.rows_per_reading,
             blocks: self.rows.blocks,

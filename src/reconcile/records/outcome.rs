@@ -338,19 +338,20 @@ fn located(joints: &[JointRecord]) -> Vec<Located> {
 /// Recommends one test for all joints whose compliance the records do not show because their torque is nearly all
 /// acceleration and friction of the joint itself, and one for those where a transmission error explains the same twist.
 fn next_tests(joints: &[JointRecord]) -> Vec<NextTest> {
-    let named = |start: &str| -> Vec<&str> {
+    let named = |start: &str, wanted: fn(&JointRecord) -> bool| -> Vec<&str> {
         let has = |j: &&JointRecord| {
             j.of("compliance").is_some_and(|s: &Stated| s.state != State::Found && s.words.starts_with(start))
         };
-        joints.iter().filter(has).map(|j| j.joint.as_str()).collect()
+        joints.iter().filter(has).filter(|j| wanted(j)).map(|j| j.joint.as_str()).collect()
     };
     let tests = [
         (
-            named("insufficient excitation"),
+            named("insufficient excitation", |j| !j.rotor_is_stated),
             "state rotor_inertia_kgm2, or load the joint with its output locked",
         ),
+        (named("insufficient excitation", |j| j.rotor_is_stated), "load the joint with its output locked"),
         (
-            named(GRAVITY_OR_ERROR),
+            named(GRAVITY_OR_ERROR, |_| true),
             "state rotor_inertia_kgm2, or move with another payload or pose, so that gravity differs at the same angle",
         ),
     ];

@@ -2,14 +2,16 @@
 //! library lacks.
 //!
 //! A law may be a twist of a joint as a function of its torque (odd or even), of its angle, or of the order of the
-//! tests, friction in proportion to the torque, or an angle whose zero is off. It may be a compliance of a base, a
-//! bearing or a link in one direction only, a mass or wall of a link that differs from the drawing, or another
-//! direction of gravity. It may also be an error of a reading as a function of the actual value, the direction, the
+//! tests, or of the torque of its neighbour, friction in proportion to the torque, or an angle whose zero is off. It may
+//! be a compliance of a base, a bearing or a link in one direction only, a mass, wall or length of a link that differs
+//! from the drawing, or another direction of gravity. It may also be an error of a reading as a function of the actual value, the direction, the
 //! kind of load, or the time in a pose. A law consists of a few columns: changes of the readings, linearized about a
 //! fit.
 
+mod coupling;
 mod friction;
 mod joints;
+mod lengths;
 mod level;
 mod links;
 mod readings;
@@ -55,6 +57,8 @@ pub(crate) fn of_every_law<T: Send>(
     ask(builder.friction_laws());
     ask(builder.zero_laws());
     ask(builder.level_laws());
+    ask(builder.length_laws());
+    ask(builder.coupling_laws());
     ask(builder.compliance_laws());
     ask(builder.link_laws());
     ask(builder.reading_laws());

@@ -28,6 +28,13 @@ impl Builder<'_> {
                 &format!("{} readings that are not straight in the true value", channel.word()),
                 bent,
             ));
+            if channel == Channel::Modal {
+                out.push(Law {
+                    what: "modal readings that are all off by the same frequency".into(),
+                    effect: None,
+                    columns: vec![column(&|_, _| largest)],
+                });
+            }
             if channel == Channel::Static {
                 out.extend(self.direction_laws(&column));
                 out.extend(self.load_laws(&column));

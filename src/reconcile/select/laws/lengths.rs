@@ -1,0 +1,80 @@
+//! Laws of links whose length is another than drawn, with the mass and the compliance of the further length.
+
+use super::{Builder, Law};
+use crate::arm::Element;
+use crate::reconcile::forward::prepared::Forward;
+use crate::reconcile::readings::campaign::Campaign;
+use rayon::prelude::*;
+
+/// Part of the length by which a link is lengthened for the comparison.
+const STEP: f64 = 1e-3;
+/// Part of the length that counts as the full size of the law.
+const FULL: f64 = 0.1;
+
+impl Builder<'_> {
+    /// For each link, the law that it is longer or shorter than drawn.
+    pub(super) fn length_laws(&self) -> Vec<Law> {
+        let names: Vec<&str> = self.campaign.arm.links().map(|link| link.name.as_str()).collect();
+        let columns = self.forward.length_columns.get_or_init(|| self.length_columns(&names));
+        let law = |(name, column): (&&str, &Vec<f64>)| Law {
+            what: format!("a length of {name} other than drawn"),
+            effect: None,
+            columns: vec![column.clone()],
+        };
+        names.iter().zip(columns).map(law).collect()
+    }
+
+    /// For each link, the change of every reading of the nominal arm, in its unit, per full size. All poses have to be
+    /// prepared anew, so this is computed once and about the nominal arm, and not for every fit.
+    fn length_columns(&self, names: &[&str]) -> Vec<Vec<f64>> {
+        let stated = self.readings_with(self.campaign.clone());
+        let column = |name: &&str| {
+            let longer = self.readings_with(lengthened(self.campaign, name));
+            longer.iter().zip(&stated).map(|(longer, stated)| FULL / STEP * (longer - stated)).collect()
+        };
+        names.par_iter().map(column).collect()
+    }
+
+    /// The predicted readings of the nominal arm of another campaign with the same rows.
+    fn readings_with(&self, campaign: Campaign) -> Vec<f64> {
+        let mut forward = Forward::new(&campaign);
+        for (own, stated) in forward.modal.iter_mut().zip(&self.forward.modal) {
+            own.modes.clone_from(&stated.modes);
+        }
+        forward.predict(&forward.coefficients(&forward.nominal))
+    }
+}
+
+/// The campaign with the link `name` of its arm lengthened by [`STEP`].
+fn lengthened(campaign: &Campaign, name: &str) -> Campaign {
+    let mut out = campaign.clone();
+    for element in &mut out.arm.chain {
+        if let Element::Link(link) = element
+            && link.name == name
+        {
+            link.vector_m *= 1.0 + STEP;
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::about_the_nominal_arm;
+
+    #[test]
+    fn a_longer_link_is_a_law_of_its_own_and_moves_static_readings_and_frequencies() {
+        about_the_nominal_arm(|builder, _| {
+            let laws = builder.length_laws();
+            assert_eq!(laws.len(), builder.campaign.arm.links().count());
+            let largest = |range: std::ops::Range<usize>, column: &[f64]| {
+                range.map(|i| column[i].abs()).fold(0.0, f64::max)
+            };
+            let [modal, windup] = [builder.forward.starts[1], builder.forward.starts[2]];
+            let moves = laws.iter().filter(|law| {
+                largest(0..modal, &law.columns[0]) > 1e-3 && largest(modal..windup, &law.columns[0]) > 1e-3
+            });
+            assert!(moves.count() >= 2, "two long links");
+        });
+    }
+}
