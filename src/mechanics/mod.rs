@@ -12,8 +12,9 @@
 //!   inertia and each pair of twists. The compliance matrix `C` is diagonal, and `C^½ M C^½ ψ = ψ/ω²`.
 //! - Response (`response`; F(t) of Eq 16): the sum of the modes under a harmonic force at the tip.
 //!
-//! `hanging` repeats the statics in the deflected pose, for large displacements. `centre_line` turns strain coordinates into the displacement of points of the arm, for drawings. `condensed`,
-//! `lowest` and `lowest_lanes` are the fast computation of the lowest mode that the search uses.
+//! `hanging` repeats the statics in the deflected pose, for large displacements. `centre_line` turns strain coordinates
+//! into the displacement of points of the arm, for drawings. `condensed`, `lowest` and `lowest_lanes` are the fast
+//! computation of the lowest mode that the search uses.
 //!
 //! Twists and wrenches are taken about the world's origin. A twist is `(v, ω)`, where `v` is the velocity of that
 //! point of the body which is at the origin. A wrench is `(F, M)`, where `M` is the moment about the origin.
