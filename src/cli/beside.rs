@@ -1,9 +1,9 @@
 //! Files that are written in addition to a front. Each is made separately, so that the others are still written if
 //! one fails.
 
+use super::log::Log;
 use super::manifest::Files;
 use super::stop::stop_if_wanted;
-use super::write::say;
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -50,9 +50,9 @@ pub(super) fn another_stands(name: &str) -> String {
 }
 
 /// Prints a warning for each file that was not written.
-pub(super) fn say_missing(missing: &[String]) {
+pub(super) fn say_missing(missing: &[String], log: Log) {
     for what in missing {
-        say(&format!("warning: not written: {what}\n"));
+        log.warning(&format!("not written: {what}"));
     }
 }
 

@@ -5,6 +5,7 @@ use super::beside::{Beside, another_stands, say_missing};
 use super::corrections;
 use super::exit::Exit;
 use super::failure::Failure;
+use super::log::Log;
 use super::manifest::{Files, RUN};
 use super::progress::Progress;
 use super::stop::stop_if_wanted;
@@ -131,6 +132,8 @@ pub(super) struct Finished<'a> {
     pub catalogs: &'a Catalogs,
     /// Folder of the result.
     pub dir: &'a Path,
+    /// Where warnings go.
+    pub log: Log,
 }
 
 impl<'a> Finished<'a> {
@@ -141,7 +144,7 @@ impl<'a> Finished<'a> {
         (problem, outcome): (&'a ArmProblem<'a>, &'a StudyOutcome),
         elapsed_s: f64,
         (catalogs, overlay): (&'a Catalogs, Option<&'a Path>),
-        dir: &'a Path,
+        (dir, log): (&'a Path, Log),
     ) -> Self {
         let Asked { study, text, corrections } = asked;
         let whole = &study.space;
@@ -159,6 +162,7 @@ impl<'a> Finished<'a> {
             overlay,
             catalogs,
             dir,
+            log,
         }
     }
 }
@@ -200,7 +204,7 @@ impl Finished<'_> {
         }
         let terminal = beside.make("the summary on the terminal", || terminal_summary(&summary));
         beside.missing.extend(left_out.iter().map(|name| another_stands(name)));
-        say_missing(&beside.missing);
+        say_missing(&beside.missing, self.log);
         files.retain(|(name, _)| !left_out.contains(name));
         let paragraphs = supplements.iter().map(|s| &s.terminal).filter(|text| !text.is_empty());
         let paragraphs: String = paragraphs.map(|text| format!("\n{text}")).collect();

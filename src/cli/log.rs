@@ -85,6 +85,14 @@ impl Log {
         self.progress("note", words.trim_end(), json!({"message": words.trim_end()}));
     }
 
+    /// Prints a warning, even if the log is quiet.
+    pub(super) fn warning(self, words: &str) {
+        match self.form {
+            LogForm::Text => say(&format!("warning: {words}\n")),
+            LogForm::Json => say(&format!("{}\n", json!({"event": "warning", "message": words}))),
+        }
+    }
+
     /// Prints why a verb failed, even if the log is quiet.
     pub fn error(self, failure: &Failure) {
         match self.form {

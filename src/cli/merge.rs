@@ -6,6 +6,7 @@ use super::begun::{Begun, begun_in};
 use super::exit::Answer;
 use super::failure::Failure;
 use super::finished::{Finished, FoundExactly, Written, catalogs_hash, count};
+use super::log::Log;
 use super::manifest::{RUN, SHARD};
 use super::result_folder::ResultFolder;
 use super::run::planned;
@@ -18,7 +19,7 @@ use super::supplements::SupplementArgs;
 use crate::catalog::Catalogs;
 use crate::exact::outcome::FoundInShard;
 use crate::input::json::Document;
-use crate::report::file_names::file_name;
+use crate::report::file_names::folder_name;
 use crate::search::sweep::{Shard, Status};
 use crate::space::problem::ArmProblem;
 use crate::study::definition::Study;
@@ -89,6 +90,7 @@ pub(super) fn merge(
     args: &MergeArgs,
     catalogs: &Catalogs,
     overlay: Option<&Path>,
+    log: Log,
 ) -> Result<Answer, Failure> {
     let shards = Shards::read(&args.shards)?;
     let missing = shards.missing();
@@ -101,8 +103,8 @@ pub(super) fn merge(
         )));
     }
     let (asked, elapsed_s) = shards.asked(catalogs)?;
-    let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(file_name(&asked.study.name)));
-    let joining = Joining { asked: &asked, elapsed_s, catalogs, overlay, dir: &dir, args };
+    let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(folder_name(&asked.study.name)));
+    let joining = Joining { asked: &asked, elapsed_s, catalogs, overlay, dir: &dir, args, log };
     let written = if shards.is_exact() { joining.exact(&shards)? } else { joining.exhaustive(&shards)? };
     let text = format!(
         "{}\n{} shards joined; written to {}\n{}",
@@ -123,24 +125,26 @@ struct Joining<'a> {
     overlay: Option<&'a Path>,
     dir: &'a Path,
     args: &'a MergeArgs,
+    /// Where warnings go.
+    log: Log,
 }
 
 impl Joining<'_> {
     /// Joins the shards of an exhaustive search, which visits every design.
     fn exhaustive(&self, shards: &Shards) -> Result<Written, Failure> {
-        let Self { asked, elapsed_s, catalogs, overlay, dir, .. } = *self;
+        let Self { asked, elapsed_s, catalogs, overlay, dir, log, .. } = *self;
         let study = &asked.study;
         shards.refuse_gaps()?;
         let swept = shards.swept(study)?;
         let problem = ArmProblem::new(&study.space, catalogs);
         let outcome = judge_swept(study, &problem, joined(swept, shards.designs_total));
         self.refuse_nothing(outcome.sweep.status)?;
-        self.keep(&Finished::visit(asked, (&problem, &outcome), elapsed_s, (catalogs, overlay), dir))
+        self.keep(&Finished::visit(asked, (&problem, &outcome), elapsed_s, (catalogs, overlay), (dir, log)))
     }
 
     /// Joins the shards of an exact search.
     fn exact(&self, shards: &Shards) -> Result<Written, Failure> {
-        let Self { asked: Asked { study, text, corrections }, elapsed_s, catalogs, overlay, dir, args } =
+        let Self { asked: Asked { study, text, corrections }, elapsed_s, catalogs, overlay, dir, args, log } =
             *self;
         let extent = Extent { deadline: None, gap: shards.gap(), near: args.supplements.slack() };
         let found = shards.found(study)?;
@@ -163,6 +167,7 @@ impl Joining<'_> {
             overlay,
             catalogs,
             dir,
+            log,
         })
     }
 
@@ -177,7 +182,7 @@ impl Joining<'_> {
         let folder = ResultFolder::open(self.dir, RUN, &planned(&self.asked.study))?;
         let written =
             finished.keep(&self.args.supplements, stopped_by_signal(), &|files| folder.publish(files))?;
-        Ok(written.after_search())
+        Ok(written.after_search(self.log))
     }
 }
 

@@ -1,9 +1,9 @@
 //! `armwright predict`: adds the value that the model predicts to every reading.
 
 use super::failure::Failure;
+use super::log::Log;
 use super::own_files::write_recognized;
 use super::result_folder::complete;
-use super::write::say;
 use crate::catalog::Catalogs;
 use crate::reconcile::predict_files::{Files, predict_files};
 use crate::report::whole_file::folder_of;
@@ -38,14 +38,13 @@ pub(crate) struct PredictArgs {
 ///
 /// # Errors
 /// The input files have faults, or a file cannot be written.
-pub(crate) fn run(args: &PredictArgs, catalogs: &Catalogs) -> Result<String, Failure> {
+pub(crate) fn run(args: &PredictArgs, catalogs: &Catalogs, log: Log) -> Result<String, Failure> {
     complete(&folder_of(&args.arm))?;
     let files = Files { arm: &args.arm, readings: &args.readings, campaign: &args.campaign };
     let found = predict_files(&files, catalogs)?;
-    let remark = found.remark.map_or(String::new(), |remark| format!("{remark}.\n"));
     let Some(out) = &args.out else {
         // the readings are the output, so the remark must go elsewhere: to standard error
-        say(&remark);
+        found.remark.iter().for_each(|remark| log.note(&format!("{remark}.")));
         return Ok(found.csv);
     };
     let inputs = [&args.arm, &args.readings, &args.campaign].into_iter();
@@ -57,5 +56,6 @@ pub(crate) fn run(args: &PredictArgs, catalogs: &Catalogs) -> Result<String, Fai
     let header = found.csv.lines().next().unwrap_or_default();
     let is_prediction = |_: &str, there: &[u8]| there.starts_with(format!("{header}\n").as_bytes());
     write_recognized(&folder_of(out), &[(name, found.csv.clone().into_bytes())], &inputs, is_prediction)?;
+    let remark = found.remark.map_or(String::new(), |remark| format!("{remark}.\n"));
     Ok(format!("{remark}written to {}\n", out.display()))
 }

@@ -18,7 +18,7 @@ use crate::reconcile::together::reconcile;
 use crate::reconcile::verdict::files::{CORRECTED_FILE, corrected_files};
 use crate::reconcile::verdict::outcome::Outcome;
 use crate::reconcile::verdict::page::campaign_page;
-use crate::report::file_names::file_name;
+use crate::report::file_names::folder_name;
 use crate::report::words::{TERMINAL, wrap};
 use crate::study::load::load_study;
 use clap::Args;
@@ -83,7 +83,7 @@ pub(crate) fn run(
     inputs.extend(args.study.iter().map(PathBuf::from));
     let first = read.remove(0);
     let campaign = first.join(read).map_err(Failure::Usage)?;
-    let folder = file_name(&campaign.statement.name);
+    let folder = folder_name(&campaign.statement.name);
     let out = args.out.clone().unwrap_or_else(|| Path::new("results").join(folder));
     let planned = planned(args, &campaign, catalogs)?;
     refuse_inputs(&planned.iter().map(|name| out.join(name)).collect::<Vec<_>>(), &inputs)?;
@@ -98,7 +98,7 @@ pub(crate) fn run(
     let campaign = Arc::new(campaign);
     let fitted = Arc::clone(&campaign);
     let outcome = unless_stopped(move || reconcile(&fitted))?;
-    let (mut files, terminal) = keep(&campaign, (&outcome, &hash_of_catalogs), &folder)?;
+    let (mut files, terminal) = keep(&campaign, (&outcome, &hash_of_catalogs), &folder, log)?;
     let mut text = format!("{}{terminal}", narrow(&outcome.to_text()));
     let mut exit = Exit::Done;
     if let Some(study) = &args.study {
@@ -109,7 +109,7 @@ pub(crate) fn run(
         exit = rerun.exit;
         add(&mut files, rerun);
         let left_out = folder.publish(&files)?;
-        say_missing(&left_out.iter().map(|name| another_stands(name)).collect::<Vec<_>>());
+        say_missing(&left_out.iter().map(|name| another_stands(name)).collect::<Vec<_>>(), log);
     }
     text.push_str(&format!("written to {}\n", out.display()));
     Ok(Answer { text, exit })
@@ -162,6 +162,7 @@ fn keep(
     campaign: &Campaign,
     (outcome, hash_of_catalogs): (&Outcome, &str),
     folder: &ResultFolder,
+    log: Log,
 ) -> Result<(Files, String), Failure> {
     let texts = outcome.files().into_iter().map(|(name, text)| (name, text.into_bytes()));
     let mut files: Files = texts.collect();
@@ -181,7 +182,7 @@ fn keep(
         Err(e) => beside.missing.push(format!("the page: {e}")),
     }
     beside.missing.extend(left_out.iter().map(|name| another_stands(name)));
-    say_missing(&beside.missing);
+    say_missing(&beside.missing, log);
     Ok((files, terminal))
 }
 

@@ -19,7 +19,7 @@ use super::write::{is_same_file, refuse_overwriting};
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::paper::names::{NAMES, question};
-use crate::report::file_names::{file_name, file_names};
+use crate::report::file_names::{file_names, folder_name};
 use crate::report::html::document::DocumentPage;
 use crate::report::html::render::PLOTS;
 use crate::report::section::Figure;
@@ -159,7 +159,7 @@ impl RunArgs {
     fn folder(&self, study: &Study) -> String {
         let up_to = self.mass_max_kg.map_or(String::new(), |kg| format!("-up-to-{kg}-kg"));
         let effects = if self.effects.is_some() { "-with-effects" } else { "" };
-        format!("{}{up_to}{effects}", file_name(&study.name))
+        format!("{}{up_to}{effects}", folder_name(&study.name))
     }
 }
 
@@ -212,7 +212,7 @@ pub(super) fn run(
                 useless.join(", ")
             )));
         }
-        return run_paper(args, catalogs).map(Answer::from);
+        return run_paper(args, catalogs, log).map(Answer::from);
     }
     let asked = args.asked(catalogs)?;
     if let Some(shard) = args.shard {
@@ -273,7 +273,7 @@ fn run_part(
 }
 
 /// Runs one of the studies of the paper, which are computed without a search.
-fn run_paper(args: &RunArgs, catalogs: &Catalogs) -> Result<String, Failure> {
+fn run_paper(args: &RunArgs, catalogs: &Catalogs, log: Log) -> Result<String, Failure> {
     let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(&args.study));
     let planned = [RUN, "summary.md", "report.html"];
     let folder = ResultFolder::open(&dir, RUN, &planned)?;
@@ -293,7 +293,7 @@ fn run_paper(args: &RunArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     files.push((RUN.into(), pretty(&run)));
     files.extend(page.into_files());
     let left_out = folder.publish(&files)?;
-    say_missing(&left_out.iter().map(|name| another_stands(name)).collect::<Vec<_>>());
+    say_missing(&left_out.iter().map(|name| another_stands(name)).collect::<Vec<_>>(), log);
     files.retain(|(name, _)| !left_out.contains(name));
     Ok(format!("{}\n{}", output.terminal, told(&dir, &files)))
 }

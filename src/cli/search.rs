@@ -247,10 +247,10 @@ fn visit_all(asked: &Asked, with: &With) -> Result<Written, Failure> {
         }
         _ => Exit::Done,
     };
-    let finished = Finished::visit(asked, (&problem, &outcome), elapsed_s, (catalogs, overlay), dir);
+    let finished = Finished::visit(asked, (&problem, &outcome), elapsed_s, (catalogs, overlay), (dir, log));
     let written = finished.keep(supplements, stop, keep)?;
     Ok(match exit {
-        Exit::Done => written.after_search(),
+        Exit::Done => written.after_search(log),
         exit => Written { exit, ..written },
     })
 }
@@ -258,12 +258,12 @@ fn visit_all(asked: &Asked, with: &With) -> Result<Written, Failure> {
 impl Written {
     /// This result of a search that ended by itself. If the user stopped the program before the files in addition to the
     /// front were made, a warning says so, and the exit status is that of a stopped program.
-    pub(super) fn after_search(self) -> Self {
+    pub(super) fn after_search(self, log: Log) -> Self {
         if !self.is_front_only {
             return self;
         }
         let again = "the program was stopped after the search; the same command writes the rest";
-        say_missing(&[format!("{NOTHING_ELSE}: {again}")]);
+        say_missing(&[format!("{NOTHING_ELSE}: {again}")], log);
         Self { exit: Exit::Interrupted, ..self }
     }
 }
@@ -313,6 +313,7 @@ fn search_exactly(asked: &Asked, with: &With) -> Result<Written, Failure> {
                 overlay,
                 catalogs,
                 dir,
+                log,
             };
             let finishing = Instant::now();
             let mut written = finished.keep(supplements, stop, keep)?;
@@ -324,7 +325,7 @@ fn search_exactly(asked: &Asked, with: &With) -> Result<Written, Failure> {
                 log.note("stopped; the front so far is written without summary, page and plots, and the same command goes on");
                 written.exit = Exit::Interrupted;
             } else {
-                written = written.after_search();
+                written = written.after_search(log);
             }
             if is_partial && written.exit == Exit::Done {
                 written.exit = Exit::Partial;

@@ -5,7 +5,7 @@ use super::merge::shell_word;
 use super::search::{SearchArgs, part_or_none};
 use super::shard::MOST_SHARDS;
 use crate::catalog::Catalogs;
-use crate::report::file_names::file_name;
+use crate::report::file_names::folder_name;
 use crate::study::load::{load_study, refuse_empty};
 use crate::study::search_method::SearchMethod;
 use crate::study::tolerance::part;
@@ -52,7 +52,7 @@ pub(super) fn run(args: &SlurmArgs, catalogs: &Catalogs, overlay: Option<&Path>)
     if method == SearchMethod::Exhaustive && args.gap_first.is_some() {
         return Err(Failure::Usage("--gap-first goes with --search exact".into()));
     }
-    let name = file_name(&study.name);
+    let name = folder_name(&study.name);
     let out = args.out.clone().unwrap_or_else(|| Path::new("results").join(&name));
     let out = shell_word(&out.display().to_string());
     let catalogs = overlay

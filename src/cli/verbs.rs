@@ -151,7 +151,7 @@ pub fn run(cli: Cli) -> Result<Answer, Failure> {
         Verb::Catalog(args) => catalog::run(&args, overlay),
         Verb::Studies => Ok(crate::study::list()),
         Verb::Size(args) => size::run(&args, &catalogs?),
-        Verb::Merge(args) => return merge::merge(&args, &catalogs?, overlay),
+        Verb::Merge(args) => return merge::merge(&args, &catalogs?, overlay, log),
         Verb::Status(args) => merge::status(&args),
         Verb::Slurm(args) => slurm::run(&args, &catalogs?, overlay),
         Verb::Capacity(args) => capacity::run(&args, &catalogs?),
@@ -161,7 +161,7 @@ pub fn run(cli: Cli) -> Result<Answer, Failure> {
         Verb::Import(args) => import::run(&args, &catalogs?),
         Verb::Export(args) => export::run(&args, &catalogs?),
         Verb::New(args) => new::run(&args, &catalogs?),
-        Verb::Predict(args) => predict::run(&args, &catalogs?),
+        Verb::Predict(args) => predict::run(&args, &catalogs?, log),
     };
     text.map(Answer::from)
 }

@@ -268,16 +268,20 @@ fn to_mjcf(asked: &Asked, catalogs: &Catalogs) -> Export {
     notes.push(match options.pieces {
         0 => "links are rigid".into(),
         n => format!(
-            "links are cut into {n} parts; the error of their compliance falls with 1/{n}². Their springs are stiff: a \
-             simulation needs small time steps"
+            "links are cut into {n} parts; the error of their compliance falls with 1/{n}². Their springs are stiff: the \
+             time step is small"
         ),
     });
     notes.push("the keyframe \"pose\" is the pose with straight springs, in which torques and frequencies are compared; \"deflected\" has \
                 every spring where it rests under the load"
         .into());
-    notes.push("the time step of 0.1 ms is too long for an arm with light bodies between stiff springs: a simulation in time is then \
-                unstable, while torques, deflections and frequencies are right"
-        .into());
+    if file.step.is_short() {
+        notes.push(format!(
+            "the time step is {} s, for a light body between stiff springs vibrates at {:.0} Hz; a heavier body or a rigid element \
+             allows a longer one",
+            file.step.step_s, file.step.highest_hz
+        ));
+    }
     notes.extend(working_points_note(&rest.left_out));
     if file.balanced {
         notes.push("no solid has the inertia of a body: MuJoCo makes its moments equal (balanceinertia), so frequencies differ".into());

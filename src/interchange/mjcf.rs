@@ -9,21 +9,24 @@
 use super::free_name::FreeNames;
 use super::motors::Motor;
 use super::snapshot::{Snapshot, Working};
+use super::time_step::{Moving, TimeStep};
 use super::tree::{Hinge, Node, Role, TreeOptions, mass_properties, tree};
 use super::xml::{Xml, numbers, triple};
 use crate::arm::structure::JointAngle;
+use crate::mechanics::body_inertia;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeMap;
 
 /// Mass of a body that has none, relative to the mass of the arm. MuJoCo accepts no moving body without mass.
 const LEAST_MASS: f64 = 1e-10;
-/// Square of the radius of gyration that is added to the moments of every body \[m²\]: 0.03 mm. MuJoCo accepts no
-/// moving body without inertia. A body without mass has the moments of a tenth of the arm's mass.
-const LEAST_RADIUS2_M2: f64 = 1e-9;
+/// Square of the radius of gyration that is added to the moments of every body \[m²\]: 0.3 mm. MuJoCo accepts no
+/// moving body without inertia, and a body with less would need a shorter time step. A body without mass has the
+/// moments of a tenth of the arm's mass.
+const LEAST_RADIUS2_M2: f64 = 1e-7;
 /// Least armature of the hinge of a backlash, relative to the motor's.
 const PLAY_ARMATURE: f64 = 1e-3;
-/// Time step that the file states \[s\].
-const STEP_S: f64 = 1e-4;
+/// Time step that a backlash may not shorten \[s\]: the armature of its hinge is large enough for it.
+const PLAY_STEP_S: f64 = 1e-4;
 
 /// An MJCF file, and what the reader must know of it.
 pub(crate) struct Mjcf {
@@ -31,6 +34,8 @@ pub(crate) struct Mjcf {
     pub text: String,
     /// Whether some body has an inertia that no solid can have, so that MuJoCo must change it.
     pub balanced: bool,
+    /// The time step that the file states, and what limits it.
+    pub step: TimeStep,
 }
 
 /// Writes an arm in a case as MJCF. `motors` has inertia and peak torque of the motors by name of the joint.
@@ -44,13 +49,15 @@ pub(crate) fn mjcf(
     name_bodies(&mut nodes);
     let least = Least::of(&nodes);
     let balanced = nodes.iter().any(|node| !is_solid(node, &least));
+    let step = TimeStep::below(moving(snapshot, &nodes, &least, motors).highest_rad_per_s());
     let case = &snapshot.case;
     let comment = format!(
-        "{name}, case \"{}\": pose {}, payload {} kg at {:?} m from the tip. Torsion curves are tangents at the torques of this case",
+        "{name}, case \"{}\": pose {}, payload {} kg at {:?} m from the tip. Torsion curves are tangents at the torques of this case. {}",
         case.name,
         snapshot.pose_words(),
         case.payload.mass_kg,
-        case.payload.cg_m.as_slice()
+        case.payload.cg_m.as_slice(),
+        step_words(step)
     );
     let mut xml = Xml::new(&comment);
     xml.open("mujoco", &[("model", name.into())]);
@@ -65,7 +72,7 @@ pub(crate) fn mjcf(
         &[
             ("gravity", triple(&gravity)),
             ("integrator", "implicitfast".into()),
-            ("timestep", numbers(&[STEP_S])),
+            ("timestep", numbers(&[step.step_s])),
         ],
     );
     xml.open("worldbody", &[]);
@@ -84,7 +91,47 @@ pub(crate) fn mjcf(
     couplings(&mut xml, snapshot, &nodes);
     actuators(&mut xml, snapshot, motors);
     keyframes(&mut xml, snapshot, &nodes);
-    Mjcf { text: xml.finish(), balanced }
+    Mjcf { text: xml.finish(), balanced, step }
+}
+
+/// What limits the time step, in words for the head of the file.
+fn step_words(step: TimeStep) -> String {
+    match step.highest_hz > 0.0 {
+        true => format!(
+            "The time step is at most half of the longest one that is stable in this pose, 1/(pi f), for the highest natural \
+             frequency f = {:.0} Hz",
+            step.highest_hz
+        ),
+        false => "Nothing vibrates that could limit the time step".into(),
+    }
+}
+
+/// The exported arm as MuJoCo moves it, in the pose of the case with straight springs.
+fn moving<'n>(
+    snapshot: &Snapshot,
+    nodes: &'n [Node],
+    least: &Least,
+    motors: &BTreeMap<String, Motor>,
+) -> Moving<'n> {
+    let hinges: Vec<&Hinge> = nodes.iter().flat_map(|node| &node.hinges).collect();
+    let spring = |(at, hinge): (usize, &&Hinge)| match hinge.role {
+        Role::Spring(working) => Some((working.tangent_nm_per_rad(), vec![(at, 1.0)])),
+        Role::Follower(working) if !working.is_rigid() => {
+            Some((working.tangent_nm_per_rad(), coupling_terms(snapshot, &hinges, at)))
+        }
+        _ => None,
+    };
+    let inertia = |node: &Node| {
+        let (mass_kg, cg_m, inertia_kgm2) = least.written(node);
+        body_inertia(mass_kg, &cg_m, &inertia_kgm2)
+    };
+    Moving {
+        nodes,
+        inertias: nodes.iter().map(inertia).collect(),
+        armatures_kgm2: hinges.iter().map(|hinge| armature_kgm2(hinge, motors).unwrap_or(0.0)).collect(),
+        positions: positions(snapshot, nodes, false),
+        springs: hinges.iter().enumerate().filter_map(spring).collect(),
+    }
 }
 
 /// Opens the XML element of a body. It stays open, because the bodies outboard of it are nested inside. `before_m` is
@@ -100,9 +147,7 @@ fn body(
     for hinge in &node.hinges {
         xml.leaf("joint", &joint(hinge, &node.origin_m, motors));
     }
-    let (mass_kg, cg_m, inertia) = mass_properties(&node.inertia);
-    let inertia = inertia + least.inertia_kgm2(mass_kg);
-    let (mass_kg, cg_m) = if mass_kg > 0.0 { (mass_kg, cg_m) } else { (least.mass_kg, node.origin_m) };
+    let (mass_kg, cg_m, inertia) = least.written(node);
     let full = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|at| inertia[at]);
     xml.leaf(
         "inertial",
@@ -139,31 +184,34 @@ fn joint(
         ("pos", triple(&(hinge.at_m - origin_m))),
     ];
     match hinge.role {
-        Role::Follower(_) => {}
-        Role::Motor => {
-            if let Some(motor) = motors.get(&hinge.name) {
-                out.push(("armature", numbers(&[motor.armature_kgm2])));
-            }
-        }
+        Role::Follower(_) | Role::Motor => {}
         Role::Spring(working) => {
             out.push(("stiffness", numbers(&[working.tangent_nm_per_rad()])));
             out.push(("springref", numbers(&[working.rest_rad()])));
         }
-        Role::Play { half_rad, gear } => {
-            out.push(("range", numbers(&[-half_rad, half_rad])));
-            let motor_kgm2 = motors.get(&hinge.element).map_or(0.0, |motor| motor.armature_kgm2);
-            out.push(("armature", numbers(&[play_armature_kgm2(motor_kgm2, &gear)])));
-        }
+        Role::Play { half_rad, .. } => out.push(("range", numbers(&[-half_rad, half_rad]))),
     }
+    out.extend(armature_kgm2(hinge, motors).map(|kgm2| ("armature", numbers(&[kgm2]))));
     out
+}
+
+/// Armature of a hinge \[kg m²\]; `None` if it has none.
+fn armature_kgm2(hinge: &Hinge, motors: &BTreeMap<String, Motor>) -> Option<f64> {
+    let motor = |name: &str| motors.get(name).map(|motor| motor.armature_kgm2);
+    match hinge.role {
+        Role::Motor => motor(&hinge.name),
+        Role::Play { gear, .. } => Some(play_armature_kgm2(motor(&hinge.element).unwrap_or(0.0), &gear)),
+        Role::Spring(_) | Role::Follower(_) => None,
+    }
 }
 
 /// Armature of the hinge of a backlash \[kg m²\]. Without one, this hinge and that of the gear would have one axis and
 /// nothing between them, and the mass matrix would be singular. With a very small one, it would vibrate on the spring of
-/// the gear faster than the time step can follow: an explicit step of `h` is stable up to an angular frequency of `2/h`,
-/// and half of that is permitted. `motor_kgm2` is the armature of the motor, `gear` the spring of the gear.
+/// the gear so fast that it alone would shorten the time step: an explicit step of `h` is stable up to an angular
+/// frequency of `2/h`, and half of that is permitted. `motor_kgm2` is the armature of the motor, `gear` the spring of the gear.
 fn play_armature_kgm2(motor_kgm2: f64, gear: &Working) -> f64 {
-    let steady_kgm2 = if gear.is_rigid() { 0.0 } else { gear.tangent_nm_per_rad() * STEP_S * STEP_S };
+    let steady_kgm2 =
+        if gear.is_rigid() { 0.0 } else { gear.tangent_nm_per_rad() * PLAY_STEP_S * PLAY_STEP_S };
     steady_kgm2.max(PLAY_ARMATURE * motor_kgm2)
 }
 
@@ -172,12 +220,11 @@ fn play_armature_kgm2(motor_kgm2: f64, gear: &Working) -> f64 {
 /// zero. A compliant one has the spring of the passive joint: a hinge of its own for this spring would have the axis of the
 /// joint and nothing between, and the mass matrix would be singular.
 fn couplings(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
-    let driven = snapshot.case_joints();
-    let hinges = || nodes.iter().flat_map(|node| &node.hinges);
-    let mut followers: Vec<(&Hinge, Working)> = Vec::new();
-    for hinge in hinges() {
+    let hinges: Vec<&Hinge> = nodes.iter().flat_map(|node| &node.hinges).collect();
+    let mut followers: Vec<(usize, &Hinge, Working)> = Vec::new();
+    for (at, hinge) in hinges.iter().enumerate() {
         if let Role::Follower(working) = hinge.role {
-            followers.push((hinge, working));
+            followers.push((at, hinge, working));
         }
     }
     if followers.is_empty() {
@@ -185,24 +232,22 @@ fn couplings(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
     }
     let name_of = |hinge: &Hinge| format!("{}.coupling", hinge.name);
     xml.open("tendon", &[]);
-    for (follower, working) in &followers {
+    for (at, follower, working) in &followers {
         let mut attributes = vec![("name", name_of(follower))];
         if !working.is_rigid() {
             attributes.push(("stiffness", numbers(&[working.tangent_nm_per_rad()])));
             attributes.push(("springlength", numbers(&[working.rest_rad()])));
         }
         xml.open("fixed", &attributes);
-        xml.leaf("joint", &[("joint", follower.name.clone()), ("coef", "1".into())]);
-        for (index, factor) in coupled(snapshot, &follower.name).unwrap_or_default() {
-            for hinge in hinges().filter(|hinge| hinge.element == driven[*index]) {
-                xml.leaf("joint", &[("joint", hinge.name.clone()), ("coef", numbers(&[-factor]))]);
-            }
+        for (hinge, coefficient) in coupling_terms(snapshot, &hinges, *at) {
+            let joint = hinges[hinge].name.clone();
+            xml.leaf("joint", &[("joint", joint), ("coef", numbers(&[coefficient]))]);
         }
         xml.close();
     }
     xml.close();
     let rigid: Vec<&Hinge> =
-        followers.iter().filter(|(_, working)| working.is_rigid()).map(|(hinge, _)| *hinge).collect();
+        followers.iter().filter(|(.., working)| working.is_rigid()).map(|(_, hinge, _)| *hinge).collect();
     if rigid.is_empty() {
         return;
     }
@@ -211,6 +256,18 @@ fn couplings(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
         xml.leaf("tendon", &[("tendon1", name_of(hinge)), ("polycoef", "0 0 0 0 0".into())]);
     }
     xml.close();
+}
+
+/// The hinges on whose positions the length of the tendon of a passive joint depends, each with its coefficient: first
+/// the hinge of the joint itself, which has the index `passive`.
+fn coupling_terms(snapshot: &Snapshot, hinges: &[&Hinge], passive: usize) -> Vec<(usize, f64)> {
+    let driven = snapshot.case_joints();
+    let mut out = vec![(passive, 1.0)];
+    for (index, factor) in coupled(snapshot, &hinges[passive].name).unwrap_or_default() {
+        let of_driver = (0..hinges.len()).filter(|at| hinges[*at].element == driven[*index]);
+        out.extend(of_driver.map(|at| (at, -factor)));
+    }
+    out
 }
 
 /// The driving joints of a passive joint, each with its index in a pose and its factor; `None` if a motor drives it.
@@ -237,9 +294,18 @@ fn actuators(xml: &mut Xml, snapshot: &Snapshot, motors: &BTreeMap<String, Motor
 /// Writes the pose of the case as two keyframes. In the first all springs are undeflected, for the comparison of
 /// frequencies and torques; in the second they are deflected by the load of the case.
 fn keyframes(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
+    let position = |deflected: bool| numbers(&positions(snapshot, nodes, deflected));
+    xml.open("keyframe", &[]);
+    xml.leaf("key", &[("name", "pose".into()), ("qpos", position(false))]);
+    xml.leaf("key", &[("name", "deflected".into()), ("qpos", position(true))]);
+    xml.close();
+}
+
+/// The position of every hinge in the pose of the case \[rad, m\], with springs straight or deflected by the load.
+fn positions(snapshot: &Snapshot, nodes: &[Node], deflected: bool) -> Vec<f64> {
     let (driven, pose) = (snapshot.case_joints(), snapshot.pose_si());
     let hinges = || nodes.iter().flat_map(|node| &node.hinges);
-    let drive = |hinge: &Hinge, deflected: bool| match hinge.role {
+    let drive = |hinge: &Hinge| match hinge.role {
         Role::Motor => driven.iter().position(|joint| *joint == hinge.name).map_or(0.0, |at| pose[at]),
         Role::Spring(working) if deflected => working.deflection_rad,
         // the load of the gear pushes the backlash to its stop
@@ -247,26 +313,17 @@ fn keyframes(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
         _ => 0.0,
     };
     // a passive joint follows the outputs of its driving joints: motor, backlash and gear
-    let follow = |name: &str, deflected: bool| -> f64 {
-        let output = |joint: &String| {
-            hinges().filter(|hinge| hinge.element == *joint).map(|hinge| drive(hinge, deflected)).sum::<f64>()
-        };
+    let follow = |name: &str| -> f64 {
+        let output =
+            |joint: &String| hinges().filter(|hinge| hinge.element == *joint).map(drive).sum::<f64>();
         let terms = coupled(snapshot, name).unwrap_or_default();
         terms.iter().map(|(index, factor)| factor * output(&driven[*index])).sum()
     };
-    let position = |deflected: bool| {
-        let of = |hinge: &Hinge| match hinge.role {
-            Role::Follower(working) => {
-                follow(&hinge.name, deflected) + if deflected { working.deflection_rad } else { 0.0 }
-            }
-            _ => drive(hinge, deflected),
-        };
-        numbers(&hinges().map(of).collect::<Vec<_>>())
+    let of = |hinge: &Hinge| match hinge.role {
+        Role::Follower(working) => follow(&hinge.name) + if deflected { working.deflection_rad } else { 0.0 },
+        _ => drive(hinge),
     };
-    xml.open("keyframe", &[]);
-    xml.leaf("key", &[("name", "pose".into()), ("qpos", position(false))]);
-    xml.leaf("key", &[("name", "deflected".into()), ("qpos", position(true))]);
-    xml.close();
+    hinges().map(of).collect()
 }
 
 /// Whether a solid can have the inertia of this body: no principal moment exceeds the sum of the other two.
@@ -293,6 +350,16 @@ impl Least {
     fn of(nodes: &[Node]) -> Self {
         let arm_kg: f64 = nodes.iter().map(|node| node.inertia[(0, 0)]).sum();
         Self { mass_kg: LEAST_MASS * if arm_kg > 0.0 { arm_kg } else { 1.0 } }
+    }
+
+    /// Mass, centre of gravity, and inertia about the centre of gravity of a body as the file has them.
+    fn written(&self, node: &Node) -> (f64, Vector3<f64>, Matrix3<f64>) {
+        let (mass_kg, cg_m, inertia_kgm2) = mass_properties(&node.inertia);
+        let inertia_kgm2 = inertia_kgm2 + self.inertia_kgm2(mass_kg);
+        match mass_kg > 0.0 {
+            true => (mass_kg, cg_m, inertia_kgm2),
+            false => (self.mass_kg, node.origin_m, inertia_kgm2),
+        }
     }
 
     /// Inertia that is added to that of a body of this mass \[kg m²\].

@@ -27,6 +27,7 @@ mod motors;
 pub(crate) mod report;
 pub(crate) mod snapshot;
 mod table_notes;
+mod time_step;
 pub(crate) mod tree;
 pub(crate) mod urdf_file;
 pub(crate) mod urdf_out;

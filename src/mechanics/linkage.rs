@@ -9,6 +9,7 @@
 
 use super::chain::{Item, Posed};
 use super::{Twist, Wrench};
+use crate::arm::linkage::Linkage;
 use nalgebra::{DMatrix, DVector};
 
 /// Motion and torque that a linkage transfers to the driving joint, for an arm in a pose under a load.
@@ -21,6 +22,39 @@ pub struct Transferred {
     /// Work of the loads, and of the passive joint's own torque, on this motion. It acts as a torque on the driving
     /// joint \[N m\].
     pub torque_nm: f64,
+}
+
+/// The strain coordinates of two joints that a linkage couples.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct LinkedCoordinates {
+    /// Index of the strain coordinate of the driving joint.
+    pub driver: usize,
+    /// Index of the strain coordinate of the passive joint.
+    pub passive: usize,
+    /// Rotation of the passive joint per rotation of the driving joint.
+    pub factor: f64,
+}
+
+impl LinkedCoordinates {
+    /// The product `T q`: the strain coordinates `shape`, with the rotations of the passive joints added that follow
+    /// from those of the driving joints.
+    pub(super) fn turned_along(linked: &[Self], shape: &DVector<f64>) -> DVector<f64> {
+        let mut out = shape.clone();
+        for of in linked {
+            out[of.passive] += of.factor * shape[of.driver];
+        }
+        out
+    }
+
+    /// The product `Tᵀ f`: the generalized forces `forces`, with those on the passive joints added to the driving
+    /// joints.
+    pub(super) fn transferred(linked: &[Self], forces: &DVector<f64>) -> DVector<f64> {
+        let mut out = forces.clone();
+        for of in linked {
+            out[of.driver] += of.factor * forces[of.passive];
+        }
+        out
+    }
 }
 
 impl Posed<'_> {
@@ -55,7 +89,7 @@ impl Posed<'_> {
     /// the motion of the passive joints that a linkage turns with it.
     pub fn tip_twists(&self) -> Vec<Twist> {
         let mut twists: Vec<Twist> = self.elements().flat_map(|e| e.twists.iter().copied()).collect();
-        for (driver, passive, factor) in self.linked_coordinates() {
+        for LinkedCoordinates { driver, passive, factor } in self.linked_coordinates() {
             let transferred = twists[passive] * factor;
             twists[driver] += transferred;
         }
@@ -65,17 +99,13 @@ impl Posed<'_> {
     /// The strain coordinates `shape`, with the rotations of the passive joints added that follow from the rotations of
     /// the driving joints.
     pub(crate) fn with_passive(&self, shape: &DVector<f64>) -> DVector<f64> {
-        let mut out = shape.clone();
-        for (driver, passive, factor) in self.linked_coordinates() {
-            out[passive] += factor * shape[driver];
-        }
-        out
+        LinkedCoordinates::turned_along(&self.linked_coordinates(), shape)
     }
 
     /// The mass matrix `Tᵀ M T` of the arm with linkages, given the mass matrix `M` of the arm without them. `T` turns
     /// each passive joint together with its driving joint.
     pub(crate) fn with_linkages(&self, mut mass: DMatrix<f64>) -> DMatrix<f64> {
-        for (driver, passive, factor) in self.linked_coordinates() {
+        for LinkedCoordinates { driver, passive, factor } in self.linked_coordinates() {
             let column = mass.column(passive) * factor;
             mass.column_mut(driver).zip_apply(&column, |m, c| *m += c);
             let row = mass.row(passive) * factor;
@@ -84,15 +114,18 @@ impl Posed<'_> {
         mass
     }
 
-    /// For each linkage: index of the strain coordinate of the driving joint, index of the strain coordinate of the
-    /// passive joint, and the factor between the two rotations.
-    fn linked_coordinates(&self) -> Vec<(usize, usize, f64)> {
+    /// The coupled strain coordinates of each linkage.
+    pub(super) fn linked_coordinates(&self) -> Vec<LinkedCoordinates> {
         let coordinate = |name: &str| {
             let before = self.elements().take_while(|e| e.name != name);
             before.map(|e| e.twists.len()).sum::<usize>()
         };
-        let linkages = self.chain.linkages().iter();
-        linkages.map(|l| (coordinate(&l.driver), coordinate(&l.passive), l.factor)).collect()
+        let of = |l: &Linkage| LinkedCoordinates {
+            driver: coordinate(&l.driver),
+            passive: coordinate(&l.passive),
+            factor: l.factor,
+        };
+        self.chain.linkages().iter().map(of).collect()
     }
 }
 

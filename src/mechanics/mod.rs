@@ -9,7 +9,8 @@
 //!   on the twist of the coordinate. The coordinate deflects by force times compliance. The displacement of the tip is
 //!   the sum over all coordinates.
 //! - Modes (`modes`; Eqs 16-18 are the case of rigid links): the mass matrix `M` follows from the composite outboard
-//!   inertia and each pair of twists. The compliance matrix `C` is diagonal, and `C^½ M C^½ ψ = ψ/ω²`.
+//!   inertia and each pair of twists. The compliance matrix `C` is diagonal, and `C^½ M C^½ ψ = ψ/ω²`. The lowest
+//!   mode alone (`lowest_mode`, `krylov`) needs products with `M` only, which take a pass over the chain.
 //! - Response (`response`; F(t) of Eq 16): the sum of the modes under a harmonic force at the tip.
 //!
 //! `hanging` repeats the statics in the deflected pose, for large displacements. `centre_line` turns strain coordinates
@@ -24,10 +25,12 @@ pub(crate) mod centre_line;
 pub(crate) mod chain;
 pub(crate) mod condensed;
 pub(crate) mod hanging;
+pub(crate) mod krylov;
 pub(crate) mod lanes;
 pub(crate) mod linkage;
 pub(crate) mod lowest;
 pub(crate) mod lowest_lanes;
+mod lowest_mode;
 pub(crate) mod modes;
 pub(crate) mod prismatic;
 pub(crate) mod product;

@@ -61,18 +61,6 @@ impl Posed<'_> {
             .collect()
     }
 
-    /// The lowest natural frequency \[Hz\] of small vibrations about a static state. It is infinite if no compliant
-    /// element moves a mass.
-    pub fn lowest_frequency_hz(&self, statics: &Statics) -> f64 {
-        // eigenvalues without eigenvectors take less time, and a front needs only them
-        let a = self.flexibility_form(statics).0;
-        if a.is_empty() {
-            return f64::INFINITY;
-        }
-        let largest = a.symmetric_eigenvalues().iter().copied().fold(0.0, f64::max);
-        1.0 / (largest.sqrt() * TAU)
-    }
-
     /// All modes of small vibrations about a static state, from the eigenvalue problem in flexibility form
     /// `C^½ M C^½ ψ = ψ/ω²`.
     pub fn solve_modes(&self, statics: &Statics) -> Modes {
@@ -94,10 +82,7 @@ impl Posed<'_> {
     /// The matrix `C^½ M C^½`, and the diagonal of `C^½`. `C` has the tangent compliances of the static state, `M` is
     /// the mass matrix.
     fn flexibility_form(&self, statics: &Statics) -> (DMatrix<f64>, DVector<f64>) {
-        let roots = DVector::from_iterator(
-            statics.tangent_compliances.iter().map(Vec::len).sum(),
-            statics.tangent_compliances.iter().flatten().map(|c| c.sqrt()),
-        );
+        let roots = statics.root_compliances();
         let mut a = self.mass_matrix();
         for (mut column, root) in a.column_iter_mut().zip(roots.iter()) {
             column.component_mul_assign(&roots);

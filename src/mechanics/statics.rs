@@ -8,7 +8,7 @@ use super::chain::{Compliance, ElasticElement, Item, Posed};
 use super::linkage::Transferred;
 use super::prismatic::GuideLoad;
 use super::{Twist, Wrench, angular, displacement_at, force_wrench, linear, stack};
-use nalgebra::Vector3;
+use nalgebra::{DVector, Vector3};
 
 /// The static state of an arm in a pose under a load.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,6 +72,14 @@ pub struct LinkRoot {
     pub force_n: Vector3<f64>,
     /// Moment about the link (torsion), about y and about z of the section \[N m\].
     pub moment_nm: Vector3<f64>,
+}
+
+impl Statics {
+    /// Square root of the tangent compliance of each strain coordinate, base to tip: the diagonal of `C^½`.
+    pub(super) fn root_compliances(&self) -> DVector<f64> {
+        let count = self.tangent_compliances.iter().map(Vec::len).sum();
+        DVector::from_iterator(count, self.tangent_compliances.iter().flatten().map(|c| c.sqrt()))
+    }
 }
 
 impl Posed<'_> {

@@ -34,6 +34,14 @@ pub fn file_name(name: &str) -> String {
     unique_file_name(name, &mut HashSet::new())
 }
 
+/// The name of the folder of results for a name. If the name has characters beyond ASCII, which the folder's name
+/// cannot contain, a hash of the whole name is added. Names that differ in such characters only have different folders.
+pub(crate) fn folder_name(name: &str) -> String {
+    let plain = file_name(name);
+    let hash = hash_of(name);
+    if name.is_ascii() || plain.ends_with(&hash) { plain } else { shortened_with(&plain, &hash) }
+}
+
 /// A file name for `name` that differs from all names in `taken`. The file name is added to `taken`.
 pub(crate) fn unique_file_name(name: &str, taken: &mut HashSet<String>) -> String {
     let plain = not_empty_and_short(name);
@@ -49,16 +57,23 @@ pub(crate) fn unique_file_name(name: &str, taken: &mut HashSet<String>) -> Strin
 /// name is added.
 fn not_empty_and_short(name: &str) -> String {
     let plain = letters_and_digits(name);
-    let hash = || blake3::hash(name.as_bytes()).to_hex()[..HASH_LETTERS].to_string();
     match plain.len() {
-        0 => format!("name-{}", hash()),
-        _ if DEVICES.contains(&plain.as_str()) => format!("{plain}-{}", hash()),
+        0 => format!("name-{}", hash_of(name)),
+        _ if DEVICES.contains(&plain.as_str()) => format!("{plain}-{}", hash_of(name)),
         1..=MOST_LETTERS => plain,
-        _ => {
-            let kept = plain[..MOST_LETTERS - HASH_LETTERS - 1].trim_end_matches('-');
-            format!("{kept}-{}", hash())
-        }
+        _ => shortened_with(&plain, &hash_of(name)),
     }
+}
+
+/// A plain name and a hash, with as much of the name as there is room for.
+fn shortened_with(plain: &str, hash: &str) -> String {
+    let kept = plain.len().min(MOST_LETTERS - HASH_LETTERS - 1);
+    format!("{}-{hash}", plain[..kept].trim_end_matches('-'))
+}
+
+/// A hash of a whole name, in [`HASH_LETTERS`] letters.
+fn hash_of(name: &str) -> String {
+    blake3::hash(name.as_bytes()).to_hex()[..HASH_LETTERS].to_string()
 }
 
 /// The name in lower case, with every run of characters other than ASCII letters and digits replaced by one `-`.
@@ -94,6 +109,18 @@ mod tests {
         }
         // the third name would give `pa6-x-2`, but the second name has this already; so the third gets a further number
         assert_eq!(made[..3], ["pa6-x", "pa6-x-2", "pa6-x-2-2"]);
+    }
+
+    #[test]
+    fn folders_of_names_that_differ_beyond_ascii_differ() {
+        let long = "鋼".to_string() + &"m".repeat(300);
+        let names = ["arm", "árm", "àrm", "arm é", "arm è", "鋼", "鉄", "con", "cön", &long];
+        let made: HashSet<String> = names.iter().map(|name| folder_name(name)).collect();
+        assert_eq!(made.len(), names.len(), "{made:?}");
+        assert!(made.iter().all(|name| (1..=MOST_LETTERS).contains(&name.len())), "{made:?}");
+        for plain in ["Light arm (2)", "con", "", &"m".repeat(300)] {
+            assert_eq!(folder_name(plain), file_name(plain));
+        }
     }
 
     #[test]

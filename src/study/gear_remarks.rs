@@ -3,7 +3,7 @@
 //!
 //! A gear with a play of β (the whole angle between its two stops) leaves the tip loose by β ρ, where ρ is the largest
 //! displacement of the tip per radian of the joint in the judged cases: the distance of the tip from the axis, unless
-//! the joint drives others.
+//! the joint drives others. A screw or rack leaves it loose by its own play along the travel.
 
 use super::bearing_remarks::gears_of;
 use crate::arm::effect::lost_motion::KIND as LOST_MOTION;
@@ -12,8 +12,8 @@ use crate::catalog::gear::{Gear, GearKind};
 use crate::catalog::lookup::first_names;
 use crate::report::front_table::FrontTable;
 use crate::report::number::significant;
-use crate::report::picks::{designs, picks};
-use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint};
+use crate::report::picks::{Pick, designs, picks};
+use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiece};
 use crate::space::station::reaches_m;
 
 /// Largest number of gears that one sentence names.
@@ -81,50 +81,80 @@ fn of_row(gear: &Gear, catalogs: &Catalogs) -> Vec<String> {
     kind.into_iter().chain(life).collect()
 }
 
-/// Remarks, in sentences, on the play of the picks' gears where it moves the tip by more than [`LEAST_SHARE`] of the
-/// deflection. A joint at which the study states play itself (effect `lost_motion`) is left out.
+/// Remarks, in sentences, on the play of the picks' gears, screws and racks where it moves the tip by more than
+/// [`LEAST_SHARE`] of the deflection. A joint at which the study states play itself (effect `lost_motion`) is left out.
 pub(crate) fn play_remarks(space: &DesignSpace, catalogs: &Catalogs, front: &FrontTable) -> Vec<String> {
     let picked = picks(&designs(front));
     let judged = space.judged_cases.iter().map(|&i| &space.cases[i]);
     let models_play =
         |joint: &SpaceJoint| space.effects.iter().any(|e| e.effect == LOST_MOTION.name && e.at == joint.name);
     let of_joint = |((_, joint), reach_m): ((usize, &SpaceJoint), f64)| {
-        let mut said = ByWords(Vec::new());
-        let column = front.column(&format!("{}_gear", joint.name)).filter(|_| !models_play(joint));
-        for pick in column.iter().flat_map(|_| &picked) {
-            let gear = column.and_then(|column| catalogs.gear(&front.rows[pick.design.row][column]).ok());
-            let Some((gear, play)) = gear.and_then(|gear| Some((gear, Play::of(gear)?))) else { continue };
-            if play.loose_mm(reach_m) > LEAST_SHARE * pick.design.tip_deflection_mm {
-                said.add(play, gear);
-            }
-        }
-        said.sentences(|play, names| {
-            format!(
-                "{}: {names} with {} arcmin of {}: the tip is loose by up to {} mm from stop to stop, which is not in the \
-                 deflection.",
-                joint.name,
-                play.arcmin,
-                play.word,
-                significant(play.loose_mm(reach_m), 2)
-            )
-        })
+        let gear = |name: &str| catalogs.gear(name).ok();
+        said_of(&joint.name, reach_m, &picked, front, gear)
     };
-    space.joints().zip(reaches_m(space, judged)).flat_map(of_joint).collect()
+    let of_rail = |piece: &SpacePiece| {
+        let SpacePiece::Prismatic(rail) = piece else { return Vec::new() };
+        let Some(drive) = &rail.drive else { return Vec::new() };
+        // everything outboard travels with the rail, and so does the tip
+        said_of(&rail.joint.name, 1.0, &picked, front, |name| drive.gears.iter().find(|gear| gear.id == name))
+    };
+    let joints = space.joints().zip(reaches_m(space, judged)).filter(|((_, joint), _)| !models_play(joint));
+    joints.flat_map(of_joint).chain(space.pieces.iter().flat_map(of_rail)).collect()
+}
+
+/// The remarks on the play of the gears that the picks have at one joint. `reach_m` is the way of the tip per radian of
+/// the joint \[m\], or per metre of a rail; `gear` finds a gear by its name.
+fn said_of<'g>(
+    joint: &str,
+    reach_m: f64,
+    picked: &[Pick],
+    front: &FrontTable,
+    gear: impl Fn(&str) -> Option<&'g Gear>,
+) -> Vec<String> {
+    let Some(column) = front.column(&format!("{joint}_gear")) else { return Vec::new() };
+    let mut said = ByWords(Vec::new());
+    for pick in picked {
+        let gear = gear(&front.rows[pick.design.row][column]);
+        let Some((gear, play)) = gear.and_then(|gear| Some((gear, Play::of(gear)?))) else { continue };
+        if play.loose_mm(reach_m) > LEAST_SHARE * pick.design.tip_deflection_mm {
+            said.add(play, gear);
+        }
+    }
+    said.sentences(|play, names| {
+        format!(
+            "{joint}: {names} with {} of {}: the tip is loose by up to {} mm from stop to stop, which is not in the deflection.",
+            play.amount(),
+            play.word,
+            significant(play.loose_mm(reach_m), 2)
+        )
+    })
 }
 
 /// The play of a gear: the larger of the backlash and the lost motion that its row states.
 #[derive(Debug, PartialEq)]
 struct Play {
+    /// The play as an angle. For a screw or rack a metre of travel stands in the place of a radian.
     arcmin: f64,
     word: &'static str,
+    slides: bool,
 }
 
 impl Play {
     /// `None` if the row states no play, or none above zero.
     fn of(gear: &Gear) -> Option<Self> {
+        let slides = gear.kind.slides();
         let stated = [(gear.backlash_arcmin, "backlash"), (gear.lost_motion_arcmin, "lost motion")];
-        let plays = stated.into_iter().filter_map(|(arcmin, word)| Some(Self { arcmin: arcmin?, word }));
+        let plays =
+            stated.into_iter().filter_map(|(arcmin, word)| Some(Self { arcmin: arcmin?, word, slides }));
         plays.filter(|play| play.arcmin > 0.0).reduce(|a, b| if b.arcmin > a.arcmin { b } else { a })
+    }
+
+    /// The play in words, with the unit in which its row states it.
+    fn amount(&self) -> String {
+        match self.slides {
+            true => format!("{} mm", significant(self.loose_mm(1.0), 3)),
+            false => format!("{} arcmin", self.arcmin),
+        }
     }
 
     /// How far the tip moves from one stop to the other \[mm\], if it moves by `reach_m` \[m\] per radian of the joint.
@@ -170,5 +200,30 @@ mod tests {
         let modelled = json!([{"effect": LOST_MOTION.name, "at": "j",
             "parameters": {"half_width_rad": 5e-4, "torque_nm": 1.0}}]);
         assert_eq!(remarks(1.0, modelled), [""; 0]);
+    }
+
+    /// The remarks on the play of a front of one design on a rail with a rack that has this backlash \[mm\].
+    fn remarks_on_rail(backlash_mm: f64) -> Vec<String> {
+        let rack = json!({"name": "R2", "pinion_radius_mm": 20, "stiffness_n_per_m": 2e7, "backlash_mm": backlash_mm});
+        let study = json!({"name": "s", "poses": [{"pose": {"rail_mm": 100}}], "chain": [
+            {"type": "prismatic", "name": "rail", "axis": [1, 0, 0], "mass_kg": 3, "drive": "first_fit", "racks": [rack]},
+            {"type": "link", "name": "boom", "vector_m": [0, 0.5, 0], "mass_kg": 1}]});
+        let catalogs = Catalogs::builtin();
+        let study = read_study(Document::parse("s.json", &study.to_string()).unwrap(), &catalogs).unwrap();
+        let columns = ["design_id", "rail_gear", "tip_deflection_mm", "mass_kg", "lowest_mode_hz"];
+        let front = FrontTable {
+            columns: columns.map(String::from).to_vec(),
+            rows: vec![["x0", "R2", "1", "4", "20"].map(String::from).to_vec()],
+        };
+        play_remarks(&study.space, &catalogs, &front)
+    }
+
+    #[test]
+    fn the_play_of_a_rail_is_said_in_millimetres() {
+        let words = "rail: R2 with 0.150 mm of backlash: the tip is loose by up to 0.15 mm from stop to stop, which is not \
+                     in the deflection.";
+        assert_eq!(remarks_on_rail(0.15), [words]);
+        assert_eq!(remarks_on_rail(0.01), [""; 0], "too little to matter");
+        assert_eq!(remarks_on_rail(0.0), [""; 0]);
     }
 }

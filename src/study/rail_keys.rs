@@ -92,8 +92,16 @@ const PART_FORCE: Key = optional(
     "Largest force, reached in an emergency stop.",
 );
 
+const PART_BACKLASH: Key = optional(
+    "backlash_mm",
+    Kind::NonNegative,
+    "mm",
+    "0",
+    "Way along the travel from stop to stop without force; results say it where it matters.",
+);
+
 /// Keys of a ball screw.
-const SCREW_KEYS: [Key; 12] = [
+const SCREW_KEYS: [Key; 13] = [
     PART_NAME,
     required("lead_mm", Kind::Positive, "mm", "Way of the nut a turn."),
     required("root_diameter_mm", Kind::Positive, "mm", "Diameter of the shaft at the root of the thread."),
@@ -115,6 +123,7 @@ const SCREW_KEYS: [Key; 12] = [
     PART_FORCE,
     optional("max_speed_rpm", Kind::Positive, "rpm", "the critical speed", "Largest speed for the balls."),
     PART_EFFICIENCY,
+    PART_BACKLASH,
     optional(
         "nut_stiffness_n_per_m",
         Kind::Positive,
@@ -133,11 +142,12 @@ const SCREW_KEYS: [Key; 12] = [
 ];
 
 /// Keys of a rack.
-const RACK_KEYS: [Key; 9] = [
+const RACK_KEYS: [Key; 10] = [
     PART_NAME,
     required("pinion_radius_mm", Kind::Positive, "mm", "Pitch radius of the pinion."),
     optional("ratio", Kind::Positive, "-", "1", "Turns of the motor per turn of the pinion."),
     PART_EFFICIENCY,
+    PART_BACKLASH,
     PART_FORCE,
     optional("max_speed_rpm", Kind::Positive, "rpm", "not checked", "Largest speed of the motor's side."),
     required("stiffness_n_per_m", Kind::Positive, "N/m", "Stiffness along the travel."),

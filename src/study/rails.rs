@@ -98,6 +98,7 @@ fn read_screw(node: &Node) -> Option<Gear> {
     let (life, force, speed) = (known("dynamic_load_rating_n"), known("max_force_n"), known("max_speed_rpm"));
     let series = known("nut_stiffness_n_per_m");
     let (inertia, mass) = (further("inertia_kgm2"), further("mass_kg"));
+    let backlash = further("backlash_mm");
     let screw = Screw {
         name: name?,
         lead_m: lead?,
@@ -112,7 +113,7 @@ fn read_screw(node: &Node) -> Option<Gear> {
         further_inertia_kgm2: inertia?,
         further_mass_kg: mass?,
     };
-    Some(screw.gear())
+    Some(with_backlash(screw.gear(), backlash?))
 }
 
 fn read_ends(node: &Node) -> Option<Ends> {
@@ -133,6 +134,7 @@ fn read_rack(node: &Node) -> Option<Gear> {
     let (force, speed) = (known("max_force_n"), known("max_speed_rpm"));
     let inertia = object.or("inertia_kgm2", 0.0, Node::non_negative);
     let mass = object.or("mass_kg", 0.0, Node::non_negative);
+    let backlash = object.or("backlash_mm", 0.0, Node::non_negative);
     let rack = Rack {
         name: name?,
         pinion_radius_m: radius? / 1e3,
@@ -144,5 +146,12 @@ fn read_rack(node: &Node) -> Option<Gear> {
         inertia_kgm2: inertia?,
         mass_kg: mass?,
     };
-    Some(rack.gear())
+    Some(with_backlash(rack.gear(), backlash?))
+}
+
+/// A screw or rack with this backlash along the travel.
+fn with_backlash(gear: Gear, backlash_mm: f64) -> Gear {
+    // as everywhere in the gear of a rail, a metre stands in the place of a radian
+    let backlash_arcmin = 60.0 * (backlash_mm / 1e3).to_degrees();
+    Gear { backlash_arcmin: (backlash_mm > 0.0).then_some(backlash_arcmin), ..gear }
 }

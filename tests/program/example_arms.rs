@@ -124,13 +124,25 @@ fn the_palletizer_is_lighter_with_its_gas_spring() {
         let command = command.current_dir(here.path());
         let output =
             command.args(["size", "study.json", "--design", "x0", "--json"]).output().expect("it runs");
-        let rows: Vec<Value> = serde_json::from_slice(&output.stdout).expect("JSON");
-        let row = rows.iter().find(|row| row["joint"] == "shoulder").expect("the shoulder");
+        let sized: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let mut rows = sized["joints"].as_array().expect("joints").iter();
+        let row = rows.find(|row| row["joint"] == "shoulder").expect("the shoulder");
         row["static_torque_nm"].as_f64().expect("a number")
     };
     let words =
         format!("carries {:.0} N m at rest instead of {:.0} N m", shoulder_nm(&with), shoulder_nm(&without));
     assert!(page().contains(&words), "{words}");
+}
+
+#[test]
+fn the_scara_is_the_one_of_the_page() {
+    let (run, summary) = run("../scara.json", None);
+    answers("A SCARA with a quill", &run, &summary, 819_200);
+    let knee = summary.lines().find(|line| line.starts_with("| knee")).expect("a knee");
+    let cells: Vec<&str> = knee.split('|').map(str::trim).collect();
+    let words = format!("The knee weighs {} kg and deflects by {} mm.", cells[3], cells[4]);
+    assert!(page().contains(&words), "{words}");
+    assert!(page().contains("images/arm-scara.svg"));
 }
 
 #[test]

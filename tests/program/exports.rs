@@ -229,6 +229,34 @@ fn a_backlash_has_an_armature_a_stop_and_moves_what_follows() {
     steps(&out.join("arm.xml"));
 }
 
+/// A motor of 0.1 kg m² on the spring of a joint, and 2 kg at 0.5 m behind it: they vibrate against each other. A light
+/// body between two stiff springs vibrates far faster.
+#[test]
+fn the_time_step_follows_the_highest_frequency_of_the_file() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let joint = json!({"type": "joint", "name": "j", "axis": [0, 0, 1], "stiffness_nm_per_rad": 1e6});
+    let beam = json!({"type": "link", "name": "beam", "vector_m": [1, 0, 0], "mass_kg": 2});
+    let step_of = |chain: Value| {
+        let (record, out) = export(folder.path(), &json!({"name": "a", "chain": chain}), &["mjcf"]);
+        let xml = text(&out, "arm.xml");
+        let words = xml.split("timestep=\"").nth(1).expect("a step");
+        let step: f64 = words.split('"').next().expect("a number").parse().expect("a number");
+        (step, notes(&record).contains("the time step is"), xml)
+    };
+    let (step_s, is_noted, xml) = step_of(json!([joint, beam]));
+    let rad_per_s = (1e6f64 * (1.0 / 0.1 + 1.0 / (2.0 * 0.25))).sqrt();
+    assert!(step_s * rad_per_s <= 1.0 && (step_s + 1e-5) * rad_per_s > 1.0, "{step_s} s, {rad_per_s} rad/s");
+    assert!(!is_noted && xml.contains(&format!("f = {:.0} Hz", rad_per_s / std::f64::consts::TAU)), "{xml}");
+    let mut light = joint.clone();
+    (light["name"], light["mass_kg"]) = (json!("k"), json!(1e-3));
+    let (short_s, is_noted, _) = step_of(json!([joint, light, beam]));
+    assert!(is_noted && short_s < 1e-6, "{short_s} s");
+    // nothing vibrates on rigid joints
+    let mut rigid = joint.clone();
+    rigid["stiffness_nm_per_rad"] = Value::Null;
+    assert_eq!(step_of(json!([rigid, beam])).0, 1e-3);
+}
+
 #[test]
 fn a_motor_behind_a_gear_in_numbers_has_its_armature() {
     let folder = tempfile::tempdir().expect("a folder");

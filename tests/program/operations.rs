@@ -54,6 +54,23 @@ fn a_log_in_json_is_an_object_a_line_and_a_quiet_run_says_errors_alone() {
 }
 
 #[test]
+fn studies_whose_names_differ_beyond_ascii_have_folders_of_their_own() {
+    let here = tempfile::tempdir().expect("a folder");
+    for (file, name) in [("a.json", "Ärm 5 kg"), ("b.json", "Örm 5 kg"), ("c.json", "Arm 5 kg")] {
+        let mut study: Value = serde_json::from_str(STUDY).expect("JSON");
+        study["name"] = name.into();
+        std::fs::write(here.path().join(file), study.to_string()).expect("written");
+        assert!(armwright(here.path(), &["run", file]).status.success(), "{name}");
+    }
+    let folders = std::fs::read_dir(here.path().join("results")).expect("results");
+    let mut names: Vec<String> =
+        folders.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    assert!(names.len() == 3 && names[0] == "arm-5-kg", "{names:?}");
+    assert!(names[1..].iter().all(|name| name.starts_with("rm-5-kg-")), "{names:?}");
+}
+
+#[test]
 fn results_are_the_same_outside_of_their_timings_for_any_number_of_threads() {
     let here = with_study();
     for search in ["exact", "exhaustive"] {

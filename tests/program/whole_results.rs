@@ -278,6 +278,14 @@ fn symbolic_links_are_not_followed() {
     let (code, text) = said(&mut command(here.path(), &["run", "fig2-metals", "--out", "out"]));
     assert_eq!(code, 0, "{text}");
     assert!(text.contains("warning: not written: plots/"), "{text}");
+    // in a log of JSON a warning is an object as everything else
+    let words = ["run", "fig2-metals", "--out", "out", "--log", "json"];
+    let logged = command(here.path(), &words).output().expect("it runs");
+    let text = String::from_utf8_lossy(&logged.stderr).into_owned();
+    let mut events = text.lines().map(|line| serde_json::from_str::<Value>(line).expect(line));
+    let begins =
+        |event: &Value| event["message"].as_str().is_some_and(|s| s.starts_with("not written: plots/"));
+    assert!(events.any(|event| event["event"] == "warning" && begins(&event)), "{text}");
     assert_eq!(files(&at("elsewhere")), elsewhere);
     assert_eq!(fs::read_to_string(at("notes.md")).expect("mine"), "mine");
     assert!(!at("out/summary.md").is_symlink());
