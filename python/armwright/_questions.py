@@ -94,7 +94,7 @@ def analyze(
 def size(
     study: Described, *, design: Optional[str] = None, catalogs: Optional[Catalogs] = None
 ) -> List[Dict[str, Any]]:
-    """The sizing of every joint of a study's arm, tip first: the ``joints`` of ``armwright size --json``.
+    """The sizing of every joint of a study's arm, tip first, as ``armwright size --json`` prints it.
 
     :param study: name of a built-in study, path, dict or JSON text
     :param design: a ``design_id``; without it, links of median mass

@@ -19,7 +19,6 @@ use crate::study::gear_remarks::life_remarks;
 use crate::study::load::{load_study, refuse_empty};
 use crate::study::table::sizing_rows;
 use clap::Args;
-use serde_json::json;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -70,10 +69,9 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failur
     let rows =
         sizing_rows(&problem, catalogs, &chosen).map_err(|slot| why_not_held(&problem, &chosen, slot))?;
     let of_lives = life_remarks(rows.iter().map(|row| row.gear.as_str()), catalogs);
-    let remarks = [study.remarks.clone(), of_lives].concat();
-    let table = render_rows(&rows);
-    let text = format!("{}{table}{}", heading(&study, &problem, &chosen), paragraphs(&remarks));
-    let json = format!("{:#}", json!({"joints": rows, "remarks": remarks}));
+    let remarks = paragraphs(&[study.remarks.clone(), of_lives].concat());
+    let text = format!("{}{}{remarks}", heading(&study, &problem, &chosen), render_rows(&rows));
+    let json = serde_json::to_string_pretty(&rows).expect("rows of numbers and strings serialize");
     if let Some(dir) = &args.out {
         let files = [("sizing.json", &json), ("sizing.txt", &text)];
         write_own(

@@ -41,7 +41,7 @@ pub fn arm_of_design(study: &Study, id: &str, catalogs: &Catalogs) -> Result<(Ar
     Ok((Arm { name: format!("{} {id}", study.name), ..arm }, cases))
 }
 
-/// The sizing of every joint of a design, tip first: the `joints` of `armwright size --json`. Without a `design_id`, the
+/// The sizing of every joint of a design, tip first: the rows of `armwright size --json`. Without a `design_id`, the
 /// design has links of median mass.
 ///
 /// # Errors

@@ -260,9 +260,9 @@ fn a_bearing_that_lacks_ratings_is_named_beside_the_results_and_in_the_sizing() 
     // what loads it follows from the geometry, whether or not it is rated
     let (_, sized) = armwright(here.path(), &["size", "study.json", "--catalogs", "parts", "--json"]);
     let sized: Value = serde_json::from_str(&sized).expect("JSON");
-    let moment_nm = sized["joints"][0]["bearing_moment_nm"].as_f64().expect("a number");
+    let moment_nm = sized[0]["bearing_moment_nm"].as_f64().expect("a number");
     assert!((moment_nm / (91.0 / by_hand) - 1.0).abs() < 1e-9, "{sized}");
-    assert_eq!(sized["joints"][0]["bearing_moment_permissible_nm"], Value::Null);
+    assert_eq!(sized[0]["bearing_moment_permissible_nm"], Value::Null);
     let rigid = "igid output bearing: CSG-20-100 lacks tilting_stiffness_nm_per_rad (the tip deflects more than printed)";
     said_of(&["tilting_stiffness_nm_per_rad"], rigid);
     let (_, checked) = armwright(here.path(), &["catalog", "check", "--catalogs", "parts"]);
@@ -347,7 +347,7 @@ fn the_mass_that_is_passed_inward_has_the_bearing_that_the_joint_states() {
         let here = folder_with("study.json", &study(6.0, stated));
         let (_, sized) = armwright(here.path(), &["size", "study.json", "--json"]);
         let sized: Value = serde_json::from_str(&sized).expect("JSON");
-        sized["joints"][0]["mass_passed_inward_kg"].as_f64().expect("a number")
+        sized[0]["mass_passed_inward_kg"].as_f64().expect("a number")
     };
     assert!((inward(0.8) - inward(0.0) - 0.8).abs() < 1e-12);
 }

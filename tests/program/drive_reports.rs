@@ -32,7 +32,7 @@ fn the_forces_of_a_rail_have_keys_and_units_of_their_own() {
     let here = folder(&column(), &[]);
     let (code, text) = armwright(here.path(), &["size", "study.json", "--json"]);
     assert_eq!(code, 0, "{text}");
-    let row = serde_json::from_str::<Value>(&text).expect("JSON")["joints"][0].clone();
+    let row = serde_json::from_str::<Value>(&text).expect("JSON")[0].clone();
     // the median of two tubes is one of them: 60 x 3 or 50 x 3 mm of 2700 kg/m3
     let tube_kg = |d_mm: f64| std::f64::consts::PI * (d_mm - 3.0) * 3.0 * 1e-6 * 0.4 * 2700.0;
     let weight_n = |d_mm: f64| (4.0 + 3.0 + tube_kg(d_mm)) * GRAVITY_M_S2;
@@ -123,7 +123,7 @@ fn the_mass_that_goes_inward_has_the_stages_and_not_the_motor_that_sits_elsewher
     let here = folder(&study, &[]);
     let (code, text) = armwright(here.path(), &["size", "study.json", "--json"]);
     assert_eq!(code, 0, "{text}");
-    let rows = serde_json::from_str::<Value>(&text).expect("JSON")["joints"].clone();
+    let rows: Value = serde_json::from_str(&text).expect("JSON");
     let inward_kg = |row: usize| rows[row]["mass_passed_inward_kg"].as_f64().expect("kg");
     let catalog = armwright::catalog::Catalogs::builtin();
     let gear_kg = catalog.gear("CSG-17-50").expect("a gear").mass_housed_unit_kg.expect("kg");

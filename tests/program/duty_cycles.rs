@@ -21,8 +21,7 @@ fn on(study: &Value, words: &[&str]) -> (i32, String, String) {
 fn sized(study: &Value) -> Vec<Value> {
     let (code, out, err) = on(study, &["size", "study.json", "--json"]);
     assert_eq!(code, 0, "{err}");
-    let sized: Value = serde_json::from_str(&out).expect("JSON");
-    sized["joints"].as_array().expect("joints").clone()
+    serde_json::from_str(&out).expect("JSON")
 }
 
 /// One joint with 10 kg at 1 m, and a given pair of gear and motor.
