@@ -37,6 +37,7 @@ use crate::study::budget::budgets;
 use crate::study::definition::Study;
 use crate::study::effects::Correction;
 use crate::study::gear_remarks::{life_remarks_on, play_remarks};
+use crate::study::given_parts::given_parts;
 use crate::study::given_remarks::GivenDrives;
 use crate::study::outcome::StudyOutcome;
 use crate::study::page::study_page;
@@ -322,7 +323,7 @@ impl Finished<'_> {
                 ranges: range_words(&study.space),
                 not_checked: study.not_checked.clone(),
                 remarks: self.remarks(&overall, &given),
-                caveats: Caveats::of(self.catalogs),
+                caveats: Caveats::of(self.catalogs).with_given(given_parts(&study.space)),
                 results: self.dir.display().to_string(),
             },
             overall,

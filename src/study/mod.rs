@@ -23,6 +23,7 @@ pub(crate) mod effects;
 pub(crate) mod exact_shards;
 mod fit;
 pub(crate) mod gear_remarks;
+pub(crate) mod given_parts;
 pub(crate) mod given_remarks;
 mod harness;
 pub(crate) mod joint_obstacle;

@@ -3,6 +3,7 @@
 
 use super::gallery::{Gallery, table};
 use crate::arm::load::LoadCase;
+use crate::arm::pieces::without_factors;
 use crate::arm::section::millimetres;
 use crate::arm::springs::Drawn;
 use crate::arm::{Arm, Element, Link, LinkBody};
@@ -256,7 +257,8 @@ impl PickedArm {
                     let wall_mm = |m: f64| shortest(millimetres(m));
                     Some(json!({
                         "name": link.name,
-                        "material": material_name,
+                        "material": without_factors(material_name),
+                        "factors": material_name.strip_prefix(without_factors(material_name)),
                         "length_m": significant(link.vector_m.norm(), 3),
                         "size": section_size(section, outer_mm, wall_mm),
                         "mass_kg": significant(e.mass_kg(), 4),
