@@ -39,6 +39,7 @@ use crate::study::effects::Correction;
 use crate::study::gear_remarks::{life_remarks_on, play_remarks};
 use crate::study::given_parts::given_parts;
 use crate::study::given_remarks::GivenDrives;
+use crate::study::partial_materials::links_without;
 use crate::study::outcome::StudyOutcome;
 use crate::study::page::study_page;
 use crate::study::range::range_words;
@@ -323,6 +324,7 @@ impl Finished<'_> {
                 ranges: range_words(&study.space),
                 not_checked: study.not_checked.clone(),
                 remarks: self.remarks(&overall, &given),
+                materials_of_some_links: links_without(self.whole),
                 caveats: Caveats::of(self.catalogs).with_given(given_parts(&study.space)),
                 results: self.dir.display().to_string(),
             },

@@ -40,6 +40,7 @@ pub(crate) mod omissions;
 pub(crate) mod outcome;
 pub(crate) mod page;
 pub(crate) mod pick_poses;
+pub(crate) mod partial_materials;
 mod piece_names;
 pub(crate) mod pose_search;
 pub mod question;
