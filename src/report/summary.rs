@@ -355,7 +355,9 @@ pub(crate) fn empty_fronts(input: &SummaryInput) -> Vec<String> {
         let stopped = ["partial", "interrupted"].contains(&material.status.as_str());
         match input.facts.materials_of_some_links.get(name) {
             _ if !material.front.rows.is_empty() => None,
-            Some(links) => Some(format!("No design is of {name} alone: the study does not offer it for {}.", and(links))),
+            Some(links) => {
+                Some(format!("No design is of {name} alone: the study does not offer it for {}.", and(links)))
+            }
             None => (!stopped).then(|| format!("No design of {name} alone meets the limits.")),
         }
     };

@@ -74,7 +74,9 @@ mod tests {
         let sentence = Caveats::of(&catalogs).with_given(given).sentence(&front, &picked);
         let sentence = sentence.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(
-            sentence.ends_with("F11-10 (from memory) in every pick; Aluminium 6082-T6 (representative) in every pick."),
+            sentence.ends_with(
+                "F11-10 (from memory) in every pick; Aluminium 6082-T6 (representative) in every pick."
+            ),
             "{sentence}"
         );
     }

@@ -85,7 +85,8 @@ fn parts(catalogs: &Catalogs, picks: &[PickedArm]) -> Vec<CatalogRow> {
                     if let Some(gear) = slide.gear.as_ref().and_then(|part| catalogs.gear(&part.name).ok()) {
                         add("gear", &gear.id, &gear.provenance);
                     }
-                    if let Some(motor) = slide.motor.as_ref().and_then(|part| catalogs.motor(&part.name).ok()) {
+                    if let Some(motor) = slide.motor.as_ref().and_then(|part| catalogs.motor(&part.name).ok())
+                    {
                         add("motor", &motor.id, &motor.provenance);
                     }
                 }

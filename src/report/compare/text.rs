@@ -26,7 +26,8 @@ impl Comparison {
 
     /// What a star before a number means. `None` for a single front, whose numbers have no star.
     pub(crate) fn star_words(&self) -> Option<&'static str> {
-        (self.reach.len() > 1).then_some("A star (*) marks the best value of its column among the compared fronts.")
+        (self.reach.len() > 1)
+            .then_some("A star (*) marks the best value of its column among the compared fronts.")
     }
 
     /// Tables and sentences, at most 80 columns wide. Long labels are shortened.

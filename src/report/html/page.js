@@ -140,7 +140,10 @@ function views(f) {
   const frame = (s) => ({ l: 56, r: s.w - 14, t: 30, b: s.h - 44 });
   const sx = (s, p) => { const q = frame(s); return q.l + p * (q.r - q.l); };
   const sy = (s, p) => { const q = frame(s); return q.b - p * (q.b - q.t); };
-  const LIGHTER = { "#000000": "#f2f2f2", "#0072B2": "#3d97d3" };
+  const LIGHTER = {
+    "#000000": "#f2f2f2", "#0072B2": "#3d97d3", "#003B5C": "#9fd3f5", "#7A3500": "#f2ae80", "#00513B": "#7fdcbd", "#7B3A60": "#e9bcd4",
+    "#8A5E00": "#f3cf85", "#1B6E9E": "#a9dbf6", "#6E6E6E": "#b8b8b8", "#635B00": "#e3d98a",
+  };
   const paint = (g) => (dark() && LIGHTER[f.groups[g].colour]) || f.groups[g].colour;
   const dark = () => matchMedia("(prefers-color-scheme: dark)").matches;
 

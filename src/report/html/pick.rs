@@ -72,13 +72,6 @@ pub struct DeflectionPart {
     pub along_mm: f64,
 }
 
-impl DeflectionPart {
-    /// Whether the element is a joint or its output bearing.
-    fn is_of_joint(&self) -> bool {
-        self.torque_nm.is_some() || self.force_n.is_some() || self.element.ends_with(".bearing")
-    }
-}
-
 impl PickedArm {
     /// The names of the pick, joined: `lightest, knee`.
     pub fn title(&self) -> String {
@@ -225,12 +218,13 @@ impl PickedArm {
             let at = own(&joint.name).last().copied()?;
             Some(Pivot { name: joint.name.clone(), at, axis: None, slides: true })
         });
-        let tip = line.last().map_or(Vector3::zeros(), |s| s.moved_m);
+        let tip = line.last().map(|s| (view.place(&s.at_m), view.place(&s.moved_m)));
         ArmSketch {
             tubes: ways.chain(tubes).collect(),
             pivots: pivots.chain(slides).collect(),
             payload: (solved.case.payload.mass_kg > 0.0)
-                .then(|| (view.place(&solved.payload_m), view.place(&tip))),
+                .then(|| (view.place(&solved.payload_m), tip.map_or((0.0, 0.0), |(_, moved)| moved))),
+            tip,
             springs: self.springs(solved.case, view),
             upright: view.upright,
             ..ArmSketch::default()
@@ -281,14 +275,15 @@ pub(crate) fn deflection_bars(picks: &[PickedArm]) -> Figure {
         .iter()
         .map(|p| (format!("{} ({})", p.title(), p.pick.design.design_id), p.deflection_parts()))
         .collect();
+    let is_link = |name: &str| picks.iter().any(|p| p.arm.links().any(|link| link.name == name));
     let first: &[DeflectionPart] = parts.first().map_or(&[], |(_, list)| list);
     let bars = StackedBars {
         title: "Where the tip's deflection comes from".into(),
-        description: "One bar a picked design: its tip deflection in its worst pose, split into what each joint and bearing \
+        description: "One bar a picked design: its tip deflection in its worst pose, split into what each joint, bearing and guide \
                       (solid, blue) and each link (hatched, orange) adds along its direction."
             .into(),
         unit: "mm".into(),
-        parts: first.iter().map(|p| Part { name: p.element.clone(), hatched: !p.is_of_joint() }).collect(),
+        parts: first.iter().map(|p| Part { name: p.element.clone(), hatched: is_link(&p.element) }).collect(),
         bars: parts
             .iter()
             .map(|(label, list)| Bar {
@@ -301,7 +296,7 @@ pub(crate) fn deflection_bars(picks: &[PickedArm]) -> Figure {
             })
             .collect(),
     };
-    let caption = "Joints and their bearings are solid, links are hatched. Each part is the motion of the tip by the element's deformation (Eqs 13 to 15), \
+    let caption = "Links are hatched; joints, their bearings and guides, and the base are solid. Each part is the motion of the tip by the element's deformation (Eqs 13 to 15), \
                    along the direction of the whole deflection, in the design's worst pose.";
     let csv = bars.to_csv();
     Figure { name: "deflection".into(), caption: caption.into(), svg: bars.readable().to_svg(), csv }
