@@ -16,6 +16,7 @@ use super::shard_files::{CANDIDATES, STUDY, folder_of};
 use super::stop::refuse_if_stopped;
 use super::supplements::{FILES, SupplementArgs};
 use super::write::{is_same_file, refuse_overwriting};
+use super::wrong_kind::study_of;
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::paper::names::{NAMES, question};
@@ -29,7 +30,6 @@ use crate::report::words::{TERMINAL, wrap};
 use crate::search::sweep::{Shard, Status};
 use crate::study::definition::Study;
 use crate::study::effects::left_out;
-use crate::study::load::load_study;
 use crate::study::read::read_study;
 use clap::Args;
 use serde_json::{Value, json};
@@ -82,7 +82,7 @@ pub(crate) struct RunArgs {
 impl RunArgs {
     /// The study to be searched, with the mass limit and the effects that the user gives.
     fn asked(&self, catalogs: &Catalogs) -> Result<Asked, Failure> {
-        let (study, text) = load_study(&self.study, catalogs)?;
+        let (study, text) = study_of(&self.study, catalogs)?;
         let (study, text) = match self.mass_max_kg {
             Some(most_kg) => up_to_mass(most_kg, study, text, catalogs)?,
             None => (study, text),

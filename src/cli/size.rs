@@ -3,6 +3,7 @@
 
 use super::failure::Failure;
 use super::own_files::write_own;
+use super::wrong_kind::study_of;
 use crate::catalog::Catalogs;
 use crate::report::tube::section_size;
 use crate::report::words::{TERMINAL, wrap};
@@ -16,7 +17,7 @@ use crate::space::problem::{ArmProblem, Partial};
 use crate::study::chosen::{chosen_design, why_not_held};
 use crate::study::definition::Study;
 use crate::study::gear_remarks::life_remarks;
-use crate::study::load::{load_study, refuse_empty};
+use crate::study::load::refuse_empty;
 use crate::study::table::sizing_rows;
 use clap::Args;
 use std::fmt::Write;
@@ -51,7 +52,7 @@ pub(crate) struct SizeArgs {
 
 /// Runs `armwright size` and returns the text to print.
 pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failure> {
-    let (study, _) = load_study(&args.study, catalogs)?;
+    let (study, _) = study_of(&args.study, catalogs)?;
     refuse_empty(&study, catalogs)?;
     let (space, chosen) = chosen_design(&study, args.design.as_deref(), catalogs)?;
     let problem = ArmProblem::new(&space, catalogs);
@@ -108,12 +109,13 @@ fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32]) -> String {
 /// The slot (place in the order in which the arm is built) of the joint named `joint`, the index of its piece, and the
 /// arm outboard of it. Fails if this arm breaks a limit.
 fn before(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<(usize, usize, Partial), Failure> {
-    let piece = problem
-        .space()
-        .pieces
-        .iter()
-        .position(|p| matches!(p, SpacePiece::Joint(_) | SpacePiece::Prismatic(_)) && p.name() == joint)
-        .ok_or_else(|| Failure::Usage(format!("the study has no joint \"{joint}\"")))?;
+    let is_joint = |p: &&SpacePiece| matches!(p, SpacePiece::Joint(_) | SpacePiece::Prismatic(_));
+    let pieces = &problem.space().pieces;
+    let unknown = || {
+        let names: Vec<&str> = pieces.iter().filter(is_joint).map(SpacePiece::name).collect();
+        Failure::Usage(format!("the study has no joint \"{joint}\"; its joints are: {}", names.join(", ")))
+    };
+    let piece = pieces.iter().position(|p| is_joint(&p) && p.name() == joint).ok_or_else(unknown)?;
     let mut found = None;
     let walked = problem.walk(chosen, |slot, partial| {
         if problem.piece_of_slot(slot) == piece {
