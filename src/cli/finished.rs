@@ -21,6 +21,7 @@ use crate::report::front_svg::{FrontPicture, PlottedFront, designs_of, mixed_des
 use crate::report::front_table::FrontTable;
 use crate::report::html::gallery::Page;
 use crate::report::html::study::StudyPage;
+use crate::report::key_words::key_words;
 use crate::report::number::significant;
 use crate::report::picks;
 use crate::report::section::PageSection;
@@ -378,7 +379,9 @@ impl Finished<'_> {
         let mut page = study_page(self.study, self.problem, self.catalogs, summary);
         page.extras.extend(sections);
         page.extras.push(certificate_section(&summary.facts, self.exact.map(|exact| exact.boxes)));
-        let (timing, run) = facts_of(run).into_iter().partition(|(key, _)| OF_A_RUN.contains(&key.as_str()));
+        let (timing, run) = facts_of(run)
+            .into_iter()
+            .partition(|(words, _)| OF_A_RUN.iter().any(|key| key_words(key) == *words));
         StudyPage { scatter_svg: picture, run, timing, ..page }.page()
     }
 
@@ -450,7 +453,7 @@ impl Finished<'_> {
 }
 
 /// Facts about the run that differ from run to run.
-const OF_A_RUN: [&str; 4] = ["elapsed s", "designs per s", "threads", "platform"];
+const OF_A_RUN: [&str; 4] = ["elapsed_s", "designs_per_s", "threads", "platform"];
 
 /// The facts of `run.json` that are a word or a number, as text for people.
 pub(super) fn facts_of(run: &Value) -> Vec<(String, String)> {
@@ -467,7 +470,7 @@ pub(super) fn facts_of(run: &Value) -> Vec<(String, String)> {
     let facts = run.as_object().into_iter().flatten();
     facts
         .filter(|(key, _)| !["schema_version", "study", "question"].contains(&key.as_str()))
-        .filter_map(|(key, value)| Some((key.replace('_', " "), plain(value)?)))
+        .filter_map(|(key, value)| Some((key_words(key), plain(value)?)))
         .collect()
 }
 

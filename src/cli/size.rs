@@ -71,7 +71,11 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failur
         sizing_rows(&problem, catalogs, &chosen).map_err(|slot| why_not_held(&problem, &chosen, slot))?;
     let of_lives = life_remarks(rows.iter().map(|row| row.gear.as_str()), catalogs);
     let remarks = paragraphs(&[study.remarks.clone(), of_lives].concat());
-    let text = format!("{}{}{remarks}", heading(&study, &problem, &chosen), render_rows(&rows));
+    let text = format!(
+        "{}{}{remarks}",
+        heading(&study, &problem, &chosen, args.design.is_none()),
+        render_rows(&rows)
+    );
     let json = serde_json::to_string_pretty(&rows).expect("rows of numbers and strings serialize");
     if let Some(dir) = &args.out {
         let files = [("sizing.json", &json), ("sizing.txt", &text)];
@@ -84,7 +88,10 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failur
     Ok(if args.json { json } else { text })
 }
 
-fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32]) -> String {
+/// The first lines of the table: the motion that is asked for, and the sections of the open links. If no design is named
+/// (`is_trial`), these are trials, which the lines say.
+fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32], is_trial: bool) -> String {
+    let trial = if is_trial { " (trial: median mass of its options)" } else { "" };
     let motion = &study.space.motion;
     let mut out = format!(
         "{}: tip {} m/s in {} s, life {} h, sized over {} cases\n",
@@ -97,10 +104,8 @@ fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32]) -> String {
     let Some(parts) = problem.parts(chosen) else { return out };
     for (piece, part) in study.space.pieces.iter().zip(parts) {
         if let (SpacePiece::Choice(choice), crate::space::design::Part::Link(option)) = (piece, part) {
-            let outer_mm = |m: f64| format!("{:.0}", m * 1e3);
-            let wall_mm = |m: f64| format!("{:.1}", m * 1e3);
-            let size = section_size(&option.section, outer_mm, wall_mm);
-            let _ = writeln!(out, "link {}: {}, {size}", choice.name, option.material_name);
+            let size = section_size(&option.section);
+            let _ = writeln!(out, "link {}: {}, {size}{trial}", choice.name, option.material_name);
         }
     }
     out

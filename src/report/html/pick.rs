@@ -4,7 +4,6 @@
 use super::gallery::{Gallery, table};
 use crate::arm::load::LoadCase;
 use crate::arm::pieces::without_factors;
-use crate::arm::section::millimetres;
 use crate::arm::springs::Drawn;
 use crate::arm::{Arm, Element, Link, LinkBody};
 use crate::mechanics::centre_line::Station;
@@ -247,14 +246,12 @@ impl PickedArm {
             Element::Link(link) => match &link.body {
                 LinkBody::Tube { material_name, material, section } => {
                     let p = section.properties(material.poisson);
-                    let outer_mm = |m: f64| significant(m * 1e3, 3);
-                    let wall_mm = |m: f64| shortest(millimetres(m));
                     Some(json!({
                         "name": link.name,
                         "material": without_factors(material_name),
                         "factors": material_name.strip_prefix(without_factors(material_name)),
                         "length_m": significant(link.vector_m.norm(), 3),
-                        "size": section_size(section, outer_mm, wall_mm),
+                        "size": section_size(section),
                         "mass_kg": significant(e.mass_kg(), 4),
                         "area_cm2": significant(p.area_m2 * 1e4, 4),
                         "second_moment_cm4": significant(p.second_moment_y_m4 * 1e8, 4),
@@ -341,7 +338,7 @@ fn deflection_parts(statics: &Statics) -> Vec<DeflectionPart> {
 fn parts_table(parts: &[DeflectionPart]) -> Table {
     let mut table = Table::new(vec![
         Column::left("element"),
-        Column::unit("torque (7)", "N m"),
+        Column::unit("torque (7) in this pose", "N m"),
         Column::unit("x", "mm"),
         Column::unit("y", "mm"),
         Column::unit("z", "mm"),
