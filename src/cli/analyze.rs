@@ -3,6 +3,7 @@
 use super::failure::Failure;
 use super::pose_flags::PoseArgs;
 use super::values::{choice, numbers};
+use super::wrong_kind::refuse_other_kind;
 use crate::arm::effect::entry::Effect;
 use crate::arm::file::read_arm;
 use crate::arm::load::{LoadCase, Payload, read_load_cases};
@@ -115,9 +116,13 @@ impl AnalyzeArgs {
 
 /// Runs `armwright analyze` and returns the text to print.
 pub(super) fn run(args: &AnalyzeArgs, catalogs: &Catalogs) -> Result<String, Failure> {
+    refuse_other_kind(&args.arm, "arm")?;
     let arm = read_arm(&args.arm, catalogs)?;
     let cases = match &args.cases {
-        Some(path) => read_load_cases(Document::read(path)?, &arm.driven_joints())?,
+        Some(path) => {
+            refuse_other_kind(path, "cases")?;
+            read_load_cases(Document::read(path)?, &arm.driven_joints())?
+        }
         None => vec![case_of_flags(args, &arm)?],
     };
     let ignored: Vec<String> = arm.ignored_effects().into_iter().map(Effect::label).collect();

@@ -380,7 +380,13 @@ fn show_part(catalogs: &Catalogs, parts: Option<Parts>, name: &str) -> Result<St
     let ambiguous = errors.iter().position(|e| matches!(e, PartError::Ambiguous { .. }));
     let near =
         errors.iter().position(|e| matches!(e, PartError::Unknown { nearest, .. } if !nearest.is_empty()));
-    Err(errors.swap_remove(ambiguous.or(near).unwrap_or(0)).into())
+    match (ambiguous.or(near), parts) {
+        (None, None) => Err(Failure::Usage(format!(
+            "no gear, motor, material or profile is called \"{name}\"; `armwright catalog show gears` lists the gears, and in the same \
+             way for motors, materials, profiles and actuators"
+        ))),
+        (best, _) => Err(errors.swap_remove(best.unwrap_or(0)).into()),
+    }
 }
 
 fn find<'c>(

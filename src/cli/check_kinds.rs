@@ -27,6 +27,15 @@ pub(super) fn kind_of(value: &Value) -> Option<&'static str> {
     best.1
 }
 
+/// Number of keys of a document that files of the kind named `kind` have too; 0 for other values than objects.
+pub(super) fn keys_of_kind(kind: &str, value: &Value) -> usize {
+    let file = FILES.iter().chain(&OUTPUTS).find(|file| file.name == kind);
+    match (file.map(|file| file.root), value) {
+        (Some(Kind::Object(shape)), Value::Object(map)) => known(shape, map),
+        _ => 0,
+    }
+}
+
 /// Number of keys of a document that a kind of object has too, with values that may be of their kind.
 fn known(shape: &Shape, map: &Map<String, Value>) -> usize {
     shape.keys.iter().filter(|key| map.get(key.name).is_some_and(|value| may_be(&key.kind, value))).count()

@@ -4,6 +4,7 @@
 use super::asked::Asked;
 use super::failure::Failure;
 use super::result_folder::complete;
+use super::wrong_kind::refuse_other_kind;
 use crate::arm::Arm;
 use crate::arm::file::read_arm_document;
 use crate::catalog::Catalogs;
@@ -28,6 +29,7 @@ pub(super) fn from_arm_file(
     catalogs: &Catalogs,
 ) -> Result<Asked, Failure> {
     complete(&folder_of(path))?;
+    refuse_other_kind(path, "arm")?;
     let name = path.display().to_string();
     let arm_text = fs_err::read_to_string(path).map_err(|e| Failure::File(e.to_string()))?;
     let arm = read_arm_document(Document::parse(&name, &arm_text)?, catalogs)?;

@@ -6,6 +6,7 @@ use super::finished::pretty;
 use super::own_files::write_own;
 use super::pose_flags::PoseArgs;
 use super::values::{choice, numbers};
+use super::wrong_kind::refuse_other_kind;
 use crate::arm::file::read_arm;
 use crate::arm::load::{LoadCase, Payload, read_load_cases};
 use crate::arm::{Arm, JointModel, LinkModel};
@@ -130,11 +131,13 @@ fn source(args: &ExportArgs, catalogs: &Catalogs) -> Result<(Arm, Vec<LoadCase>,
         let hint = "add # and a design_id from its front.csv";
         return Err(Failure::Usage(format!("{} is a folder: {hint}", args.source)));
     }
+    refuse_other_kind(&path, "arm")?;
     let arm = read_arm(&path, catalogs)?;
     let mut inputs = vec![path];
     let cases = match &args.cases {
         Some(file) => {
             inputs.push(file.clone());
+            refuse_other_kind(file, "cases")?;
             read_load_cases(Document::read(file)?, &arm.driven_joints())?
         }
         None => vec![case_of_flags(args, &arm)?],

@@ -22,6 +22,7 @@ use crate::report::front_svg::{FrontPicture, PlottedFront, designs_of, mixed_des
 use crate::report::front_table::FrontTable;
 use crate::report::html::gallery::Page;
 use crate::report::html::study::StudyPage;
+use crate::report::key_words::key_words;
 use crate::report::number::significant;
 use crate::report::picks;
 use crate::report::section::PageSection;
@@ -38,9 +39,11 @@ use crate::study::budget::budgets;
 use crate::study::definition::Study;
 use crate::study::effects::Correction;
 use crate::study::gear_remarks::{life_remarks_on, play_remarks};
+use crate::study::given_parts::given_parts;
 use crate::study::given_remarks::GivenDrives;
 use crate::study::outcome::StudyOutcome;
 use crate::study::page::study_page;
+use crate::study::partial_materials::links_without;
 use crate::study::range::range_words;
 use crate::study::table::{front_table, front_table_with};
 use crate::study::ties::ties;
@@ -326,7 +329,8 @@ impl Finished<'_> {
                 ranges: range_words(&study.space),
                 not_checked: study.not_checked.clone(),
                 remarks: self.remarks(&overall, &given),
-                caveats: Caveats::of(self.catalogs),
+                materials_of_some_links: links_without(self.whole),
+                caveats: Caveats::of(self.catalogs).with_given(given_parts(&study.space)),
                 results: self.dir.display().to_string(),
             },
             overall,
@@ -379,7 +383,9 @@ impl Finished<'_> {
         let mut page = study_page(self.study, self.problem, self.catalogs, summary);
         page.extras.extend(sections);
         page.extras.push(certificate_section(&summary.facts, self.exact.map(|exact| exact.boxes)));
-        let (timing, run) = facts_of(run).into_iter().partition(|(key, _)| OF_A_RUN.contains(&key.as_str()));
+        let (timing, run) = facts_of(run)
+            .into_iter()
+            .partition(|(words, _)| OF_A_RUN.iter().any(|key| key_words(key) == *words));
         StudyPage { scatter_svg: picture, run, timing, ..page }.page()
     }
 
@@ -451,7 +457,7 @@ impl Finished<'_> {
 }
 
 /// Facts about the run that differ from run to run.
-const OF_A_RUN: [&str; 4] = ["elapsed s", "designs per s", "threads", "platform"];
+const OF_A_RUN: [&str; 4] = ["elapsed_s", "designs_per_s", "threads", "platform"];
 
 /// The facts of `run.json` that are a word or a number, as text for people.
 pub(super) fn facts_of(run: &Value) -> Vec<(String, String)> {
@@ -468,7 +474,7 @@ pub(super) fn facts_of(run: &Value) -> Vec<(String, String)> {
     let facts = run.as_object().into_iter().flatten();
     facts
         .filter(|(key, _)| !["schema_version", "study", "question"].contains(&key.as_str()))
-        .filter_map(|(key, value)| Some((key.replace('_', " "), plain(value)?)))
+        .filter_map(|(key, value)| Some((key_words(key), plain(value)?)))
         .collect()
 }
 

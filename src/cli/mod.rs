@@ -57,6 +57,7 @@ pub(crate) mod values;
 pub(crate) mod verbs;
 pub(crate) mod version;
 pub(crate) mod write;
+mod wrong_kind;
 
 pub use exit::{Answer, Exit};
 pub use failure::Failure;

@@ -3,6 +3,7 @@
 use super::failure::Failure;
 use super::starter_files::{ARM, PAGE, PARTS, STUDY, filled};
 use super::write::write_all;
+use super::wrong_kind::refuse_other_kind;
 use crate::arm::file::read_arm;
 use crate::catalog::Catalogs;
 use crate::reconcile::starter;
@@ -87,6 +88,7 @@ fn start(
 }
 
 fn campaign(args: &CampaignArgs, catalogs: &Catalogs) -> Result<String, Failure> {
+    refuse_other_kind(&args.arm, "arm")?;
     let arm = read_arm(&args.arm, catalogs)?;
     let arm_text = fs_err::read(&args.arm).map_err(|e| Failure::file(&args.arm, "read", &e))?;
     let mut files = vec![("arm.json".to_string(), arm_text)];

@@ -159,7 +159,12 @@ static PICK: Shape = Shape::new(
             "kg",
             "Of that, what joints weigh beyond their drives.",
         ),
-        required("mass_lower_bound_kg", NUMBER_OR_NULL, "kg", "No design as stiff and as fast weighs less."),
+        required(
+            "mass_lower_bound_kg",
+            NUMBER_OR_NULL,
+            "kg",
+            "No design that is as stiff and has as high a lowest mode weighs less.",
+        ),
         required("mixture_kg", NUMBER_OR_NULL, "kg", "Approximate mass if parts could be blended."),
         required(
             "loads_oppose",

@@ -4,6 +4,7 @@ use super::failure::Failure;
 use super::log::Log;
 use super::own_files::write_recognized;
 use super::result_folder::complete;
+use super::wrong_kind::refuse_other_kind;
 use crate::catalog::Catalogs;
 use crate::reconcile::predict_files::{Files, predict_files};
 use crate::report::whole_file::folder_of;
@@ -40,6 +41,7 @@ pub(crate) struct PredictArgs {
 /// The input files have faults, or a file cannot be written.
 pub(crate) fn run(args: &PredictArgs, catalogs: &Catalogs, log: Log) -> Result<String, Failure> {
     complete(&folder_of(&args.arm))?;
+    refuse_other_kind(&args.arm, "arm")?;
     let files = Files { arm: &args.arm, readings: &args.readings, campaign: &args.campaign };
     let found = predict_files(&files, catalogs)?;
     let Some(out) = &args.out else {

@@ -4,7 +4,7 @@
 use super::failure::Failure;
 use super::log::Log;
 use crate::exact::Known;
-use crate::report::number::percent_rounded;
+use crate::report::number::{large, percent_rounded};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
 use std::fs::File;
@@ -201,11 +201,16 @@ fn in_lines(say: impl Fn(Duration)) -> impl FnMut(Duration) {
     }
 }
 
-fn visited_line(total: u128, visited: u64, elapsed: Duration) -> String {
-    let (done, total, elapsed_s) = (visited as f64, total as f64, elapsed.as_secs_f64());
+fn visited_line(all: u128, visited: u64, elapsed: Duration) -> String {
+    let (done, total, elapsed_s) = (visited as f64, all as f64, elapsed.as_secs_f64());
     // a shard of a small study may have no designs
     let percent = if total > 0.0 { 100.0 * done / total } else { 100.0 };
-    let so_far = format!("{elapsed_s:.0} s: {done:.3e} of {total:.3e} designs ({percent:.0} %)");
+    let designs = if all == 1 { "design" } else { "designs" };
+    let so_far = format!(
+        "{elapsed_s:.0} s: {} of {} {designs} ({percent:.0} %)",
+        large(u128::from(visited)),
+        large(all)
+    );
     if visited == 0 || elapsed_s == 0.0 {
         return so_far;
     }
@@ -216,11 +221,11 @@ fn visited_line(total: u128, visited: u64, elapsed: Duration) -> String {
 fn search_line(known: &Known, elapsed: Duration) -> String {
     let gap = known.gap.map_or("not known yet".into(), |gap| percent_rounded(100.0 * gap, 2));
     format!(
-        "{:.0} s: gap {gap}, front of {}, {:.3e} boxes, {} open",
+        "{:.0} s: gap {gap}, front of {}, {} boxes, {} open",
         elapsed.as_secs_f64(),
         known.front_size,
-        known.boxes as f64,
-        known.boxes_open
+        large(u128::from(known.boxes)),
+        large(u128::from(known.boxes_open))
     )
 }
 
@@ -232,7 +237,10 @@ mod tests {
     fn the_line_of_an_exact_search_says_its_gap_and_its_front() {
         let known = Known { boxes: 125_000, boxes_open: 12, designs: 9, front_size: 431, gap: Some(0.123) };
         let line = search_line(&known, Duration::from_secs(20));
-        assert_eq!(line, "20 s: gap 12 %, front of 431, 1.250e5 boxes, 12 open");
+        assert_eq!(line, "20 s: gap 12 %, front of 431, 125,000 boxes, 12 open");
+        let line = visited_line(1_600_000, 16, Duration::from_secs(8));
+        assert!(line.starts_with("8 s: 16 of 1,600,000 designs (0 %)"), "{line}");
+        assert!(visited_line(1, 0, Duration::ZERO).ends_with("0 of 1 design (0 %)"));
         let line = search_line(&Known::default(), Duration::from_secs(1));
         assert!(line.contains("gap not known yet"), "{line}");
     }

@@ -12,6 +12,7 @@ use super::result_folder::ResultFolder;
 use super::search::SearchArgs;
 use super::stop::unless_stopped;
 use super::write::refuse_inputs;
+use super::wrong_kind::{refuse_no_campaign, study_of};
 use crate::catalog::Catalogs;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::together::reconcile;
@@ -20,7 +21,6 @@ use crate::reconcile::verdict::outcome::Outcome;
 use crate::reconcile::verdict::page::campaign_page;
 use crate::report::file_names::folder_name;
 use crate::report::words::{TERMINAL, wrap};
-use crate::study::load::load_study;
 use clap::Args;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -69,7 +69,7 @@ pub(crate) fn run(
 ) -> Result<Answer, Failure> {
     match &args.study {
         // a study that has faults or cannot be searched in this way fails at once, and not after the fits
-        Some(study) => drop(args.how.check(&load_study(study, catalogs)?.0, catalogs)?),
+        Some(study) => drop(args.how.check(&study_of(study, catalogs)?.0, catalogs)?),
         None if !args.how.is_default() => {
             return Err(Failure::Usage("--search and --time-limit are for the runs of --study".into()));
         }
@@ -77,6 +77,7 @@ pub(crate) fn run(
     }
     let mut read = Vec::new();
     for folder in &args.campaigns {
+        refuse_no_campaign(folder)?;
         read.push(Campaign::read(folder, catalogs)?);
     }
     let mut inputs: Vec<PathBuf> = read.iter().flat_map(Campaign::input_files).collect();
@@ -148,7 +149,7 @@ fn planned(args: &ReconcileArgs, campaign: &Campaign, catalogs: &Catalogs) -> Re
     let mut out: Vec<String> = always.into_iter().map(String::from).collect();
     out.extend(corrected_files(&campaign.other_arms));
     if let Some(study) = &args.study {
-        let of_run = super::run::planned(&load_study(study, catalogs)?.0);
+        let of_run = super::run::planned(&study_of(study, catalogs)?.0);
         let place = |folder: &'static str| of_run.iter().map(move |name| format!("study/{folder}/{name}"));
         out.extend(place("nominal").chain(place("corrected")));
         out.push(CHANGES.into());

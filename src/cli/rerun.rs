@@ -11,6 +11,7 @@ use super::result_folder::unfinished_in;
 use super::search::{SearchArgs, With, search};
 use super::stop::stopped_by_signal;
 use super::supplements::SupplementArgs;
+use super::wrong_kind::study_of;
 use crate::catalog::Catalogs;
 use crate::reconcile::verdict::outcome::{Outcome, Verdict};
 use crate::report::certificate::gap_words;
@@ -22,7 +23,6 @@ use crate::space::design::evaluate;
 use crate::space::design::{number, number_of};
 use crate::space::levels::OutwardIn;
 use crate::space::problem::ArmProblem;
-use crate::study::load::load_study;
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::atomic::Ordering;
@@ -75,7 +75,7 @@ pub(super) fn rerun(
         );
         return Ok(Rerun::without(study, "not_run", &why));
     }
-    let (nominal, text) = load_study(study, catalogs)?;
+    let (nominal, text) = study_of(study, catalogs)?;
     let name = nominal.name.clone();
     let calibrated: Vec<(String, f64)> =
         outcome.calibrated.iter().map(|c| (c.name.clone(), c.factor.value)).collect();

@@ -59,6 +59,11 @@ impl Results {
 
     fn read_run(folder: &Path) -> Result<Self, Failure> {
         let path = folder.join(RUN);
+        if !path.exists() {
+            let what = if folder.is_dir() { "has no run.json, so it is no result" } else { "is no folder" };
+            let hint = "give a result folder of `armwright run`";
+            return Err(Failure::File(format!("{} {what}; {hint}", folder.display())));
+        }
         let text = fs_err::read_to_string(&path).map_err(|e| Failure::File(e.to_string()))?;
         let run: Value = serde_json::from_str(&text)
             .map_err(|e| Failure::File(format!("{} is not JSON: {e}", path.display())))?;

@@ -16,12 +16,14 @@ use super::shard_files::{CANDIDATES, STUDY, folder_of};
 use super::stop::refuse_if_stopped;
 use super::supplements::{FILES, SupplementArgs};
 use super::write::{is_same_file, refuse_overwriting};
+use super::wrong_kind::study_of;
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::paper::names::{NAMES, question};
 use crate::report::file_names::{file_names, folder_name};
 use crate::report::html::document::DocumentPage;
 use crate::report::html::render::PLOTS;
+use crate::report::key_words::key_words;
 use crate::report::section::Figure;
 use crate::report::table::Table;
 use crate::report::whole_file;
@@ -29,7 +31,6 @@ use crate::report::words::{TERMINAL, wrap};
 use crate::search::sweep::{Shard, Status};
 use crate::study::definition::Study;
 use crate::study::effects::left_out;
-use crate::study::load::load_study;
 use crate::study::read::read_study;
 use clap::Args;
 use serde_json::{Value, json};
@@ -82,7 +83,7 @@ pub(crate) struct RunArgs {
 impl RunArgs {
     /// The study to be searched, with the mass limit and the effects that the user gives.
     fn asked(&self, catalogs: &Catalogs) -> Result<Asked, Failure> {
-        let (study, text) = load_study(&self.study, catalogs)?;
+        let (study, text) = study_of(&self.study, catalogs)?;
         let (study, text) = match self.mass_max_kg {
             Some(most_kg) => up_to_mass(most_kg, study, text, catalogs)?,
             None => (study, text),
@@ -301,6 +302,19 @@ fn run_paper(args: &RunArgs, catalogs: &Catalogs, log: Log) -> Result<String, Fa
 /// Significant digits of the numbers in the tables of a page. The files have all digits.
 const PAGE_DIGITS: usize = 5;
 
+/// Columns of the tables of the paper's studies that are for programs: the page leaves them out.
+const MACHINE_COLUMNS: [&str; 2] = ["id", "paper"];
+
+/// The header of a column of such a table in words.
+fn header_words(column: &str) -> String {
+    match column {
+        "paper_words" => "in the paper".into(),
+        "reading_value" => "by the reading".into(),
+        "exact" => "exactly".into(),
+        column => key_words(column),
+    }
+}
+
 /// The page, for a browser, of one of the paper's studies, with the pictures and tables of the study.
 fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> DocumentPage {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
@@ -315,7 +329,9 @@ fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> Document
         tables: ending(".csv")
             .map(|(name, bytes)| {
                 let caption = format!("{name}.csv, its numbers to {PAGE_DIGITS} digits");
-                (caption, Table::from_csv(&text(bytes)).rounded(PAGE_DIGITS))
+                let table =
+                    Table::from_csv(&text(bytes)).without(&MACHINE_COLUMNS).with_headers(header_words);
+                (caption, table.rounded(PAGE_DIGITS))
             })
             .collect(),
         facts: facts_of(run),

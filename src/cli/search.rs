@@ -247,12 +247,27 @@ fn visit_all(asked: &Asked, with: &With) -> Result<Written, Failure> {
         }
         _ => Exit::Done,
     };
+    if exit == Exit::Done {
+        say_search_is_over(log, elapsed_s);
+    }
     let finished = Finished::visit(asked, (&problem, &outcome), elapsed_s, (catalogs, overlay), (dir, log));
     let written = finished.keep(supplements, stop, keep)?;
     Ok(match exit {
         Exit::Done => written.after_search(log),
         exit => Written { exit, ..written },
     })
+}
+
+/// Search time from which the program says that the search is over and other work follows \[s\].
+const LONG_SEARCH_S: f64 = 10.0;
+
+/// Says, after a long search, that its result is being made: the last line of progress would else stand there for long.
+fn say_search_is_over(log: Log, elapsed_s: f64) {
+    if elapsed_s >= LONG_SEARCH_S {
+        log.note(&format!(
+            "searched for {elapsed_s:.0} s; making the budget, the worst poses and the pages of the front"
+        ));
+    }
 }
 
 impl Written {
@@ -315,6 +330,9 @@ fn search_exactly(asked: &Asked, with: &With) -> Result<Written, Failure> {
                 dir,
                 log,
             };
+            if !is_interrupted {
+                say_search_is_over(log, finished.elapsed_s);
+            }
             let finishing = Instant::now();
             let mut written = finished.keep(supplements, stop, keep)?;
             if how.time_limit.is_some() {

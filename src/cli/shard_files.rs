@@ -90,6 +90,10 @@ pub(super) fn shards_in(folder: &Path, depth: usize) -> Result<Vec<PathBuf>, Fai
 /// # Errors
 /// The folder cannot be read.
 pub(super) fn folders_inside(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+    if !folder.is_dir() {
+        let hint = "give a folder with shards; `armwright run STUDY --shard 1/4` makes one";
+        return Err(Failure::File(format!("{} is no folder; {hint}", folder.display())));
+    }
     let entries = fs_err::read_dir(folder).map_err(|e| Failure::File(e.to_string()))?;
     let mut inside: Vec<PathBuf> =
         entries.flatten().map(|entry| entry.path()).filter(|p| p.is_dir()).collect();

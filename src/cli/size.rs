@@ -3,6 +3,7 @@
 
 use super::failure::Failure;
 use super::own_files::write_own;
+use super::wrong_kind::study_of;
 use crate::catalog::Catalogs;
 use crate::report::tube::section_size;
 use crate::report::words::{TERMINAL, wrap};
@@ -16,7 +17,7 @@ use crate::space::problem::{ArmProblem, Partial};
 use crate::study::chosen::{chosen_design, why_not_held};
 use crate::study::definition::Study;
 use crate::study::gear_remarks::life_remarks;
-use crate::study::load::{load_study, refuse_empty};
+use crate::study::load::refuse_empty;
 use crate::study::table::sizing_rows;
 use clap::Args;
 use std::fmt::Write;
@@ -51,7 +52,7 @@ pub(crate) struct SizeArgs {
 
 /// Runs `armwright size` and returns the text to print.
 pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failure> {
-    let (study, _) = load_study(&args.study, catalogs)?;
+    let (study, _) = study_of(&args.study, catalogs)?;
     refuse_empty(&study, catalogs)?;
     let (space, chosen) = chosen_design(&study, args.design.as_deref(), catalogs)?;
     let problem = ArmProblem::new(&space, catalogs);
@@ -70,7 +71,11 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failur
         sizing_rows(&problem, catalogs, &chosen).map_err(|slot| why_not_held(&problem, &chosen, slot))?;
     let of_lives = life_remarks(rows.iter().map(|row| row.gear.as_str()), catalogs);
     let remarks = paragraphs(&[study.remarks.clone(), of_lives].concat());
-    let text = format!("{}{}{remarks}", heading(&study, &problem, &chosen), render_rows(&rows));
+    let text = format!(
+        "{}{}{remarks}",
+        heading(&study, &problem, &chosen, args.design.is_none()),
+        render_rows(&rows)
+    );
     let json = serde_json::to_string_pretty(&rows).expect("rows of numbers and strings serialize");
     if let Some(dir) = &args.out {
         let files = [("sizing.json", &json), ("sizing.txt", &text)];
@@ -83,7 +88,10 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failur
     Ok(if args.json { json } else { text })
 }
 
-fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32]) -> String {
+/// The first lines of the table: the motion that is asked for, and the sections of the open links. If no design is named
+/// (`is_trial`), these are trials, which the lines say.
+fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32], is_trial: bool) -> String {
+    let trial = if is_trial { " (trial: median mass of its options)" } else { "" };
     let motion = &study.space.motion;
     let mut out = format!(
         "{}: tip {} m/s in {} s, life {} h, sized over {} cases\n",
@@ -96,10 +104,8 @@ fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32]) -> String {
     let Some(parts) = problem.parts(chosen) else { return out };
     for (piece, part) in study.space.pieces.iter().zip(parts) {
         if let (SpacePiece::Choice(choice), crate::space::design::Part::Link(option)) = (piece, part) {
-            let outer_mm = |m: f64| format!("{:.0}", m * 1e3);
-            let wall_mm = |m: f64| format!("{:.1}", m * 1e3);
-            let size = section_size(&option.section, outer_mm, wall_mm);
-            let _ = writeln!(out, "link {}: {}, {size}", choice.name, option.material_name);
+            let size = section_size(&option.section);
+            let _ = writeln!(out, "link {}: {}, {size}{trial}", choice.name, option.material_name);
         }
     }
     out
@@ -108,12 +114,13 @@ fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32]) -> String {
 /// The slot (place in the order in which the arm is built) of the joint named `joint`, the index of its piece, and the
 /// arm outboard of it. Fails if this arm breaks a limit.
 fn before(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<(usize, usize, Partial), Failure> {
-    let piece = problem
-        .space()
-        .pieces
-        .iter()
-        .position(|p| matches!(p, SpacePiece::Joint(_) | SpacePiece::Prismatic(_)) && p.name() == joint)
-        .ok_or_else(|| Failure::Usage(format!("the study has no joint \"{joint}\"")))?;
+    let is_joint = |p: &&SpacePiece| matches!(p, SpacePiece::Joint(_) | SpacePiece::Prismatic(_));
+    let pieces = &problem.space().pieces;
+    let unknown = || {
+        let names: Vec<&str> = pieces.iter().filter(is_joint).map(SpacePiece::name).collect();
+        Failure::Usage(format!("the study has no joint \"{joint}\"; its joints are: {}", names.join(", ")))
+    };
+    let piece = pieces.iter().position(|p| is_joint(&p) && p.name() == joint).ok_or_else(unknown)?;
     let mut found = None;
     let walked = problem.walk(chosen, |slot, partial| {
         if problem.piece_of_slot(slot) == piece {

@@ -4,9 +4,10 @@ use super::failure::Failure;
 use super::merge::shell_word;
 use super::search::{SearchArgs, part_or_none};
 use super::shard::MOST_SHARDS;
+use super::wrong_kind::study_of;
 use crate::catalog::Catalogs;
 use crate::report::file_names::folder_name;
-use crate::study::load::{load_study, refuse_empty};
+use crate::study::load::refuse_empty;
 use crate::study::search_method::SearchMethod;
 use crate::study::tolerance::part;
 use clap::Args;
@@ -46,7 +47,7 @@ pub(crate) struct SlurmArgs {
 
 /// Runs `armwright slurm` and returns the script.
 pub(super) fn run(args: &SlurmArgs, catalogs: &Catalogs, overlay: Option<&Path>) -> Result<String, Failure> {
-    let (study, _) = load_study(&args.study, catalogs)?;
+    let (study, _) = study_of(&args.study, catalogs)?;
     refuse_empty(&study, catalogs)?;
     let (method, _) = SearchArgs::asking_for(args.search, args.gap).check_shard(&study, catalogs)?;
     if method == SearchMethod::Exhaustive && args.gap_first.is_some() {

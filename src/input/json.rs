@@ -86,8 +86,8 @@ pub enum InputError {
 /// [`InputError::Unreadable`] if the file cannot be read, [`InputError::Faulty`] if it is not in UTF-8.
 pub(crate) fn read_text(path: &Path) -> Result<String, InputError> {
     let file = path.display().to_string();
-    let bytes =
-        std::fs::read(path).map_err(|source| InputError::Unreadable { file: file.clone(), source })?;
+    let unreadable = |source| InputError::Unreadable { file: file.clone(), source };
+    let bytes = std::fs::read(path).map_err(|source| unreadable(is_folder(path).unwrap_or(source)))?;
     let in_file = |wrong: NotUtf8| Fault {
         file,
         line: Some(wrong.line),
@@ -96,6 +96,23 @@ pub(crate) fn read_text(path: &Path) -> Result<String, InputError> {
         hint: wrong.hint.into(),
     };
     Ok(decode(bytes).map_err(|wrong| Faults(vec![in_file(wrong)]))?)
+}
+
+/// The error for a path that is a folder, with the JSON files in it; `None` for other paths.
+fn is_folder(path: &Path) -> Option<std::io::Error> {
+    let entries = std::fs::read_dir(path).ok()?;
+    let paths = entries.flatten().map(|entry| entry.path());
+    let mut inside: Vec<String> = paths
+        .filter(|p| p.extension().is_some_and(|e| e == "json"))
+        .map(|p| p.display().to_string())
+        .collect();
+    inside.sort();
+    let hint = match inside.as_slice() {
+        [] => "it has no JSON file".into(),
+        [one] => format!("give a file, such as {one}"),
+        several => format!("give a file; it has {}", several.join(", ")),
+    };
+    Some(std::io::Error::new(std::io::ErrorKind::IsADirectory, format!("it is a folder; {hint}")))
 }
 
 /// The text of one JSON file, its parsed value, and the faults found in it so far.

@@ -46,10 +46,21 @@ fn is_hidden(c: char) -> bool {
 fn would_run(text: &str) -> Option<Unfit> {
     let begins = text.chars().count() > 1 && text.starts_with(['=', '+', '-', '@']);
     let is_number = text.replace(',', ".").parse::<f64>().is_ok();
-    (begins && !is_number).then(|| {
-        let problem = format!("\"{}\" would run as a formula in a spreadsheet", visible(text));
-        (problem, "begin it with another character than =, +, - and @")
+    (begins && !is_number).then(|| match has_unit(text) {
+        true => {
+            (format!("\"{}\" is a number with a unit", visible(text)), "write the number without the unit")
+        }
+        false => (
+            format!("\"{}\" would run as a formula in a spreadsheet", visible(text)),
+            "begin it with another character than =, +, - and @",
+        ),
     })
+}
+
+/// Whether a text is a number, a blank and a unit: `-0.303 mm`.
+fn has_unit(text: &str) -> bool {
+    let (number, unit) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
+    !unit.trim().is_empty() && number.replace(',', ".").parse::<f64>().is_ok()
 }
 
 /// The text with its hidden characters replaced by escape sequences, for messages.
@@ -84,6 +95,8 @@ mod tests {
         for name in ["PA6+X", "j-1", "-30", "+90", "-1e-3", "-3,5", "-", "Größe", "鋼", "a=b", ""] {
             assert!(unfit_name(name).is_none(), "{name:?}");
         }
+        let with_unit = unfit_name("-0.303 mm").unwrap_or_default();
+        assert_eq!(with_unit.1, "write the number without the unit", "{with_unit:?}");
         assert!(unfit_text("two\nlines, = 1\tcm").is_none() && unfit_text("\u{1b}[2J").is_some());
         assert_eq!(visible("a\u{1b}b\nc"), "a\\u{1b}b\nc");
     }

@@ -144,9 +144,7 @@ impl PickBudget {
         };
         match (first, second) {
             (Some((best, gain)), other) if gain.mm_per_kg < 0.0 => {
-                let other = other.map_or(String::new(), |(o, gain)| {
-                    format!("; at the best {} ({}) it {}", o.kind.word(), o.piece, effect(&gain))
-                });
+                let other = other.map_or(String::new(), |(row, gain)| self.elsewhere(row, &gain));
                 let place = if best.kind == PieceKind::Joint { "the drive of" } else { "the link" };
                 format!(
                     "{lead}; add mass first to {place} {}, where it {}{other}.{}",
@@ -157,6 +155,23 @@ impl PickBudget {
             }
             _ => format!("{lead}; added mass does not reduce the deflection anywhere."),
         }
+    }
+
+    /// Words that say what one more kilogram changes at the best piece `row` of the other kind. If it lowers the deflection
+    /// at no piece of this kind, they name the next part that does.
+    fn elsewhere(&self, row: &BudgetRow, gain: &Gain) -> String {
+        let kind = row.kind.word();
+        if gain.mm_per_kg <= 0.0 {
+            return format!("; at the best {kind} ({}) it {}", row.piece, effect(gain));
+        }
+        let of_kind = self.rows.iter().filter(|r| r.kind == row.kind);
+        let helps =
+            of_kind.filter_map(|r| Some((r, r.next_part.as_ref()?))).filter(|(_, n)| n.gain.mm_per_kg < 0.0);
+        let best = helps.min_by(|a, b| a.1.gain.mm_per_kg.total_cmp(&b.1.gain.mm_per_kg));
+        let next = best.map_or(String::new(), |(r, next)| {
+            format!(", but the next part for {} ({}) {}", r.piece, next.name, effect(&next.gain))
+        });
+        format!("; at every {kind}, more of the same raises the deflection{next}")
     }
 
     /// A sentence that names the piece where one more kilogram raises the lowest mode most. Empty if this is `told`,
@@ -290,7 +305,8 @@ const BOUND_WORDS: &str = "Lower bound: no arm of this study that is as stiff an
 const OPPOSED_WORDS: &str = "* Loads may oppose each other, which weakens the bound.";
 const IN_PLACE_WORDS: &str = "Changes per kilogram added to a piece whose stiffness grows in proportion; a negative number \
                               lowers the tip's deflection. Next part: the heavier catalog part that improves deflection or \
-                              mode most per kilogram, with all other parts unchanged.";
+                              mode most per kilogram, with all other parts unchanged. The mass of a joint is that of its drive, bearing and extras \
+                              (housing, brake, encoders, flange, cables).";
 
 fn opposed(budgets: &[PickBudget]) -> bool {
     budgets.iter().any(|b| b.bound.is_some_and(|b| b.loads_oppose))

@@ -3,12 +3,17 @@
 
 use super::front_table::FrontTable;
 use super::words::{TERMINAL, wrap};
+use crate::arm::pieces::without_factors;
 use crate::catalog::{Catalogs, Provenance};
 use std::collections::BTreeMap;
 
 /// The caveats of parts, by the names of the parts.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Caveats(BTreeMap<String, &'static str>);
+pub struct Caveats {
+    of_parts: BTreeMap<String, &'static str>,
+    /// Parts that the study gives. Every design has them, and columns of the front may lack them.
+    given: Vec<String>,
+}
 
 /// Endings of the columns that name parts. The name of the link or joint comes before the ending.
 const PARTS: [&str; 4] = ["_material", "_profile", "_gear", "_motor"];
@@ -22,13 +27,18 @@ impl Caveats {
         let profiles = catalogs.profiles.iter().map(|p| (&p.designation, &p.provenance));
         let parts = gears.chain(motors).chain(materials).chain(profiles);
         let caveat = |(name, provenance): (&String, &Provenance)| Some((name.clone(), provenance.caveat()?));
-        Self(parts.filter_map(caveat).collect())
+        Self { of_parts: parts.filter_map(caveat).collect(), given: Vec::new() }
+    }
+
+    /// These caveats for designs that all have the parts `given`.
+    pub(crate) fn with_given(self, given: Vec<String>) -> Self {
+        Self { given, ..self }
     }
 
     /// Caveat of a part: `third party`, `from memory` or `representative`; `None` if its ratings were read in a document of
     /// the vendor.
     pub fn of_part(&self, name: &str) -> Option<&'static str> {
-        self.0.get(name).copied()
+        self.of_parts.get(without_factors(name)).copied()
     }
 
     /// The name of a part, followed by its caveat in brackets.
@@ -41,7 +51,8 @@ impl Caveats {
     pub(crate) fn sentence(&self, front: &FrontTable, picks: &[(usize, String)]) -> String {
         let mut used: Vec<(&str, Vec<String>)> = Vec::new();
         for (row, name) in picks {
-            for part in parts(front, *row).filter(|part| self.of_part(part).is_some()) {
+            let given = self.given.iter().map(String::as_str);
+            for part in given.chain(parts(front, *row)).filter(|part| self.of_part(part).is_some()) {
                 let name = name.clone();
                 match used.iter_mut().find(|(known, _)| *known == part) {
                     Some((_, names)) if names.contains(&name) => {}

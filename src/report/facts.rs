@@ -3,6 +3,7 @@
 use super::caveats::Caveats;
 use super::number::{shortest, significant};
 use crate::space::constraint::Constraints;
+use std::collections::BTreeMap;
 
 /// Facts of a run that its reports print in addition to its fronts.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -38,6 +39,8 @@ pub struct SummaryFacts {
     pub not_checked: Vec<String>,
     /// Remarks about the study that a reader of the result should know, in sentences.
     pub remarks: Vec<String>,
+    /// For each material that some open links may not be of, the names of these links.
+    pub materials_of_some_links: BTreeMap<String, Vec<String>>,
     /// Parts whose ratings were not read from a document.
     pub caveats: Caveats,
     /// Path of the result folder, as the user typed it.

@@ -24,6 +24,9 @@ const GRAIN: f64 = 1.0 / 200.0;
 /// Least distance between two markers on the line of best designs of a front, in units of [`GRAIN`].
 const MARKER_STEPS: f64 = 3.0;
 
+/// Entry of the legend for what has no marker there.
+const SMALL_DOTS: &str = "small dots: all designs; lines: the best at each mass; rings: picks";
+
 /// A front in the picture.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PlottedFront<'a> {
@@ -99,6 +102,9 @@ impl FrontPicture<'_> {
         let mut series: Vec<Series> = clouds.chain(edges).collect();
         // all dots lie behind all edges, and grey dots or edges lie behind coloured ones
         series.sort_by_key(|s| (!s.name.is_empty(), s.style != MUTED));
+        if !series.is_empty() {
+            series.push(Series { name: SMALL_DOTS.into(), style: MUTED, ..Series::default() });
+        }
         let notes = self.picks.iter().map(|p| Note {
             at: (Objective::Mass.of(&p.design), over.of(&p.design)),
             text: p.names.join(", "),
@@ -284,6 +290,7 @@ mod tests {
     fn the_picture_names_its_picks_and_says_itself_in_words() {
         let front = table(&[("s", "s", 1.0, 30.0, 10.0), ("s", "s", 11.0, 20.0, 5.0)]);
         let svg = picture(&front).to_svg();
+        assert!(svg.contains(">small dots: all designs;<"), "the dots have an entry in the legend");
         assert!(svg.contains(">lightest") && svg.contains(">stiffest, highest mode"));
         assert!(svg.contains("steel &amp; co: 2 designs, 20.0 to 30.0 kg"));
         assert!(!svg.contains("NaN"));

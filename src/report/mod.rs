@@ -12,6 +12,7 @@ pub mod file_names;
 pub(crate) mod front_svg;
 pub mod front_table;
 pub mod html;
+pub(crate) mod key_words;
 pub mod number;
 pub mod picks;
 pub(crate) mod pose;

@@ -35,6 +35,24 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     if is_negative_zero { text[1..].to_string() } else { text }
 }
 
+/// A value and the two ends of its interval as text. All have as many decimals as give the shorter side of the interval
+/// two digits. An end that is not known is `open`; without any end the value has four digits.
+pub(crate) fn with_ends(value: f64, ends: [Option<f64>; 2]) -> [String; 3] {
+    let known = || ends.into_iter().flatten();
+    let power = |x: f64| libm::log10(x.abs()).floor() as i32;
+    let sides = known().map(|end| (end - value).abs()).filter(|side| *side > 0.0 && side.is_finite());
+    let side = sides.fold(f64::INFINITY, f64::min);
+    let largest = known().fold(value.abs(), |most, end| most.max(end.abs()));
+    let (decimals, digits) = match side.is_finite() {
+        true => (1 - power(side), (power(largest) - power(side) + 2).max(3)),
+        false => (-1, 4),
+    };
+    let is_plain = (1e-4..1e7).contains(&largest) && decimals >= 0;
+    let text = |x: f64| if is_plain { fixed(x, decimals as usize) } else { significant(x, digits as usize) };
+    let end = |end: Option<f64>| end.map_or("open".into(), text);
+    [text(value), end(ends[0]), end(ends[1])]
+}
+
 /// A percentage with `decimals` digits after the point: `12.5 %`.
 pub fn percent(value: f64, decimals: usize) -> String {
     format!("{} %", fixed(value, decimals))
@@ -124,6 +142,15 @@ mod tests {
         assert_eq!(significant(-0.00012345, 3), "-0.000123");
         assert_eq!(significant(2.1e11, 3), "2.10e11");
         assert_eq!(significant(0.0, 3), "0");
+    }
+
+    #[test]
+    fn a_value_has_the_decimals_that_resolve_its_interval() {
+        assert_eq!(with_ends(1.0187, [Some(1.0166), Some(1.0232)]), ["1.0187", "1.0166", "1.0232"]);
+        assert_eq!(with_ends(1.2, [Some(0.4), None]), ["1.20", "0.40", "open"]);
+        assert_eq!(with_ends(0.98765, [None, None]), ["0.9877", "open", "open"]);
+        assert_eq!(with_ends(2.345e7, [Some(2.3e7), Some(2.4e7)]), ["2.345e7", "2.300e7", "2.400e7"]);
+        assert_eq!(with_ends(1.0, [Some(1.0), Some(1.0)]), ["1.000", "1.000", "1.000"]);
     }
 
     #[test]

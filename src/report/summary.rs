@@ -75,6 +75,7 @@ pub fn summary_md(input: &SummaryInput) -> String {
                 materials_table(input, &names, MARKDOWN_MATERIALS).to_markdown()
             ));
             out.push_str("\nThe front of a material holds the designs whose links are all of that material. Its share is the part of the whole front that is made of it alone.\n");
+            empty_fronts(input).iter().for_each(|words| out.push_str(&format!("{words}\n")));
         }
     }
     out.push_str(&budget_markdown(&input.budgets));
@@ -131,6 +132,7 @@ pub fn terminal_summary(input: &SummaryInput) -> String {
                 "\n{}",
                 materials_table(input, &short_labels(&names), TERMINAL_MATERIALS).to_text()
             ));
+            empty_fronts(input).iter().for_each(|words| out.push_str(&wrap(words, TERMINAL, "")));
         }
         out.push_str(&format!("\n{}", budget_text(&input.budgets, TERMINAL)));
     }
@@ -371,14 +373,36 @@ const MARKDOWN_MATERIALS: [&str; 7] = [
 const TERMINAL_MATERIALS: [&str; 7] =
     ["material", "front", "least kg", "least mm", "most Hz", "share", "EUR/kg"];
 
-/// A table with one row per material. The last row is for designs of mixed materials.
+/// The reason for each front of a material that is empty although its search ended, in sentences: some links may not be
+/// of the material, or no design of it alone meets the limits.
+pub(crate) fn empty_fronts(input: &SummaryInput) -> Vec<String> {
+    let reason = |material: &MaterialFront| {
+        let name = &material.name;
+        let stopped = ["partial", "interrupted"].contains(&material.status.as_str());
+        match input.facts.materials_of_some_links.get(name) {
+            _ if !material.front.rows.is_empty() => None,
+            Some(links) => {
+                Some(format!("No design is of {name} alone: the study does not offer it for {}.", and(links)))
+            }
+            None => (!stopped).then(|| format!("No design of {name} alone meets the limits.")),
+        }
+    };
+    input.materials.iter().filter_map(reason).collect()
+}
+
+/// A table with one row per material of which a whole design can consist. The last row is for designs of mixed
+/// materials.
 fn materials_table(input: &SummaryInput, names: &[String], headers: [&str; 7]) -> Table {
     let columns =
         headers.iter().enumerate().map(|(i, h)| if i < 1 { Column::left(h) } else { Column::right(h) });
     let mut table = Table::new(columns.collect());
     let total = input.overall.rows.len();
     let owners = owners(input);
-    for ((material, name), (_, count)) in input.materials.iter().zip(names).zip(&owners) {
+    let of_all_links =
+        |material: &MaterialFront| !input.facts.materials_of_some_links.contains_key(&material.name);
+    for ((material, name), (_, count)) in
+        input.materials.iter().zip(names).zip(&owners).filter(|((material, _), _)| of_all_links(material))
+    {
         let cost = known(material.cost_eur_per_kg);
         let name = match material.status.as_str() {
             "partial" | "interrupted" => &format!("{name} (stopped)"),

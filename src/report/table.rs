@@ -88,6 +88,24 @@ impl Table {
         self
     }
 
+    /// The table without the columns of these headers.
+    pub(crate) fn without(mut self, headers: &[&str]) -> Self {
+        let keeps: Vec<bool> = self.columns.iter().map(|c| !headers.contains(&c.header.as_str())).collect();
+        let mut kept = keeps.iter();
+        self.columns.retain(|_| kept.next().copied().unwrap_or(true));
+        for row in &mut self.rows {
+            let mut kept = keeps.iter();
+            row.retain(|_| kept.next().copied().unwrap_or(true));
+        }
+        self
+    }
+
+    /// The table with its headers replaced by the words that `words` has for them.
+    pub(crate) fn with_headers(mut self, words: impl Fn(&str) -> String) -> Self {
+        self.columns.iter_mut().for_each(|column| column.header = words(&column.header));
+        self
+    }
+
     /// The columns of the table.
     pub fn columns(&self) -> &[Column] {
         &self.columns

@@ -1,6 +1,7 @@
 //! The size of a section in words. A round section is written with one diameter, and a bar without a wall.
 
-use crate::arm::section::Section;
+use super::number::shortest;
+use crate::arm::section::{Section, millimetres};
 
 /// Outer size and wall of a section: `60 x 40 x 2 mm`, `Ø60 x 2 mm` or `60 x 40 mm bar`. The numbers are texts in
 /// millimetres: width, height, wall. `shape` is the name of the shape in files ([`Section::shape`]).
@@ -16,15 +17,12 @@ pub(crate) fn tube_size(shape: &str, [width, height, wall]: [&str; 3]) -> String
     }
 }
 
-/// Outer size and wall of a section in words, as [`tube_size`] writes them. `outer` and `wall` convert a length in
-/// metres to a text in millimetres.
-pub(crate) fn section_size(
-    section: &Section,
-    outer: impl Fn(f64) -> String,
-    wall: impl Fn(f64) -> String,
-) -> String {
+/// Outer size and wall of a section in words, as [`tube_size`] writes them, in millimetres without digits of rounding
+/// and without zeros at the end. A tube has the same name everywhere.
+pub(crate) fn section_size(section: &Section) -> String {
+    let mm = |m: f64| shortest(millimetres(m));
     let (width_m, height_m) = section.outer_m();
-    tube_size(section.shape(), [&outer(width_m), &outer(height_m), &wall(section.wall_m())])
+    tube_size(section.shape(), [&mm(width_m), &mm(height_m), &mm(section.wall_m())])
 }
 
 #[cfg(test)]
@@ -33,20 +31,17 @@ mod tests {
 
     #[test]
     fn a_round_tube_is_written_with_its_diameter() {
-        let whole = |m: f64| format!("{:.0}", m * 1e3);
-        let tenths = |m: f64| format!("{:.1}", m * 1e3);
         let round = Section::RoundTube { diameter_m: 0.06, wall_m: 0.002 };
-        let square = Section::RectangularTube { width_m: 0.06, height_m: 0.06, wall_m: 0.002 };
-        assert_eq!(section_size(&round, whole, tenths), "Ø60 x 2.0 mm");
-        assert_eq!(section_size(&square, whole, tenths), "60 x 60 x 2.0 mm");
+        let square = Section::RectangularTube { width_m: 0.06, height_m: 0.06, wall_m: 0.0025 };
+        assert_eq!(section_size(&round), "Ø60 x 2 mm");
+        assert_eq!(section_size(&square), "60 x 60 x 2.5 mm");
     }
 
     #[test]
     fn a_bar_is_written_without_a_wall() {
-        let whole = |m: f64| format!("{:.0}", m * 1e3);
         let flat = Section::RectangularBar { width_m: 0.06, height_m: 0.02 };
         let round = Section::RoundBar { diameter_m: 0.03 };
-        assert_eq!(section_size(&flat, whole, whole), "60 x 20 mm bar");
-        assert_eq!(section_size(&round, whole, whole), "Ø30 mm bar");
+        assert_eq!(section_size(&flat), "60 x 20 mm bar");
+        assert_eq!(section_size(&round), "Ø30 mm bar");
     }
 }

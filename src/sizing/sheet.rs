@@ -384,7 +384,7 @@ fn shortened(name: &str) -> String {
         return name.to_string();
     }
     let kept: String = name.chars().take(MOTOR_WIDTH - 1).collect();
-    format!("{}~", kept.trim_end())
+    format!("{}\u{2026}", kept.trim_end())
 }
 
 #[cfg(test)]
@@ -514,7 +514,7 @@ mod tests {
         (row.joint, row.gear, row.binds) = ("wrist1".into(), "HFUC-58-160".into(), Some("gear av.speed"));
         row.life_h = Some(2.5e9);
         let text = render_rows(&[row]);
-        assert!(text.contains("EC-i 40 100 W~"));
+        assert!(text.contains("EC-i 40 100 W\u{2026}"));
         assert!(text.contains("2.5e9"));
         assert!(text.lines().all(|l| l.chars().count() <= 122), "{text}");
     }

@@ -4,7 +4,6 @@ use crate::arm::file::windup_of;
 use crate::arm::structure::Beam;
 use crate::arm::{Arm, Element, Link, LinkBody};
 use crate::mechanics::beam::line_stiffnesses;
-use crate::report::number::significant;
 use crate::report::tube::section_size;
 use crate::sizing::drive::Drive;
 use crate::space::constraint::Constraints;
@@ -100,14 +99,7 @@ fn end_compliances(beam: &Beam, length_m: f64) -> [f64; 3] {
     [along_z, along_y, along_z + along_y]
 }
 
-/// Size and material of a tube in words, with at most four digits per size: `60 x 40 x 2 mm Aluminium 6061-T6`.
+/// Size and material of a tube in words: `60 x 40 x 2 mm Aluminium 6061-T6`.
 fn section_words(option: &LinkOption) -> String {
-    let mm = |m: f64| {
-        let digits = significant(m * 1e3, 4);
-        match digits.contains('.') {
-            true => digits.trim_end_matches('0').trim_end_matches('.').to_string(),
-            false => digits,
-        }
-    };
-    format!("{} {}", section_size(&option.section, mm, mm), option.material_name)
+    format!("{} {}", section_size(&option.section), option.material_name)
 }

@@ -21,7 +21,7 @@ fn study_text(name: &str) -> Result<(String, String), Refusal> {
     }
     match read_text(path) {
         Ok(text) => Ok((name.to_string(), text)),
-        Err(_) if !name.contains(['/', '.']) => {
+        Err(_) if !name.contains(['/', '.']) && !path.is_dir() => {
             let known = crate::study::names();
             let near = crate::input::json::closest(name, &known)
                 .map_or(String::new(), |n| format!("; did you mean {n}?"));

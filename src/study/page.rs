@@ -2,6 +2,7 @@
 //! materials as beams.
 
 use super::definition::Study;
+use crate::arm::pieces::without_factors;
 use crate::arm::{Element, LinkBody};
 use crate::catalog::{Catalogs, Provenance};
 use crate::paper::figures::beam::{BeamPoint, points_csv, sizes};
@@ -80,10 +81,18 @@ fn parts(catalogs: &Catalogs, picks: &[PickedArm]) -> Vec<CatalogRow> {
                         add("motor", &motor.id, &motor.provenance);
                     }
                 }
-                Element::Prismatic(_) => {}
+                Element::Prismatic(slide) => {
+                    if let Some(gear) = slide.gear.as_ref().and_then(|part| catalogs.gear(&part.name).ok()) {
+                        add("gear", &gear.id, &gear.provenance);
+                    }
+                    if let Some(motor) = slide.motor.as_ref().and_then(|part| catalogs.motor(&part.name).ok())
+                    {
+                        add("motor", &motor.id, &motor.provenance);
+                    }
+                }
                 Element::Link(link) => {
                     if let LinkBody::Tube { material_name, .. } = &link.body
-                        && let Ok(material) = catalogs.material(material_name)
+                        && let Ok(material) = catalogs.material(without_factors(material_name))
                     {
                         add("material", &material.name, &material.provenance);
                     }

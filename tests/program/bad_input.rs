@@ -361,3 +361,48 @@ fn number_after(text: &str, words: &str) -> f64 {
     let number: String = rest.chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect();
     number.trim_end_matches('.').parse().unwrap_or_else(|_| panic!("no number after {words} in {text}"))
 }
+
+#[test]
+fn a_file_or_folder_of_another_kind_is_named_with_what_takes_it() {
+    let here = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| here.path().join(name).to_str().expect("a path").to_string();
+    for (what, folder) in [("study", "lift"), ("arm", "arm")] {
+        let made = armwright(&["new", what, "--out", &at(folder)]);
+        assert!(made.status.success(), "{what}: {}", String::from_utf8_lossy(&made.stderr));
+    }
+    let (study, arm, cases) = (at("lift/study.json"), at("arm/arm.json"), at("arm/cases.json"));
+    let says = |arguments: &[&str], code: i32, words: &[&str]| {
+        let said = failed(&armwright(arguments), code);
+        let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+        for word in words {
+            assert!(said.contains(word), "{arguments:?}: {word}\n{said}");
+        }
+        assert!(!said.contains("os error") && !said.contains("unknown key"), "{arguments:?}: {said}");
+    };
+    let out = at("out");
+    says(&["analyze", &study], FAULTY_INPUT, &["is a study", "takes an arm file", "`armwright run"]);
+    says(&["new", "campaign", &study, "--out", &out], FAULTY_INPUT, &["is a study"]);
+    says(&["export", "--to", "urdf", "--out", &out, &study], FAULTY_INPUT, &["is a study"]);
+    says(&["run", &arm, "--out", &out], FAULTY_INPUT, &["is an arm file", "`armwright analyze"]);
+    says(&["size", &arm], FAULTY_INPUT, &["is an arm file"]);
+    says(&["analyze", &cases], FAULTY_INPUT, &["is a list of load cases", "--cases"]);
+    says(&["analyze", &arm, "--cases", &study], FAULTY_INPUT, &["is a study", "takes a list of load cases"]);
+    for verb in ["analyze", "run", "size", "capacity"] {
+        says(&[verb, &at("lift")], UNREADABLE_FILE, &["it is a folder; give a file, such as", "study.json"]);
+    }
+    says(&["reconcile", &arm, "--out", &out], FAULTY_INPUT, &["is an arm file", "`armwright new campaign"]);
+    says(&["reconcile", &at("arm")], UNREADABLE_FILE, &["has no campaign.json", "`armwright new campaign"]);
+    says(
+        &["design", &at("none"), "x1"],
+        UNREADABLE_FILE,
+        &["is no folder", "result folder of `armwright run`"],
+    );
+    says(&["design", &at("arm"), "x1"], UNREADABLE_FILE, &["has no run.json"]);
+    says(&["status", &at("none")], UNREADABLE_FILE, &["is no folder", "--shard"]);
+    says(&["size", &study, "--explain", "wirst"], 2, &["no joint \"wirst\"", "its joints are: "]);
+    says(
+        &["catalog", "show", "--part", "XYZ"],
+        2,
+        &["no gear, motor, material or profile is called \"XYZ\""],
+    );
+}

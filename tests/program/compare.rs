@@ -357,6 +357,21 @@ fn the_summary_answers_who_wins_where() {
 }
 
 #[test]
+fn a_material_that_a_link_may_not_be_of_has_no_row_but_a_reason() {
+    let mut input = input();
+    let reason = |input: &SummaryInput| -> Vec<String> {
+        let text = summary_md(input);
+        let lines = text.lines().filter(|l| l.starts_with("| Lead") || l.contains("of Lead alone"));
+        lines.map(|line| line.split("  ").next().unwrap_or_default().to_string()).collect()
+    };
+    assert_eq!(reason(&input), ["| Lead", "No design of Lead alone meets the limits."]);
+    input.facts.materials_of_some_links = [("Lead".to_string(), vec!["forearm".to_string()])].into();
+    let words = "No design is of Lead alone: the study does not offer it for forearm.";
+    assert_eq!(reason(&input), [words]);
+    assert!(terminal_summary(&input).replace('\n', " ").contains(words));
+}
+
+#[test]
 fn the_materials_table_has_reach_and_share() {
     let text = terminal_summary(&input());
     let line = |name: &str| {

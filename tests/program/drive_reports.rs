@@ -73,7 +73,7 @@ fn the_page_has_the_forces_of_a_rail_with_their_unit_and_each_check_under_its_na
     assert!(
         rows[0].starts_with('z') && rows[0].split("<td").nth(bearing).expect("a cell").contains("></td>")
     );
-    let parts = page.split("torque (7)").nth(1).and_then(|rest| rest.split("</table>").next());
+    let parts = page.split("torque (7) in this pose").nth(1).and_then(|rest| rest.split("</table>").next());
     let parts = parts.expect("a table of parts");
     assert!(parts.contains(" N</td>"), "{parts}");
 }

@@ -133,6 +133,26 @@ fn the_page_of_a_study_shows_the_numbers_of_its_front() {
     pictures(&browser, "study");
 }
 
+/// Draws the plots of a study once more and gives the names of picks that are nearer to the ring of another pick than to
+/// their own, without a line from their own ring to them.
+const NAMES_AT_WRONG_RINGS: &str = r#"(() => {
+  const drawing = CanvasRenderingContext2D.prototype, { arc, lineTo, strokeText } = drawing;
+  const rings = [], names = [];
+  let line = null;
+  drawing.arc = function (x, y, r, ...rest) { if (r === 7) rings.push({ at: this, x, y }); arc.call(this, x, y, r, ...rest); };
+  drawing.lineTo = function (x, y) { line = { at: this, x, y }; lineTo.call(this, x, y); };
+  drawing.strokeText = function (words, x, y) {
+    if (this.font.startsWith("600 12px")) names.push({ at: this, words, own: rings.at(-1), line, box: [x, y - 11, x + this.measureText(words).width, y + 3] });
+    line = null;
+    strokeText.call(this, words, x, y);
+  };
+  document.getElementById("reset").click();
+  Object.assign(drawing, { arc, lineTo, strokeText });
+  const distance = (p, b) => Math.hypot(Math.max(b[0] - p.x, 0, p.x - b[2]), Math.max(b[1] - p.y, 0, p.y - b[3]));
+  const wrong = names.filter((n) => rings.some((r) => r.at === n.at && Math.hypot(r.x - n.own.x, r.y - n.own.y) > 1 && distance(r, n.box) < 1.5 * distance(n.own, n.box)) && !(n.line && n.line.at === n.at && distance(n.line, n.box) < 4));
+  return [names.length, wrong.map((n) => n.words)];
+})()"#;
+
 #[test]
 fn the_views_of_a_study_follow_pointer_brush_filters_and_keys() {
     let Some(browser) = Browser::start() else { return };
@@ -144,6 +164,14 @@ fn the_views_of_a_study_follow_pointer_brush_filters_and_keys() {
     let selected = || -> usize {
         browser.text("#count").split(' ').next().and_then(|n| n.parse().ok()).expect("a count")
     };
+    // every name of a pick belongs to its ring, in a plot that has room and in one that has little
+    for width in [390, 1280] {
+        browser.size(width, 900);
+        browser.keep_trying("names at their rings", || {
+            let [count, wrong] = [0, 1].map(|i| browser.value(NAMES_AT_WRONG_RINGS)[i].clone());
+            count.as_u64().is_some_and(|count| count >= 4) && wrong == json!([])
+        });
+    }
     // keys: the first design of the front, then the next
     browser.value("document.getElementById('by-deflection').focus()");
     for row in 0..2 {

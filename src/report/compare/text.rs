@@ -24,11 +24,20 @@ impl Comparison {
         table(&rows, &self.labels())
     }
 
+    /// What a star before a number means. `None` for a single front, whose numbers have no star.
+    pub(crate) fn star_words(&self) -> Option<&'static str> {
+        (self.reach.len() > 1)
+            .then_some("A star (*) marks the best value of its column among the compared fronts.")
+    }
+
     /// Tables and sentences, at most 80 columns wide. Long labels are shortened.
     pub fn to_text(&self) -> String {
         let labels = short_labels(&self.labels());
         let mut out =
             format!("{SHORT_REACH_TITLE}\n{}", indent(&short_reach_table(&self.reach, &labels).to_text()));
+        if let Some(legend) = self.star_words() {
+            out.push_str(&format!("  {legend}\n"));
+        }
         for question in Question::ALL {
             let rows: Vec<&Row> = self.rows.iter().filter(|r| r.question == question).collect();
             if rows.is_empty() {
@@ -60,6 +69,9 @@ impl Comparison {
         let labels = self.labels();
         let mut out = format!("# Fronts compared\n\n{REACH_TITLE}.\n\n");
         out.push_str(&reach_table(&self.reach, &labels).to_markdown());
+        if let Some(legend) = self.star_words() {
+            out.push_str(&format!("\n{legend}\n"));
+        }
         for question in Question::ALL {
             let rows: Vec<&Row> = self.rows.iter().filter(|r| r.question == question).collect();
             if rows.is_empty() {

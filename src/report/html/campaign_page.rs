@@ -7,7 +7,7 @@ use super::gallery::{Gallery, Page};
 use super::positions::{angles_figure, axes_figure, sizes_figure, steps_figure};
 use crate::arm::pose::{DrivenJoint, Motion};
 use crate::report::braille::bar;
-use crate::report::number::{fixed, significant};
+use crate::report::number::{fixed, significant, with_ends};
 use crate::report::pose::pose_signs;
 use crate::report::section::Figure;
 use crate::report::svg::draw::MUTED;
@@ -271,8 +271,8 @@ impl CampaignPage {
             marks: vec![Mark { value: w.score.max(LEAST_SCORE), interval: None, kind: 0 }],
             remark: format!("{}{}", if w.score < LEAST_SCORE { "\u{25c2} " } else { "" }, fixed(w.score, 1)),
         };
-        let caption = "Logarithm of each model's evidence less that of the best. Right of the first dotted line (-3) \
-                       the readings hardly choose; left of the second (-10) a model is out of the question. An arrow marks what lies beyond the edge.";
+        let caption = "Logarithm of each model's evidence less that of the best. Right of the dotted line at -3 \
+                       the readings hardly choose; left of the dotted line at -10 a model is out of the question. An arrow marks what lies beyond the edge.";
         let plot = RowPlot {
             title: "What speaks for each candidate".into(),
             description: caption.into(),
@@ -300,10 +300,13 @@ impl CampaignPage {
             return None;
         }
         let caption = "Factor on the nominal value with its 95 % interval; a long bar means that the readings say little.";
-        let row = |c: &Ranged| Row {
-            label: c.name.clone(),
-            marks: vec![Mark { value: c.value, interval: Some((c.low, c.high)), kind: 0 }],
-            remark: format!("{} ({} to {})", fixed(c.value, 3), end(c.low, 3), end(c.high, 3)),
+        let row = |c: &Ranged| {
+            let [value, low, high] = with_ends(c.value, [c.low, c.high]);
+            Row {
+                label: c.name.clone(),
+                marks: vec![Mark { value: c.value, interval: Some((c.low, c.high)), kind: 0 }],
+                remark: format!("{value} ({low} to {high})"),
+            }
         };
         let plot = RowPlot {
             title: "Calibrated within tolerance".into(),
@@ -405,7 +408,10 @@ fn found(found: &Found) -> Value {
     let parameters: Vec<Value> = found
         .parameters
         .iter()
-        .map(|p| json!({"name": p.name, "value": significant(p.value, 4), "low": end(p.low, 4), "high": end(p.high, 4)}))
+        .map(|p| {
+            let [value, low, high] = with_ends(p.value, [p.low, p.high]);
+            json!({"name": p.name, "value": value, "low": low, "high": high})
+        })
         .collect();
     json!({"label": found.label, "parameters": parameters, "like": found.like})
 }
@@ -418,10 +424,6 @@ fn test(test: &Test) -> Value {
 }
 
 /// One end of an interval as text with `digits` significant digits; "open" if the readings do not bound it.
-fn end(value: Option<f64>, digits: usize) -> String {
-    value.map_or("open".into(), |v| significant(v, digits))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -27,6 +27,7 @@ pub(crate) fn page(comparison: &Comparison, contenders: &[Contender], picture: S
         "title": format!("{} side by side", competing.join(", ")),
         "front": views.context(&mut gallery),
         "reach": table(&comparison.reach_table()),
+        "star": comparison.star_words(),
         "questions": Question::ALL.into_iter().filter_map(question).collect::<Vec<_>>(),
         "remarks": comparison.remarks,
         "moved": comparison.moved.iter().map(|m| m.words.as_str()).collect::<Vec<_>>(),

@@ -108,6 +108,7 @@ impl FrontViews<'_> {
             description: caption.clone(),
             axes: axes.collect(),
             lines,
+            legend: data.groups.iter().map(|group| (group.style, group.name.clone())).collect(),
         };
         Figure { name: "parallel".into(), caption, svg: picture.to_svg(), csv: String::new() }
     }

@@ -140,7 +140,10 @@ function views(f) {
   const frame = (s) => ({ l: 56, r: s.w - 14, t: 30, b: s.h - 44 });
   const sx = (s, p) => { const q = frame(s); return q.l + p * (q.r - q.l); };
   const sy = (s, p) => { const q = frame(s); return q.b - p * (q.b - q.t); };
-  const LIGHTER = { "#000000": "#f2f2f2", "#0072B2": "#3d97d3" };
+  const LIGHTER = {
+    "#000000": "#f2f2f2", "#0072B2": "#3d97d3", "#003B5C": "#9fd3f5", "#7A3500": "#f2ae80", "#00513B": "#7fdcbd", "#7B3A60": "#e9bcd4",
+    "#8A5E00": "#f3cf85", "#1B6E9E": "#a9dbf6", "#6E6E6E": "#b8b8b8", "#635B00": "#e3d98a",
+  };
   const paint = (g) => (dark() && LIGHTER[f.groups[g].colour]) || f.groups[g].colour;
   const dark = () => matchMedia("(prefers-color-scheme: dark)").matches;
 
@@ -190,27 +193,47 @@ function views(f) {
     g.globalAlpha = 1;
     names(s);
   }
-  /* rings and names of the picks, moved apart */
+  /* how far a point is from the box [left, top, right, bottom] of a name */
+  const distance = (x, y, box) => Math.hypot(Math.max(box[0] - x, 0, x - box[2]), Math.max(box[1] - y, 0, y - box[3]));
+  /* the line from a ring to the nearest point of its name's box */
+  function leader(x, y, box) {
+    const nx = Math.max(box[0], Math.min(x, box[2])), ny = Math.max(box[1], Math.min(y, box[3])), long = Math.hypot(nx - x, ny - y) || 1;
+    return [x + 8 * (nx - x) / long, y + 8 * (ny - y) / long, nx, ny];
+  }
+  /* where a name stands: next to its own ring alone; or away from all rings on a line from its own; or where there is room */
+  function spot(x, y, wide, others, taken, q) {
+    const side = (dx, dy) => [[dx, dy], [-dx - wide, dy]];
+    const near = [...side(12, -10), ...side(12, 18), [-wide / 2, -13], [-wide / 2, 22]];
+    const far = [...side(12, -28), ...side(12, 36), [-wide / 2, -32], [-wide / 2, 40], ...side(30, -10), ...side(30, 18), ...side(30, -44), ...side(30, 52), ...side(12, -58), ...side(12, 66), ...side(60, 4), ...side(60, -44), ...side(60, 52)];
+    const box = ([dx, dy]) => [x + dx, y + dy - 11, x + dx + wide, y + dy + 3];
+    const free = (b) => b[0] > q.l + 2 && b[2] < q.r - 2 && b[1] > q.t + 1 && b[3] < q.b - 1
+      && others.every(([ox, oy]) => distance(ox, oy, b) > 8)
+      && taken.every((t) => b[2] + 3 < t[0] || b[0] > t[2] + 3 || b[3] < t[1] || b[1] > t[3]);
+    const own = (b) => others.every(([ox, oy]) => distance(ox, oy, b) > 1.6 * distance(x, y, b));
+    const led = (b) => {
+      const [fx, fy, tx, ty] = leader(x, y, b);
+      return others.every(([ox, oy]) => distance(ox, oy, b) > 14 && [0.25, 0.5, 0.75, 1].every((t) => Math.hypot(fx + t * (tx - fx) - ox, fy + t * (ty - fy) - oy) > 10));
+    };
+    const nearby = near.map(box), away = far.map(box), anywhere = [...nearby, ...away];
+    return nearby.find((b) => free(b) && own(b)) || away.find((b) => free(b) && led(b)) || anywhere.find(free) || anywhere[0];
+  }
+  /* rings and names of the picks; a line leads from a ring to a name that stands away from it or near to another ring */
   function names(s) {
     const { g } = s, q = frame(s), taken = [];
     g.font = "600 " + FONT;
-    for (const p of f.picks) {
-      if (!visible(p.row)) continue;
-      const x = sx(s, s.x.places[p.row]), y = sy(s, s.y.places[p.row]), wide = g.measureText(p.name).width;
-      const spots = [[12, -10], [12, 18], [-wide / 2, -13], [-wide / 2, 22], [-12 - wide, -10], [-12 - wide, 18], [12, -28], [-12 - wide, -28], [12, 36], [-12 - wide, 36]];
-      const free = ([dx, dy]) => x + dx > q.l + 2 && x + dx + wide < q.r - 2 && y + dy > q.t + 12 && y + dy < q.b - 4
-        && f.picks.every((o) => {
-          const ox = sx(s, s.x.places[o.row]), oy = sy(s, s.y.places[o.row]);
-          return o === p || !visible(o.row) || ox + 8 < x + dx || ox - 8 > x + dx + wide || oy + 8 < y + dy - 11 || oy - 8 > y + dy + 3;
-        })
-        && taken.every((t) => x + dx + wide < t[0] || x + dx > t[0] + t[2] || Math.abs(y + dy - t[1]) > 15);
-      const [dx, dy] = spots.find(free) || spots[0];
-      taken.push([x + dx, y + dy, wide]);
-      if (Math.abs(dy) > 24) { g.lineWidth = 1; g.strokeStyle = css("--ink"); g.beginPath(); g.moveTo(x, y + 8 * Math.sign(dy)); g.lineTo(Math.max(x + dx, Math.min(x, x + dx + wide)), y + dy + (dy < 0 ? 3 : -11)); g.stroke(); }
+    const rings = f.picks.filter((p) => visible(p.row)).map((p) => [sx(s, s.x.places[p.row]), sy(s, s.y.places[p.row]), p.name]);
+    for (const ring of rings) {
+      const [x, y, name] = ring, others = rings.filter((o) => o !== ring), box = spot(x, y, g.measureText(name).width, others, taken, q);
+      const away = distance(x, y, box);
+      taken.push(box);
+      if (away > 18 || others.some(([ox, oy]) => distance(ox, oy, box) <= 1.6 * away)) {
+        const [fx, fy, tx, ty] = leader(x, y, box);
+        g.lineWidth = 1.2; g.strokeStyle = css("--ink"); g.beginPath(); g.moveTo(fx, fy); g.lineTo(tx, ty); g.stroke();
+      }
       g.lineWidth = 4.5; g.strokeStyle = css("--paper"); g.beginPath(); g.arc(x, y, 7, 0, 7); g.stroke();
       g.lineWidth = 2; g.strokeStyle = css("--ink"); g.beginPath(); g.arc(x, y, 7, 0, 7); g.stroke();
       g.lineWidth = 4; g.lineJoin = "round"; g.strokeStyle = css("--paper"); g.textAlign = "left";
-      g.strokeText(p.name, x + dx, y + dy); g.fillStyle = css("--ink"); g.fillText(p.name, x + dx, y + dy);
+      g.strokeText(name, box[0], box[1] + 11); g.fillStyle = css("--ink"); g.fillText(name, box[0], box[1] + 11);
     }
     g.font = FONT;
   }

@@ -3,7 +3,7 @@
 
 use super::gallery::{Gallery, table};
 use crate::arm::load::LoadCase;
-use crate::arm::section::millimetres;
+use crate::arm::pieces::without_factors;
 use crate::arm::springs::Drawn;
 use crate::arm::{Arm, Element, Link, LinkBody};
 use crate::mechanics::centre_line::Station;
@@ -69,13 +69,6 @@ pub struct DeflectionPart {
     pub moved_mm: [f64; 3],
     /// Component of `moved_mm` along the whole tip deflection \[mm\].
     pub along_mm: f64,
-}
-
-impl DeflectionPart {
-    /// Whether the element is a joint or its output bearing.
-    fn is_of_joint(&self) -> bool {
-        self.torque_nm.is_some() || self.force_n.is_some() || self.element.ends_with(".bearing")
-    }
 }
 
 impl PickedArm {
@@ -224,12 +217,13 @@ impl PickedArm {
             let at = own(&joint.name).last().copied()?;
             Some(Pivot { name: joint.name.clone(), at, axis: None, slides: true })
         });
-        let tip = line.last().map_or(Vector3::zeros(), |s| s.moved_m);
+        let tip = line.last().map(|s| (view.place(&s.at_m), view.place(&s.moved_m)));
         ArmSketch {
             tubes: ways.chain(tubes).collect(),
             pivots: pivots.chain(slides).collect(),
             payload: (solved.case.payload.mass_kg > 0.0)
-                .then(|| (view.place(&solved.payload_m), view.place(&tip))),
+                .then(|| (view.place(&solved.payload_m), tip.map_or((0.0, 0.0), |(_, moved)| moved))),
+            tip,
             springs: self.springs(solved.case, view),
             upright: view.upright,
             ..ArmSketch::default()
@@ -252,13 +246,12 @@ impl PickedArm {
             Element::Link(link) => match &link.body {
                 LinkBody::Tube { material_name, material, section } => {
                     let p = section.properties(material.poisson);
-                    let outer_mm = |m: f64| significant(m * 1e3, 3);
-                    let wall_mm = |m: f64| shortest(millimetres(m));
                     Some(json!({
                         "name": link.name,
-                        "material": material_name,
+                        "material": without_factors(material_name),
+                        "factors": material_name.strip_prefix(without_factors(material_name)),
                         "length_m": significant(link.vector_m.norm(), 3),
-                        "size": section_size(section, outer_mm, wall_mm),
+                        "size": section_size(section),
                         "mass_kg": significant(e.mass_kg(), 4),
                         "area_cm2": significant(p.area_m2 * 1e4, 4),
                         "second_moment_cm4": significant(p.second_moment_y_m4 * 1e8, 4),
@@ -279,14 +272,15 @@ pub(crate) fn deflection_bars(picks: &[PickedArm]) -> Figure {
         .iter()
         .map(|p| (format!("{} ({})", p.title(), p.pick.design.design_id), p.deflection_parts()))
         .collect();
+    let is_link = |name: &str| picks.iter().any(|p| p.arm.links().any(|link| link.name == name));
     let first: &[DeflectionPart] = parts.first().map_or(&[], |(_, list)| list);
     let bars = StackedBars {
         title: "Where the tip's deflection comes from".into(),
-        description: "One bar a picked design: its tip deflection in its worst pose, split into what each joint and bearing \
+        description: "One bar a picked design: its tip deflection in its worst pose, split into what each joint, bearing and guide \
                       (solid, blue) and each link (hatched, orange) adds along its direction."
             .into(),
         unit: "mm".into(),
-        parts: first.iter().map(|p| Part { name: p.element.clone(), hatched: !p.is_of_joint() }).collect(),
+        parts: first.iter().map(|p| Part { name: p.element.clone(), hatched: is_link(&p.element) }).collect(),
         bars: parts
             .iter()
             .map(|(label, list)| Bar {
@@ -299,7 +293,7 @@ pub(crate) fn deflection_bars(picks: &[PickedArm]) -> Figure {
             })
             .collect(),
     };
-    let caption = "Joints and their bearings are solid, links are hatched. Each part is the motion of the tip by the element's deformation (Eqs 13 to 15), \
+    let caption = "Links are hatched; joints, their bearings and guides, and the base are solid. Each part is the motion of the tip by the element's deformation (Eqs 13 to 15), \
                    along the direction of the whole deflection, in the design's worst pose.";
     let csv = bars.to_csv();
     Figure { name: "deflection".into(), caption: caption.into(), svg: bars.readable().to_svg(), csv }
@@ -344,7 +338,7 @@ fn deflection_parts(statics: &Statics) -> Vec<DeflectionPart> {
 fn parts_table(parts: &[DeflectionPart]) -> Table {
     let mut table = Table::new(vec![
         Column::left("element"),
-        Column::unit("torque (7)", "N m"),
+        Column::unit("torque (7) in this pose", "N m"),
         Column::unit("x", "mm"),
         Column::unit("y", "mm"),
         Column::unit("z", "mm"),

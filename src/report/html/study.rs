@@ -10,7 +10,9 @@ use crate::report::number::large;
 use crate::report::picks::{self, materials};
 use crate::report::resonance::warnings;
 use crate::report::section::{Figure, PageSection};
-use crate::report::summary::{SummaryInput, answer_words, materials_side_by_side, single_materials};
+use crate::report::summary::{
+    SummaryInput, answer_words, empty_fronts, materials_side_by_side, single_materials,
+};
 use crate::report::svg::draw::MUTED;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashSet};
@@ -89,6 +91,7 @@ impl StudyPage<'_> {
             "picks": self.picks.iter().map(|p| p.context(&mut gallery)).collect::<Vec<_>>(),
             "own_fronts": !self.summary.materials.is_empty(),
             "materials": table(&materials_side_by_side(self.summary)),
+            "empty_fronts": empty_fronts(self.summary),
             "beams": self.beams.as_ref().map(|f| gallery.show(f)),
             "extras": extras,
             "run": self.run,

@@ -45,6 +45,8 @@ pub(crate) struct ArmSketch {
     pub tubes: Vec<Tube>,
     /// Joints from base to tip.
     pub pivots: Vec<Pivot>,
+    /// Position of the tip, and its displacement \[m\]. A line joins it with the payload.
+    pub tip: Option<(Place, Place)>,
     /// Position of the payload's centre, and its displacement \[m\].
     pub payload: Option<(Place, Place)>,
     /// The two end points of each spring \[m\].
@@ -189,7 +191,7 @@ impl ArmSketch {
             }
         }
         for ((x, y), names) in labels {
-            let words = names.join(" ");
+            let words = names.join(", ");
             // the label is moved so that it does not leave the picture
             let half = text_px(&words, FONT_PX) / 2.0;
             let x = x.min(self.width_px - 8.0 - half).max(8.0 + half);
@@ -201,8 +203,8 @@ impl ArmSketch {
     fn payload(&self, out: &mut String, at: &impl Fn(Place) -> (f64, f64)) {
         if let Some(payload) = self.payload {
             let (x, y) = at(displaced(payload, self.factor));
-            if let Some(tip) = self.tubes.last().and_then(|t| t.line.last()) {
-                line(out, at(displaced(*tip, self.factor)), (x, y), INK, 1.4);
+            if let Some(tip) = self.tip {
+                line(out, at(displaced(tip, self.factor)), (x, y), INK, 1.4);
             }
             let _ = writeln!(
                 out,
@@ -335,6 +337,29 @@ mod tests {
         let path = svg.lines().find(|line| line.contains("<title>spring</title>")).unwrap_or_default();
         assert_eq!(path.matches('L').count(), 12, "{path}");
         assert!(!sketch().to_svg().contains("<title>spring</title>"));
+    }
+
+    #[test]
+    fn the_payload_hangs_at_the_tip_and_names_at_one_place_are_divided() {
+        let mut arm = sketch();
+        let pivot = |name: &str| Pivot { name: name.into(), ..arm.pivots[0].clone() };
+        arm.pivots = ["roll", "quill"].map(pivot).to_vec();
+        // the last tube of the drawing ends at x = 1 m, the tip is a quill below it
+        arm.tip = Some(((1.0, -0.2), (0.0, 0.0)));
+        arm.payload = Some(((1.0, -0.4), (0.0, 0.0)));
+        let svg = arm.to_svg();
+        assert!(svg.contains(">roll, quill<"), "{svg}");
+        let to_payload = svg.lines().find(|l| l.contains("stroke-width=\"1.4\"") && l.contains('L'));
+        let numbers: Vec<f64> = to_payload
+            .unwrap_or_default()
+            .split(['M', 'L', ' ', '"'])
+            .filter_map(|w| w.parse().ok())
+            .collect();
+        // the line goes down by 0.2 m and not aside
+        assert!(
+            numbers.len() >= 4 && (numbers[0] - numbers[2]).abs() < 0.01 && numbers[3] > numbers[1],
+            "{numbers:?}"
+        );
     }
 
     #[test]

@@ -7,6 +7,10 @@ use std::fmt::Write;
 pub const PALETTE: [&str; 8] =
     ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#B8A90A"];
 
+/// Darker colours for styles beyond the number of colours in [`PALETTE`].
+const DARKER: [&str; 8] =
+    ["#003B5C", "#7A3500", "#00513B", "#7B3A60", "#8A5E00", "#1B6E9E", "#6E6E6E", "#635B00"];
+
 /// Index of the style for series in the background: grey, with round markers.
 pub const MUTED: usize = 999;
 
@@ -51,7 +55,11 @@ pub(crate) fn wrap(words: &str, most: usize) -> Vec<String> {
 
 /// Colour of a style, as an SVG colour.
 pub(crate) fn colour(style: usize) -> &'static str {
-    if style == MUTED { "#A0A0A0" } else { PALETTE[style % PALETTE.len()] }
+    match (style / PALETTE.len()) % 2 {
+        _ if style == MUTED => "#A0A0A0",
+        0 => PALETTE[style % PALETTE.len()],
+        _ => DARKER[style % PALETTE.len()],
+    }
 }
 
 /// Draws a straight line.

@@ -1,9 +1,12 @@
 //! Parallel coordinates: one vertical axis per choice or result, one line per design.
 
-use super::draw::{INK, colour, head, line, px, text, wrap};
+use super::draw::{FONT_PX, INK, colour, head, line, px, text, text_px, wrap};
 use std::fmt::Write;
 
 const HEIGHT_PX: f64 = 420.0;
+/// Least distance between the names of two lines, from baseline to baseline \[px\].
+const NAME_ROW_PX: f64 = 15.0;
+const LEGEND_ROW_PX: f64 = 20.0;
 const AXIS_PX: f64 = 88.0;
 const TOP_PX: f64 = 92.0;
 const BOTTOM_PX: f64 = HEIGHT_PX - 26.0;
@@ -42,34 +45,66 @@ pub(crate) struct Parallel {
     pub axes: Vec<ParallelAxis>,
     /// The lines. Those with a name are drawn last and are highlighted.
     pub lines: Vec<ParallelLine>,
+    /// What the colours mean: the style index and the name of each.
+    pub legend: Vec<(usize, String)>,
 }
 
 impl Parallel {
     /// The picture as a self-contained SVG document.
     pub(crate) fn to_svg(&self) -> String {
         let width = 120.0 + AXIS_PX * self.axes.len().saturating_sub(1) as f64 + 90.0;
-        let mut out = head(&self.title, &self.description, width, HEIGHT_PX);
+        let legend = self.legend_rows(width);
+        let height = HEIGHT_PX + LEGEND_ROW_PX * legend.len() as f64;
+        let mut out = head(&self.title, &self.description, width, height);
         text(&mut out, (16.0, 26.0), "start", " font-size=\"16\" font-weight=\"bold\"", &self.title);
         for line in self.lines.iter().filter(|l| l.name.is_none()) {
             self.draw(&mut out, line, "stroke-width=\"0.8\" stroke-opacity=\"0.35\"");
         }
-        for (i, axis) in self.axes.iter().enumerate() {
-            self.axis(&mut out, axis, x(i));
-        }
-        let named = self.lines.iter().filter_map(|l| Some((l, l.name.as_ref()?)));
-        for (i, (line, name)) in named.enumerate() {
+        let named = || self.lines.iter().filter_map(|l| Some((l, l.name.as_ref()?)));
+        for (i, (line, _)) in named().enumerate() {
             let dashes = ["", "8 4", "2 4", "10 3 2 3"][i % 4];
             self.draw(&mut out, line, "stroke-width=\"5\" stroke=\"#FFFFFF\"");
             let ink = ParallelLine { style: 6, ..line.clone() };
             self.draw(&mut out, &ink, &format!("stroke-width=\"2.2\" stroke-dasharray=\"{dashes}\""));
-            if let Some(Some(last)) = line.places.last() {
-                let at = (x(self.axes.len() - 1) + 8.0, y(*last) + 4.0);
-                let style = " font-size=\"12\" font-weight=\"bold\" paint-order=\"stroke\" stroke=\"#FFFFFF\" stroke-width=\"3\"";
-                text(&mut out, at, "start", style, name);
+        }
+        // the axes are on top, so that no line strikes through the names of parts
+        for (i, axis) in self.axes.iter().enumerate() {
+            self.axis(&mut out, axis, x(i));
+        }
+        let ends = named().filter_map(|(line, name)| Some((y((*line.places.last()?)?), name.as_str())));
+        let left = x(self.axes.len().saturating_sub(1)) + 8.0;
+        for (at, name) in apart(ends.collect()) {
+            let style = " font-size=\"12\" font-weight=\"bold\" paint-order=\"stroke\" stroke=\"#FFFFFF\" stroke-width=\"3\"";
+            text(&mut out, (left, at + 4.0), "start", style, name);
+        }
+        for (i, row) in legend.iter().enumerate() {
+            let y = HEIGHT_PX + LEGEND_ROW_PX * i as f64;
+            for (x, entry) in row {
+                let (style, name) = &self.legend[*entry];
+                line(&mut out, (*x, y - 4.0), (x + 20.0, y - 4.0), colour(*style), 2.5);
+                text(&mut out, (x + 26.0, y), "start", "", name);
             }
         }
         out.push_str("</svg>\n");
         out
+    }
+
+    /// The legend in rows that fit the width: position \[px\] and index of each entry.
+    fn legend_rows(&self, width_px: f64) -> Vec<Vec<(f64, usize)>> {
+        let mut rows: Vec<Vec<(f64, usize)>> = Vec::new();
+        let mut x = width_px;
+        for (i, (_, name)) in self.legend.iter().enumerate() {
+            let entry_px = 44.0 + text_px(name, FONT_PX);
+            if x + entry_px > width_px {
+                rows.push(Vec::new());
+                x = 16.0;
+            }
+            if let Some(row) = rows.last_mut() {
+                row.push((x, i));
+            }
+            x += entry_px;
+        }
+        rows
     }
 
     fn draw(&self, out: &mut String, line: &ParallelLine, look: &str) {
@@ -107,6 +142,21 @@ impl Parallel {
     }
 }
 
+/// The names with their heights \[px\], moved apart so that no two overlap, from top to bottom. Names that crowd at the
+/// bottom move up.
+fn apart(mut names: Vec<(f64, &str)>) -> Vec<(f64, &str)> {
+    names.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for i in 1..names.len() {
+        names[i].0 = names[i].0.max(names[i - 1].0 + NAME_ROW_PX);
+    }
+    let mut lowest = BOTTOM_PX;
+    for (at, _) in names.iter_mut().rev() {
+        *at = at.min(lowest);
+        lowest = *at - NAME_ROW_PX;
+    }
+    names
+}
+
 fn x(axis: usize) -> f64 {
     104.0 + AXIS_PX * axis as f64
 }
@@ -135,9 +185,18 @@ mod tests {
             ParallelLine { places: vec![Some(0.0), None, Some(1.0)], style: 0, name: Some("knee".into()) };
         let plot =
             Parallel { axes: ["a", "b", "c"].map(axis).to_vec(), lines: vec![line], ..Parallel::default() };
-        let svg = plot.to_svg();
+        let svg = Parallel { legend: vec![(0, "steel".into()), (1, "titanium".into())], ..plot }.to_svg();
+        assert!(svg.contains(">steel<") && svg.contains(">titanium<"));
         let path = svg.lines().find(|l| l.contains("stroke-width=\"2.2\"")).unwrap_or_default();
         assert_eq!(path.matches('M').count(), 2, "{path}");
         assert!(svg.contains(">knee<"));
+    }
+
+    #[test]
+    fn names_at_one_height_are_moved_apart_within_the_picture() {
+        let names = apart(vec![(200.0, "b"), (199.0, "a"), (BOTTOM_PX, "d"), (BOTTOM_PX, "c")]);
+        assert!(names.windows(2).all(|pair| pair[1].0 - pair[0].0 >= NAME_ROW_PX), "{names:?}");
+        assert!(names.iter().all(|(at, _)| *at <= BOTTOM_PX), "{names:?}");
+        assert_eq!(names[0], (199.0, "a"));
     }
 }

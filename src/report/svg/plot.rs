@@ -361,7 +361,10 @@ fn dashes(series: &Series) -> String {
     const PATTERNS: [&str; 8] = ["", "7 3", "2 2.5", "9 3 2 3", "13 4", "4 2", "9 2.5 2 2.5 2 2.5", "1.5 4"];
     let pattern = match series.stroke {
         Stroke::Dashed => "6 4",
-        Stroke::Patterned if series.style != MUTED => PATTERNS[series.style % PATTERNS.len()],
+        // beyond the number of patterns, styles repeat them with another colour
+        Stroke::Patterned if series.style != MUTED => {
+            PATTERNS[(series.style + series.style / PATTERNS.len()) % PATTERNS.len()]
+        }
         _ => "",
     };
     if pattern.is_empty() { String::new() } else { format!(" stroke-dasharray=\"{pattern}\"") }
@@ -437,7 +440,11 @@ mod tests {
         assert!(svg.len() < 100_000, "{}", svg.len());
         let outlines: std::collections::BTreeSet<String> = (0..8).map(|i| outline(i, 4.0)).collect();
         assert_eq!(outlines.len(), 8);
-        assert_ne!(outline(0, 4.0), outline(8, 4.0), "the same colour comes again with another shape");
+        let colours: std::collections::BTreeSet<&str> = (0..16).map(colour).collect();
+        assert_eq!(colours.len(), 16, "nine materials have nine colours");
+        let line = |style: usize| dashes(&Series { stroke: Stroke::Patterned, style, ..Series::default() });
+        assert_ne!(line(0), line(8));
+        assert_ne!(outline(0, 4.0), outline(8, 4.0), "the ninth has another shape");
         assert_ne!(outline(1, 4.0), outline(8, 4.0), "the same shape comes again with a hole");
     }
 
