@@ -52,12 +52,13 @@ impl Posed<'_> {
     /// has an example.
     pub fn modes(&self, statics: &Statics, count: usize) -> Vec<Mode> {
         let modes = self.solve_modes(statics);
+        // the lowest frequency has the same last digits here and where it is computed alone, as for a front
+        let lowest_hz = self.lowest_frequency_hz(statics);
+        let frequency = |k: usize, hz: f64| if k == 0 { lowest_hz } else { hz.max(lowest_hz) };
         modes
             .finite()
             .take(count)
-            .map(|(k, frequency_hz)| {
-                self.describe(statics, &modes.shapes.column(k).into_owned(), frequency_hz)
-            })
+            .map(|(k, hz)| self.describe(statics, &modes.shapes.column(k).into_owned(), frequency(k, hz)))
             .collect()
     }
 

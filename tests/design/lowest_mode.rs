@@ -23,7 +23,7 @@ fn solved(arm: &Arm, links: LinkModel, pose: &[f64], payload: &Payload) -> (f64,
     let chain = Chain::new(&arm.structure(JointModel::ThreeSegment), links);
     let posed = chain.pose_rad(pose, payload, Vector3::new(3.0, -20.0, 40.0));
     let statics = posed.statics();
-    let whole = posed.modes(&statics, 3).iter().map(|mode| mode.frequency_hz).collect();
+    let whole = posed.solve_modes(&statics).finite().take(3).map(|(_, frequency_hz)| frequency_hz).collect();
     (posed.lowest_frequency_hz(&statics), whole)
 }
 
