@@ -53,6 +53,8 @@ fn the_page_has_the_forces_of_a_rail_with_their_unit_and_each_check_under_its_na
     let mut study = column();
     let turn = json!({"type": "joint", "name": "turn", "axis": [0, 0, 1], "drive": "first_fit"});
     study["chain"].as_array_mut().expect("a chain").insert(1, turn);
+    study["chain"][0]["guide"] =
+        json!({"roll_nm_per_rad": 1e6, "pitch_nm_per_rad": 1e6, "yaw_nm_per_rad": 1e6});
     let here = folder(&study, &[]);
     said(here.path(), &["run", "study.json", "--out", "r"], 0);
     let page = std::fs::read_to_string(here.path().join("r/report.html")).expect("a page");
@@ -73,6 +75,11 @@ fn the_page_has_the_forces_of_a_rail_with_their_unit_and_each_check_under_its_na
     assert!(
         rows[0].starts_with('z') && rows[0].split("<td").nth(bearing).expect("a cell").contains("></td>")
     );
+    // the guide belongs to the joint, and the picture hatches links alone
+    let bars = std::fs::read_to_string(here.path().join("r/plots/deflection.svg")).expect("a picture");
+    let hatched: Vec<&str> = bars.lines().filter(|line| line.contains("url(#hatch)")).collect();
+    assert!(bars.contains(".guide</title>") && !hatched.is_empty(), "{bars}");
+    assert!(hatched.iter().all(|line| !line.contains(".guide")), "{hatched:?}");
     let parts = page.split("torque (7) in this pose").nth(1).and_then(|rest| rest.split("</table>").next());
     let parts = parts.expect("a table of parts");
     assert!(parts.contains(" N</td>"), "{parts}");
