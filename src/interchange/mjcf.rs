@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 
 /// Mass of a body that has none, relative to the mass of the arm. MuJoCo accepts no moving body without mass.
 const LEAST_MASS: f64 = 1e-10;
-/// Square of the radius of gyration that is added to the moments of every body \[m²\]: 0.3 mm. MuJoCo accepts no
+/// Square of the least radius of gyration of every body \[m²\]: 0.3 mm. MuJoCo accepts no
 /// moving body without inertia, and a body with less would need a shorter time step. A body without mass has the
 /// moments of a tenth of the arm's mass.
 const LEAST_RADIUS2_M2: f64 = 1e-7;
@@ -329,7 +329,7 @@ fn positions(snapshot: &Snapshot, nodes: &[Node], deflected: bool) -> Vec<f64> {
 /// Whether a solid can have the inertia of this body: no principal moment exceeds the sum of the other two.
 fn is_solid(node: &Node, least: &Least) -> bool {
     let (mass_kg, _, inertia) = mass_properties(&node.inertia);
-    let moments = (inertia + least.inertia_kgm2(mass_kg)).symmetric_eigenvalues();
+    let moments = least.raised(mass_kg, inertia).symmetric_eigenvalues();
     2.0 * moments.max() <= moments.sum() * (1.0 + 1e-9)
 }
 
@@ -355,16 +355,17 @@ impl Least {
     /// Mass, centre of gravity, and inertia about the centre of gravity of a body as the file has them.
     fn written(&self, node: &Node) -> (f64, Vector3<f64>, Matrix3<f64>) {
         let (mass_kg, cg_m, inertia_kgm2) = mass_properties(&node.inertia);
-        let inertia_kgm2 = inertia_kgm2 + self.inertia_kgm2(mass_kg);
+        let inertia_kgm2 = self.raised(mass_kg, inertia_kgm2);
         match mass_kg > 0.0 {
             true => (mass_kg, cg_m, inertia_kgm2),
             false => (self.mass_kg, node.origin_m, inertia_kgm2),
         }
     }
 
-    /// Inertia that is added to that of a body of this mass \[kg m²\].
-    fn inertia_kgm2(&self, mass_kg: f64) -> Matrix3<f64> {
+    /// The inertia of a body of this mass, raised equally about all axes until its smallest moment is the least \[kg m²\].
+    fn raised(&self, mass_kg: f64, inertia_kgm2: Matrix3<f64>) -> Matrix3<f64> {
         let mass_kg = if mass_kg > 0.0 { mass_kg } else { 0.1 * self.mass_kg / LEAST_MASS };
-        Matrix3::identity() * (LEAST_RADIUS2_M2 * mass_kg)
+        let lacks_kgm2 = LEAST_RADIUS2_M2 * mass_kg - inertia_kgm2.symmetric_eigenvalues().min();
+        inertia_kgm2 + Matrix3::identity() * lacks_kgm2.max(0.0)
     }
 }

@@ -4,7 +4,7 @@
 //! bodies with their inertia.
 
 use super::beam::{PreparedBeam, pull_on};
-use super::hanging::{Deflections, screw};
+use super::deflections::{Deflections, screw};
 use super::{Twist, Wrench, body_inertia, force_wrench, rotation_twist, stack};
 use crate::arm::LinkModel;
 use crate::arm::base_lift::BaseLift;

@@ -11,9 +11,9 @@
 //! 0.6 (elastica to second order).
 
 use super::chain::{Chain, Posed};
-use super::{Twist, angular, displacement_at};
+use super::deflections::Deflections;
 use crate::arm::load::Payload;
-use nalgebra::{DVector, Rotation3, Vector3};
+use nalgebra::{DVector, Vector3};
 
 /// Largest number of times that the statics are repeated in the pose of the last deflections.
 const MOST_ROUNDS: usize = 20;
@@ -21,27 +21,6 @@ const MOST_ROUNDS: usize = 20;
 const RESTS_M: f64 = 1e-9;
 /// Of a displacement below this size the terms of second order are below 1e-8 m, and left out \[m\].
 const SMALL_M: f64 = 1e-4;
-
-/// The deflections that a walk from base to tip applies to the arm.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Deflections {
-    /// The strain coordinates of all elements, base to tip, those of passive joints with what their linkages add.
-    strains: Vec<f64>,
-    /// Number of strain coordinates that have been applied.
-    next: usize,
-}
-
-impl Deflections {
-    /// The motion of everything outboard of the next element, whose twists are `twists`; `None` in the undeflected pose.
-    pub(super) fn motion_of_next(&mut self, twists: &[Twist]) -> Option<Twist> {
-        if self.strains.is_empty() {
-            return None;
-        }
-        let own = self.strains.get(self.next..self.next + twists.len())?;
-        self.next += twists.len();
-        Some(twists.iter().zip(own).map(|(twist, strain)| twist * *strain).sum())
-    }
-}
 
 impl Chain {
     /// Position of the tip of the arm as it hangs in the pose `pose_rad` \[rad, m\] under gravity, with a payload, in the
@@ -77,26 +56,8 @@ impl Posed<'_> {
     /// The deflections of all elements under weight and load, in this pose.
     fn deflections(&self) -> Deflections {
         let strains: Vec<f64> = self.statics().deformations.into_iter().flatten().collect();
-        Deflections { strains: self.with_passive(&DVector::from_vec(strains)).as_slice().to_vec(), next: 0 }
+        Deflections::of(self.with_passive(&DVector::from_vec(strains)).as_slice().to_vec())
     }
-}
-
-/// Moves a frame at `at_m` with the attitude `rotation` by the screw motion of the twist `motion` (Murray, Li and Sastry,
-/// A Mathematical Introduction to Robotic Manipulation, eq. 2.36).
-pub(super) fn screw(motion: &Twist, at_m: &mut Vector3<f64>, rotation: &mut Rotation3<f64>) {
-    let turn = angular(motion);
-    let angle_rad = turn.norm();
-    let by_m = displacement_at(motion, at_m);
-    *at_m += match angle_rad > 0.0 {
-        true => {
-            // the velocity at the frame turns with it: its integral over the motion
-            let cross = turn.cross_matrix() / angle_rad;
-            let (sin, cos) = (libm::sin(angle_rad), libm::cos(angle_rad));
-            by_m + cross * by_m * ((1.0 - cos) / angle_rad) + cross * cross * by_m * (1.0 - sin / angle_rad)
-        }
-        false => by_m,
-    };
-    *rotation = Rotation3::from_scaled_axis(turn) * *rotation;
 }
 
 #[cfg(test)]
@@ -106,6 +67,7 @@ mod tests {
     use crate::arm::{JointModel, LinkModel};
     use crate::catalog::Catalogs;
     use crate::input::Document;
+    use nalgebra::Rotation3;
 
     /// The prepared arm of the text of an arm file.
     fn chain(text: &str) -> Chain {
@@ -192,10 +154,10 @@ mod tests {
     #[test]
     fn a_cantilever_that_bends_far_shortens_nearly_as_the_elastica() {
         let chain = chain(
-            r#"{"gravity_m_s2": 9.81, "chain": [
-            {"type": "link", "name": "arm", "vector_m": [1, 0, 0],
-             "section": {"shape": "round_tube", "diameter_m": 0.02, "wall_m": 0.002},
-             "material": {"youngs_modulus_pa": 7e10, "shear_modulus_pa": 2.6e10, "density_kg_m3": 1e-6}}]}"#,
+            r#"{"gravity_m_s2": 9.81,
+            "materials": {"light": {"youngs_modulus_pa": 7e10, "shear_modulus_pa": 2.6e10, "density_kg_m3": 1e-6}},
+            "chain": [{"type": "link", "name": "arm", "vector_m": [1, 0, 0], "material": "light",
+             "section": {"shape": "round_tube", "diameter_m": 0.02, "wall_m": 0.002}}]}"#,
         );
         let area_m4 = std::f64::consts::PI / 64.0 * (0.02f64.powi(4) - 0.016f64.powi(4));
         let mass_kg = 0.25 * 7e10 * area_m4 / 9.81;

@@ -24,6 +24,7 @@ pub(crate) mod beam;
 pub(crate) mod centre_line;
 pub(crate) mod chain;
 pub(crate) mod condensed;
+pub(crate) mod deflections;
 pub(crate) mod hanging;
 pub(crate) mod krylov;
 pub(crate) mod lanes;

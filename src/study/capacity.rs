@@ -12,6 +12,8 @@ use super::chosen::{chosen_design, why_not_held};
 use super::definition::Study;
 use super::refusal::Refusal;
 use super::window::{Overload, Window, window_around};
+use crate::arm::Arm;
+use crate::arm::load::LoadCase;
 use crate::catalog::Catalogs;
 use crate::report::number::{fixed, significant};
 use crate::space::design_space::{DesignSpace, SpacePiece};
@@ -98,7 +100,10 @@ pub fn capacity_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Resu
     let (space, chosen) = chosen_design(study, id, catalogs)?;
     let problem = ArmProblem::new(&space, catalogs);
     let arm = problem.walk(&chosen, |_, _| {}).map_err(|slot| why_not_held(&problem, &chosen, slot))?;
-    Ok(capacity(&space, catalogs, arm.slot_options(), &study.own_payloads))
+    let mut found = capacity(&space, catalogs, arm.slot_options(), &study.own_payloads);
+    let built = problem.arm_of(&arm);
+    found.remarks.extend(built.and_then(|built| limits_remark(&space, &built, &study.own_payloads)));
+    Ok(found)
 }
 
 /// The capacity of the design with these options, one for each slot of the arm (joint or link, in the order in which
@@ -124,27 +129,26 @@ fn capacity(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], own: &[us
         window: window(&[case], &[case]),
     };
     let table = loaded.iter().map(at_pose).collect();
-    remarks.extend(limits_remark(space, catalogs, options, own));
     Capacity::new(window(&space.sizing_cases, &loaded), table, remarks)
 }
 
-/// Up to which payload the design with these options meets the study's limits on deflection and lowest mode in the judged
-/// cases, as a sentence; `None` if the study has no such limits. Drives that hold a payload do not care for them. The
-/// cases with the indices `own` keep their payload, unless all cases have one.
-fn limits_remark(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], own: &[usize]) -> Option<String> {
+/// Up to which payload the design `built` meets the study's limits on deflection and lowest mode in the judged cases, as a
+/// sentence; `None` if the study has no such limits. Drives that hold a payload do not care for them. The cases with the
+/// indices `own` keep their payload, unless all cases have one.
+fn limits_remark(space: &DesignSpace, built: &Arm, own: &[usize]) -> Option<String> {
     let limits = &space.constraints;
-    let [deflection, mode] = [limits.tip_deflection_max_m.is_some(), limits.required_mode_hz() > 0.0];
-    if !deflection && !mode {
+    if limits.tip_deflection_max_m.is_none() && limits.required_mode_hz() <= 0.0 {
         return None;
     }
-    let keeps_own = |case: &usize| own.contains(case) && own.len() < space.cases.len();
-    let varied: Vec<usize> = (0..space.cases.len()).filter(|case| !keeps_own(case)).collect();
+    let cases = &space.cases;
+    let varied: Vec<usize> =
+        (0..cases.len()).filter(|case| own.len() == cases.len() || !own.contains(case)).collect();
     let breaks = |payload_kg: f64| {
-        let mut loaded = space.clone();
-        varied.iter().for_each(|&case| loaded.cases[case].payload.mass_kg = payload_kg);
-        let problem = ArmProblem::new(&loaded, catalogs);
-        let objectives = full_objectives(&problem.arm(options)?, &problem.load_cases());
-        let [too_far, _, too_low] = limits.broken(&objectives);
+        let mut loaded = cases.clone();
+        varied.iter().for_each(|&case| loaded[case].payload.mass_kg = payload_kg);
+        let judged: Vec<LoadCase> =
+            space.judged_cases.iter().map(|&case| space.load_case(&loaded[case])).collect();
+        let [too_far, _, too_low] = limits.broken(&full_objectives(built, &judged));
         let check = match too_far {
             true => format!(
                 "the tip deflects by more than {} mm",
@@ -154,7 +158,7 @@ fn limits_remark(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], own:
         };
         (too_far || too_low).then(|| Overload { piece: "tip".into(), check })
     };
-    let stated_kg = varied.iter().map(|&case| space.cases[case].payload.mass_kg).fold(0.0, f64::max);
+    let stated_kg = varied.iter().map(|&case| cases[case].payload.mass_kg).fold(0.0, f64::max);
     let judged = "Judged are drives, output bearings and the stress in links.";
     Some(match breaks(stated_kg) {
         Some(broken) => format!(

@@ -70,7 +70,7 @@ fn one_wrong_number_of_bearings_is_found_and_each_decides_somewhere() {
         let true_front = front(&study, &catalogs, &catalogs);
         assert_eq!(faults(&study, &catalogs, &true_front), [0, 0], "{what}");
         for ((name, spoil), decides) in NUMBERS.iter().zip(&mut decides) {
-            for factor in [0.6, 0.95, 1.7] {
+            for factor in [0.6, 1.7] {
                 let rows = front(&study, &spoiled(&catalogs, *spoil, factor), &catalogs);
                 let found = faults(&study, &catalogs, &rows);
                 println!("{what}, {name} times {factor}: {} rows, faults {found:?}", rows.len());

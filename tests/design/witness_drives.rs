@@ -159,7 +159,7 @@ fn one_wrong_threshold_of_a_drive_is_found() {
     let study = study(&catalogs);
     let true_front = front(&study, &catalogs, &catalogs);
     for (name, spoil) in THRESHOLDS {
-        for factor in [0.7, 1.0 / 0.7, 0.3, 1.0 / 0.3] {
+        for factor in [0.3, 1.0 / 0.7] {
             let rows = front(&study, &spoiled(&catalogs, spoil, factor), &catalogs);
             let found = faults(&study, &catalogs, &rows);
             println!("{name} times {factor:.2}: {} rows, faults {found:?}", rows.len());

@@ -46,19 +46,24 @@ impl Builder<'_> {
 #[cfg(test)]
 mod tests {
     use super::super::testing::about_the_nominal_arm;
+    use crate::reconcile::model::calibration::Calibration;
 
     #[test]
     fn a_joint_that_its_own_torque_twists_is_softer_and_neighbours_have_two_laws() {
-        about_the_nominal_arm(|builder, _| {
-            let joints = builder.forward.layout.joints.len();
-            assert_eq!(builder.coupling_laws().len(), 2 * (joints - 1));
-            let twist = builder.forward.layout.joints[1].twist;
-            let own = builder.coupling_column(1, 1, 1e-6);
-            let softer = builder.compliance_column(&[(twist, 1e-6)]);
-            let largest = softer.iter().fold(0.0f64, |most, x| most.max(x.abs()));
-            let bench = builder.forward.starts[2];
-            for (i, (own, softer)) in own.iter().zip(&softer).enumerate().take(bench) {
-                assert!((own - softer).abs() < 1e-6 * largest, "datum {i}: {own} and {softer}");
+        about_the_nominal_arm(|builder, nuisance| {
+            let (forward, fit) = (builder.forward, builder.fit);
+            let joints = &forward.layout.joints;
+            assert_eq!(builder.coupling_laws().len(), 2 * (joints.len() - 1));
+            let compliance = fit.point.coefficients.laws[1].tangent_compliance_rad_per_nm(0.0);
+            let column = builder.coupling_column(1, 1, compliance);
+            let is_own = |c: &Calibration| *c == Calibration::Stiffness(joints[1].name.clone());
+            let p = nuisance.numbers.iter().position(|(c, _)| is_own(c)).expect("calibrated");
+            let sd = nuisance.numbers[p].1;
+            let largest = fit.jacobian.column(p).amax() / sd;
+            // a bench loads the joint itself, which is no coupling
+            for (i, own) in column.iter().enumerate().take(forward.starts[2]) {
+                let softer = -fit.jacobian[(i, p)] / sd;
+                assert!((own - softer).abs() <= 1e-3 * largest, "datum {i}: {own} and {softer}");
             }
         });
     }

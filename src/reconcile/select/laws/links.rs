@@ -88,7 +88,7 @@ impl Builder<'_> {
 
     /// The change of every reading, in its unit, by additional compliances. Each entry of `further` is a pair: index of
     /// the strain coordinate, and its additional compliance.
-    pub(super) fn compliance_column(&self, further: &[(usize, f64)]) -> Vec<f64> {
+    fn compliance_column(&self, further: &[(usize, f64)]) -> Vec<f64> {
         let forward = self.forward;
         let mut truth = vec![0.0; forward.data.len()];
         for pose in &forward.statics {

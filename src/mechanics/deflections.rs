@@ -1,0 +1,48 @@
+//! Deflections of an arm's elements as finite motions, with which a chain is walked from base to tip.
+
+use super::{Twist, angular, displacement_at};
+use nalgebra::{Rotation3, Vector3};
+
+/// The deflections that a walk from base to tip applies to the arm.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Deflections {
+    /// The strain coordinates of all elements, base to tip, those of passive joints with what their linkages add.
+    strains: Vec<f64>,
+    /// Number of strain coordinates that have been applied.
+    next: usize,
+}
+
+impl Deflections {
+    /// The deflections with these strain coordinates, of which none has been applied.
+    pub(super) fn of(strains: Vec<f64>) -> Self {
+        Self { strains, next: 0 }
+    }
+
+    /// The motion of everything outboard of the next element, whose twists are `twists`; `None` in the undeflected pose.
+    pub(super) fn motion_of_next(&mut self, twists: &[Twist]) -> Option<Twist> {
+        if self.strains.is_empty() {
+            return None;
+        }
+        let own = self.strains.get(self.next..self.next + twists.len())?;
+        self.next += twists.len();
+        Some(twists.iter().zip(own).map(|(twist, strain)| twist * *strain).sum())
+    }
+}
+
+/// Moves a frame at `at_m` with the attitude `rotation` by the screw motion of the twist `motion` (Murray, Li and Sastry,
+/// A Mathematical Introduction to Robotic Manipulation, eq. 2.36).
+pub(super) fn screw(motion: &Twist, at_m: &mut Vector3<f64>, rotation: &mut Rotation3<f64>) {
+    let turn = angular(motion);
+    let angle_rad = turn.norm();
+    let by_m = displacement_at(motion, at_m);
+    *at_m += match angle_rad > 0.0 {
+        true => {
+            // the velocity at the frame turns with it: its integral over the motion
+            let cross = turn.cross_matrix() / angle_rad;
+            let (sin, cos) = (libm::sin(angle_rad), libm::cos(angle_rad));
+            by_m + cross * by_m * ((1.0 - cos) / angle_rad) + cross * cross * by_m * (1.0 - sin / angle_rad)
+        }
+        false => by_m,
+    };
+    *rotation = Rotation3::from_scaled_axis(turn) * *rotation;
+}
