@@ -2,7 +2,6 @@
 //! Every pick that uses such a part is marked.
 
 use super::front_table::FrontTable;
-use super::words::{TERMINAL, wrap};
 use crate::arm::pieces::without_factors;
 use crate::catalog::{Catalogs, Provenance};
 use std::collections::BTreeMap;
@@ -46,7 +45,7 @@ impl Caveats {
         self.of_part(name).map_or(name.to_string(), |caveat| format!("{name} ({caveat})"))
     }
 
-    /// One sentence for the terminal that names the parts with caveats and the picks that use them. Each item of
+    /// One sentence that names the parts with caveats and the picks that use them. Each item of
     /// `picks` is the row of the front and the name of a pick. Empty if no part has a caveat.
     pub(crate) fn sentence(&self, front: &FrontTable, picks: &[(usize, String)]) -> String {
         let mut used: Vec<(&str, Vec<String>)> = Vec::new();
@@ -69,11 +68,7 @@ impl Caveats {
             used.iter().map(|(part, names)| format!("{} in {}", self.marked(part), place(names))).collect();
         match words.is_empty() {
             true => String::new(),
-            false => wrap(
-                &format!("Figures not seen in a document of the vendor: {}.", words.join("; ")),
-                TERMINAL,
-                "",
-            ),
+            false => format!("Figures not seen in a document of the vendor: {}.", words.join("; ")),
         }
     }
 }
@@ -106,7 +101,7 @@ mod tests {
             ],
         };
         let picked = rows_and_names(&picks(&designs(&front)));
-        let sentence = caveats.sentence(&front, &picked).replace('\n', " ");
+        let sentence = caveats.sentence(&front, &picked);
         assert!(
             sentence.contains("Boron/epoxy quasi-isotropic (representative) in stiffest, highest mode"),
             "{sentence}"

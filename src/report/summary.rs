@@ -67,6 +67,10 @@ pub fn summary_md(input: &SummaryInput) -> String {
         if !tightest.is_empty() {
             out.push_str(&format!("\n{tightest}\n"));
         }
+        let caveats = facts.caveats.sentence(&input.overall, &rows_and_names(&found.picks));
+        if !caveats.is_empty() {
+            out.push_str(&format!("\n{caveats}\n"));
+        }
         out.push_str(KNEE);
         let names: Vec<String> = input.materials.iter().map(|m| m.name.clone()).collect();
         if !names.is_empty() {
@@ -125,7 +129,10 @@ pub fn terminal_summary(input: &SummaryInput) -> String {
         if !tightest.is_empty() {
             out.push_str(&wrap(&tightest, TERMINAL, ""));
         }
-        out.push_str(&facts.caveats.sentence(&input.overall, &rows_and_names(&found.picks)));
+        let caveats = facts.caveats.sentence(&input.overall, &rows_and_names(&found.picks));
+        if !caveats.is_empty() {
+            out.push_str(&wrap(&caveats, TERMINAL, ""));
+        }
         let names: Vec<String> = input.materials.iter().map(|m| m.name.clone()).collect();
         if !names.is_empty() {
             out.push_str(&format!(

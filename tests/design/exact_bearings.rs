@@ -76,7 +76,7 @@ fn excluded_by_bearings(problem: &ArmProblem) -> usize {
 #[test]
 fn the_exact_front_is_whole_with_bearings_that_tilt_and_limit() {
     let studies: u64 =
-        std::env::var("ARMWRIGHT_EXACT_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(6);
+        std::env::var("ARMWRIGHT_EXACT_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(9);
     let (mut points, mut feasible, mut excluded) = (0, 0, 0);
     for seed in 0..studies {
         let (text, catalogs) = (study_of_bearings(seed), other_bearings(seed));

@@ -49,7 +49,7 @@ fn right_of(score: &Score) -> (usize, usize) {
 
 #[test]
 fn four_of_five_small_effects_in_few_bad_readings_are_named() {
-    let score = score("hard", "one", 71, (0..30).step_by(3));
+    let score = score("hard", "one", 71, (0..30).step_by(6));
     let (right, all) = right_of(&score);
     assert!(right * 5 >= all * 4, "{right} of {all}\n{}", score.table());
     assert!(score.covered.0 * 10 >= score.covered.1 * 8, "{}", score.table());
@@ -97,15 +97,15 @@ fn a_further_effect_is_found_beside_a_curve() {
 /// Arms of four to seven joints of any size, on floor, wall or ceiling, with instruments of their own.
 #[test]
 fn what_an_arm_of_any_kind_hides_is_named() {
-    let score = score("varied", "one", 57, (1..80).step_by(13));
-    assert_eq!(right_of(&score), (7, 7), "{}", score.table());
+    let score = score("varied", "one", 57, (1..80).step_by(26));
+    assert_eq!(right_of(&score), (4, 4), "{}", score.table());
 }
 
 /// Every gear has a torsion curve, so that the frequencies step wherever a torque crosses a break point.
 #[test]
 fn what_an_arm_of_curved_gears_hides_is_named() {
-    let score = score("geared", "one", 11, (0..16).step_by(5));
-    assert_eq!(right_of(&score), (4, 4), "{}", score.table());
+    let score = score("geared", "one", 11, (0..16).step_by(10));
+    assert_eq!(right_of(&score), (2, 2), "{}", score.table());
 }
 
 /// One of each effect that came later to the library: a mass in modal tests, a servo, links that warm up, a stiffness that
@@ -123,14 +123,14 @@ fn an_effect_that_came_later_is_named_and_its_intervals_hold() {
 #[test]
 fn an_honest_arm_has_no_gap() {
     for set in ["plain", "hard", "varied", "geared"] {
-        let score = score(set, "none", 72, 0..4);
+        let score = score(set, "none", 72, 0..2);
         assert!(score.each.iter().all(|(_, _, right)| *right), "{}", score.table());
     }
 }
 
 #[test]
 fn physics_that_the_library_lacks_is_called_unexplained_and_no_effect_is_named() {
-    let score = score("plain", "unknown", 73, [1, 3].into_iter());
+    let score = score("plain", "unknown", 73, [1].into_iter());
     assert!(score.each.iter().all(|(_, _, right)| *right), "{}", score.table());
 }
 
