@@ -234,15 +234,16 @@ fn only_design(input: &SummaryInput, only: &Pick) -> String {
     let amounts =
         [Objective::Mass, Objective::Deflection, Objective::Mode].map(|o| o.amount(o.of(&only.design)));
     let how_many = match input.facts.designs_total {
-        1 => "The study has one design, and it meets every requirement",
+        1 => "The study has one design",
         _ => "One design is at least as good as every other in all three objectives",
     };
     let choices = marked_choices(&input.overall, only.design.row, &input.facts.caveats);
     let parts = if choices.is_empty() { String::new() } else { format!(" It has {}.", choices.join("; ")) };
     let margin = tightest_check(&input.overall, only.design.row).map_or(String::new(), |tightest| {
         let TightestCheck { joint, check, margin } = tightest;
+        let verdict = if margin < 1.0 { ", which is too little" } else { "" };
         format!(
-            " Of the checks that were made, the tightest is {check} at {joint}: {} times what is needed is allowed.",
+            " Of the checks that were made, the tightest is {check} at {joint}: {} times what is needed is allowed{verdict}.",
             fixed(margin, 3)
         )
     });
