@@ -496,3 +496,30 @@ fn known(value: Option<f64>) -> String {
 fn listed(words: &[String]) -> String {
     if words.is_empty() { "none".into() } else { words.join("; ") }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_single_design_is_answered_with_its_parts_and_a_margin_below_one_is_called_too_little() {
+        let words = |row: &str| row.split(';').map(String::from).collect::<Vec<_>>();
+        let answer = |margin: &str| {
+            let row = format!("x0;CSG-20-100;M;{margin};gear mean;1.5;20;30");
+            let overall = FrontTable {
+                columns: words(
+                    "design_id;j1_gear;j1_motor;j1_margin;j1_binds;tip_deflection_mm;mass_kg;lowest_mode_hz",
+                ),
+                rows: vec![words(&row)],
+            };
+            let facts =
+                SummaryFacts { designs_total: 1, status: "complete".into(), ..SummaryFacts::default() };
+            answer_words(&SummaryInput { facts, overall, ..SummaryInput::default() })
+        };
+        let holds = answer("1.25");
+        assert!(holds.starts_with("The study has one design: 20.00 kg"), "{holds}");
+        assert!(holds.contains("It has j1 CSG-20-100 + M."), "{holds}");
+        assert!(holds.ends_with("gear mean at j1: 1.250 times what is needed is allowed."), "{holds}");
+        assert!(answer("0.8").ends_with("0.800 times what is needed is allowed, which is too little."));
+    }
+}

@@ -110,3 +110,24 @@ impl GivenDrives {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn checks_that_a_blank_rating_prevents_are_named_once_with_their_joints() {
+        let drive = |joint: &str, open: &[&str]| Overloaded {
+            joint: joint.into(),
+            drive: "CSG-20-100 + M".into(),
+            designs: 0,
+            worst: Vec::new(),
+            open: open.iter().map(|words| words.to_string()).collect(),
+        };
+        let peak = "motor peak not checked: lacks rotor_inertia_kgm2";
+        let given = GivenDrives(vec![drive("j1", &[peak]), drive("j2", &[]), drive("j3", &[peak])]);
+        let said = format!("Checks of given drives that the catalog does not allow: j1, j3: {peak}.");
+        assert_eq!(given.remarks(1), [said]);
+        assert!(GivenDrives(vec![drive("j2", &[])]).remarks(1).is_empty());
+    }
+}

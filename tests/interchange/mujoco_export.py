@@ -22,17 +22,23 @@ SERVO_HZ = 20
 PARTS, FLEXIBLE = 24, 2e-3
 
 
+def mass_matrix(m, d):
+    """The mass matrix of a model, by the function of its version of MuJoCo."""
+    mass = np.zeros((m.nv, m.nv))
+    try:
+        mujoco.mj_fullM(m, mass, d.qM)
+    except (TypeError, AttributeError):
+        mujoco.mj_fullM(m, d, mass)
+    return mass
+
+
 def solve(path):
     """Torques of the motors, deflection of the tip with the springs at rest under the load, and frequencies, motors held."""
     m = mujoco.MjModel.from_xml_path(path)
     d = mujoco.MjData(m)
     mujoco.mj_resetDataKeyframe(m, d, m.key("pose").id)
     mujoco.mj_forward(m, d)
-    mass = np.zeros((m.nv, m.nv))
-    try:
-        mujoco.mj_fullM(m, mass, d.qM)
-    except (TypeError, AttributeError):
-        mujoco.mj_fullM(m, d, mass)
+    mass = mass_matrix(m, d)
     hinges = np.asarray(m.jnt_stiffness, float).reshape(m.njnt, -1)[:, 0][m.dof_jntid]
     stiffness = np.diag(hinges)
     preload = hinges * m.qpos_spring[m.jnt_qposadr[m.dof_jntid]]
@@ -80,11 +86,7 @@ def held(path, expected):
     d = mujoco.MjData(m)
     mujoco.mj_resetDataKeyframe(m, d, m.key("deflected").id)
     mujoco.mj_forward(m, d)
-    mass = np.zeros((m.nv, m.nv))
-    try:
-        mujoco.mj_fullM(m, mass, d.qM)
-    except (TypeError, AttributeError):
-        mujoco.mj_fullM(m, d, mass)
+    mass = mass_matrix(m, d)
     for a in range(m.nu):
         d.ctrl[a] = -expected[m.actuator(a).name]
         joint = m.actuator_trnid[a, 0]

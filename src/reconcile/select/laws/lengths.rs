@@ -2,7 +2,6 @@
 
 use super::{Builder, Law};
 use crate::arm::Element;
-use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::readings::campaign::Campaign;
 use rayon::prelude::*;
 
@@ -27,21 +26,12 @@ impl Builder<'_> {
     /// For each link, the change of every reading of the nominal arm, in its unit, per full size. All poses have to be
     /// prepared anew, so this is computed once and about the nominal arm, and not for every fit.
     fn length_columns(&self, names: &[&str]) -> Vec<Vec<f64>> {
-        let stated = self.readings_with(self.campaign.clone());
+        let stated = self.nominal_readings(self.campaign);
         let column = |name: &&str| {
-            let longer = self.readings_with(lengthened(self.campaign, name));
+            let longer = self.nominal_readings(&lengthened(self.campaign, name));
             longer.iter().zip(&stated).map(|(longer, stated)| FULL / STEP * (longer - stated)).collect()
         };
         names.par_iter().map(column).collect()
-    }
-
-    /// The predicted readings of the nominal arm of another campaign with the same rows.
-    fn readings_with(&self, campaign: Campaign) -> Vec<f64> {
-        let mut forward = Forward::new(&campaign);
-        for (own, stated) in forward.modal.iter_mut().zip(&self.forward.modal) {
-            own.modes.clone_from(&stated.modes);
-        }
-        forward.predict(&forward.coefficients(&forward.nominal))
     }
 }
 

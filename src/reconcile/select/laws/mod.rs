@@ -73,6 +73,17 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
+    /// The readings of the nominal arm of another campaign, which differs from this one in poses, loads or geometry and has
+    /// the same rows, in the units of the file.
+    fn nominal_readings(&self, campaign: &Campaign) -> Vec<f64> {
+        let mut forward = Forward::new(campaign);
+        // modes that were put in order, or found to be missed, stay as they are
+        for (own, stated) in forward.modal.iter_mut().zip(&self.forward.modal) {
+            own.modes.clone_from(&stated.modes);
+        }
+        forward.predict(&forward.coefficients(&forward.nominal))
+    }
+
     /// Sets the entries of `truth` that belong to frequencies: the first-order change of each frequency \[Hz\] when
     /// the compliance matrix changes by `dC`. `energy` receives the index of a datum and the inertia forces `y` of its
     /// mode, and returns `yᵀ dC y`.

@@ -1,8 +1,6 @@
 //! Laws of joint angles whose zero is off: every pose of the campaign is another one than stated.
 
 use super::{Builder, FULL_ANGLE_DEG, Law};
-use crate::reconcile::forward::coefficients::Coefficients;
-use crate::reconcile::forward::prepared::Forward;
 use rayon::prelude::*;
 
 /// Angle over which the readings are compared \[deg\].
@@ -25,25 +23,20 @@ impl Builder<'_> {
     /// angle that is off in every pose, per full size. All poses have to be prepared anew, so this is computed once and
     /// about the nominal arm, and not for every fit.
     fn zero_columns(&self, joints: usize) -> Vec<Vec<f64>> {
-        let nominal = self.forward.coefficients(&self.forward.nominal);
-        let stated = self.readings_turned_by(0, 0.0, &nominal);
+        let stated = self.nominal_readings(self.campaign);
         let per_step = FULL_ANGLE_DEG / STEP_DEG;
         let column = |index: usize| {
-            let turned = self.readings_turned_by(index, STEP_DEG, &nominal);
+            let turned = self.readings_turned_by(index, STEP_DEG);
             turned.iter().zip(&stated).map(|(turned, stated)| per_step * (turned - stated)).collect()
         };
         (0..joints).into_par_iter().map(column).collect()
     }
 
     /// The predicted readings if the angle of the driven joint number `index` is larger by `off_deg` in every pose.
-    fn readings_turned_by(&self, index: usize, off_deg: f64, coefficients: &Coefficients) -> Vec<f64> {
+    fn readings_turned_by(&self, index: usize, off_deg: f64) -> Vec<f64> {
         let mut campaign = self.campaign.clone();
         campaign.statics.iter_mut().for_each(|row| row.pose_deg[index] += off_deg);
         campaign.modal.iter_mut().for_each(|row| row.pose_deg[index] += off_deg);
-        let mut forward = Forward::new(&campaign);
-        for (turned, stated) in forward.modal.iter_mut().zip(&self.forward.modal) {
-            turned.modes.clone_from(&stated.modes);
-        }
-        forward.predict(coefficients)
+        self.nominal_readings(&campaign)
     }
 }
