@@ -1,15 +1,16 @@
-//! `armwright capacity`: finds the largest payload of a study's arm or of an arm file.
+//! `armwright capacity`: finds the largest payload and speed of a study's arm, or the largest payload of an arm file.
 
 use super::failure::Failure;
 use crate::arm::file::read_arm;
 use crate::arm::load::read_load_cases;
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
-use crate::report::number::fixed;
+use crate::report::number::{fixed, significant};
 use crate::report::whole_file::folder_of;
 use crate::report::words::{TERMINAL, wrap};
 use crate::study::arm_capacity::{arm_capacity, has_rated_bearings};
 use crate::study::capacity::{AtPose, Capacity, capacity_of};
+use crate::study::largest_speed::LargestSpeed;
 use crate::study::load::load_study;
 use crate::study::load_limits::{example, limits_of_parts, read_limits};
 use crate::study::window::{Limit, Window};
@@ -19,13 +20,14 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 /// Finds the largest payload that an arm holds with the drives it has, in every sizing pose and in all of them
-/// together, and names the joint and the check that limit it.
+/// together, and the largest speed with the payload of its study. Names the joint and the check that limit them.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example: armwright capacity light-arm\n         armwright capacity my-study.json --design 2f --json\n         \
                         armwright capacity ur5e/arm.json --cases poses.json\n\n\
                         The drives are those of the design at the study's own payload; the payload keeps its centre and moments. Poses that \
-                        state a payload of their own keep it. Only the payload is asked for: reach and speed are those of the study. \
+                        state a payload of their own keep it. The largest speed is that of the tip with the study's payload; joints are faster by \
+                        the same factor, and the times of the cycle are those of the study. \
                         An arm with springs or counterweights may need a smallest payload, which is then named too.\n\n\
                         Of an arm file, which says nothing of motion, the static torques are judged, and the forces of prismatic joints: \
                         by the limits of --limits, or of import.json in its folder, or by the catalog's gears and motors that it names. \
@@ -210,7 +212,21 @@ fn to_text(name: &str, found: &Capacity) -> String {
     if !needy.is_empty() {
         out.push_str(&table(["least kg", "begins at"], &needy));
     }
+    out.extend(found.largest_speed.as_ref().map(fastest));
     out
+}
+
+/// The sentence on the largest speed with the payload of the study.
+fn fastest(speed: &LargestSpeed) -> String {
+    let words = format!(
+        "With the payload of the study the tip may move at {} m/s, {} times what the study asks, in ramps of the same duration; \
+         more is too fast for {} (check: {}).",
+        significant(speed.tip_speed_m_s, 4),
+        significant(speed.factor, 4),
+        speed.joint,
+        speed.check
+    );
+    format!("\n{}", wrap(&words, TERMINAL, ""))
 }
 
 /// A table of the poses: the payload at one end of its window in words, and what fails beyond it.

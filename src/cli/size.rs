@@ -2,6 +2,7 @@
 //! rejected.
 
 use super::failure::Failure;
+use super::log::Log;
 use super::own_files::write_own;
 use super::wrong_kind::study_of;
 use crate::catalog::Catalogs;
@@ -45,13 +46,13 @@ pub(crate) struct SizeArgs {
     /// Folder for sizing.json and sizing.txt
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Print JSON
+    /// Print JSON; what is left out of the numbers is said on standard error
     #[arg(long)]
     json: bool,
 }
 
 /// Runs `armwright size` and returns the text to print.
-pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failure> {
+pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs, log: Log) -> Result<String, Failure> {
     let (study, _) = study_of(&args.study, catalogs)?;
     refuse_empty(&study, catalogs)?;
     let (space, chosen) = chosen_design(&study, args.design.as_deref(), catalogs)?;
@@ -70,7 +71,8 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failur
     let rows =
         sizing_rows(&problem, catalogs, &chosen).map_err(|slot| why_not_held(&problem, &chosen, slot))?;
     let of_lives = life_remarks(rows.iter().map(|row| row.gear.as_str()), catalogs);
-    let remarks = paragraphs(&[study.remarks.clone(), of_lives].concat());
+    let said = [study.remarks.clone(), of_lives].concat();
+    let remarks = paragraphs(&said);
     let text = format!(
         "{}{}{remarks}",
         heading(&study, &problem, &chosen, args.design.is_none()),
@@ -85,7 +87,12 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs) -> Result<String, Failur
             &[Path::new(&args.study)],
         )?;
     }
-    Ok(if args.json { json } else { text })
+    if args.json {
+        // the list of joints has no place for what is left out of it
+        said.iter().for_each(|words| log.note(&wrap(words, TERMINAL, "")));
+        return Ok(json);
+    }
+    Ok(text)
 }
 
 /// The first lines of the table: the motion that is asked for, and the sections of the open links. If no design is named

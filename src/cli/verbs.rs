@@ -48,7 +48,7 @@ enum Verb {
     Run(super::run::RunArgs),
     /// Size every joint of a study's arm, from the tip inward
     Size(size::SizeArgs),
-    /// Find the largest payload that an arm holds
+    /// Find the largest payload and speed that an arm holds
     Capacity(capacity::CapacityArgs),
     /// Compute statics, modes and response of an arm file
     Analyze(analyze::AnalyzeArgs),
@@ -150,7 +150,7 @@ pub fn run(cli: Cli) -> Result<Answer, Failure> {
         Verb::Reconcile(args) => return reconcile::run(&args, &catalogs?, overlay, log),
         Verb::Catalog(args) => catalog::run(&args, overlay),
         Verb::Studies => Ok(crate::study::list()),
-        Verb::Size(args) => size::run(&args, &catalogs?),
+        Verb::Size(args) => size::run(&args, &catalogs?, log),
         Verb::Merge(args) => return merge::merge(&args, &catalogs?, overlay, log),
         Verb::Status(args) => merge::status(&args),
         Verb::Slurm(args) => slurm::run(&args, &catalogs?, overlay),

@@ -25,7 +25,7 @@ use super::select::settle::Settled;
 use super::select::unnamed;
 use super::select::unnamed::Better;
 use super::verdict::corrected_model::Choice;
-use super::verdict::judgement::{does_not_predict, too_many_alternatives};
+use super::verdict::judgement::{TOO_FAR_OFF, does_not_predict, too_many_alternatives};
 use super::verdict::next_test;
 use super::verdict::outcome::{Calibrated, Evidence, Law, Located, Outcome, ReadingResidual, Verdict};
 use super::verdict::too_little::{rows, too_little};
@@ -37,9 +37,6 @@ use std::cell::OnceCell;
 /// An effect is only suspected if it raises the natural logarithm of the evidence by less than this. Such evidence is
 /// not yet strong (Kass and Raftery 1995, table of Bayes factors).
 const WEAK: f64 = 3.0;
-/// If readings of held-out poses are further off than this with all effects, as a root mean square in standard
-/// deviations, something else is missing. Effects that are right leave at most 1.3 in campaigns of several simulators.
-const TOO_FAR_OFF: f64 = 1.8;
 /// Reason that is written for the verdict `no_gap`.
 const NOTHING_MISSING: &str = "noise and calibration within tolerance explain every reading";
 /// Reason that is written for the verdict `no_gap` if a calibrated factor is outside its tolerance.

@@ -9,7 +9,7 @@ use super::heat::MotorHeat;
 use super::limits as limit;
 use super::motor_curve;
 use crate::arm::bearing::Bearing;
-use crate::catalog::gear::{Gear, GearMass};
+use crate::catalog::gear::{Gear, GearKind, GearMass};
 
 /// The checks of a gear and of the output bearing, which do not depend on the motor.
 pub fn gear_checks(
@@ -39,6 +39,10 @@ pub fn gear_checks(
         checks.push(plain(CheckKind::GearStops, stops, allowed.ok_or(rule)));
     }
     checks.retain(|check| !limit::is_unlimited(gear, check.kind));
+    if gear.kind == GearKind::Actuator {
+        // its motor brakes its own rotor too, see `motor_checks`
+        checks.retain(|check| check.kind != CheckKind::GearStop);
+    }
     checks.extend(gear_fits(gear, which, &motion.fit, &demand.room));
     if let Some(bearing) = bearing {
         checks.extend(bearing_checks(bearing, motion, &demand.bearing));
@@ -81,6 +85,10 @@ pub(super) fn torsion_checks(gear: &Gear) -> Vec<Check> {
 /// gear and motor is unknown, this is listed as a check that could not be made.
 pub fn motor_checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Vec<Check> {
     let mut checks = vec![motor_hold(drive, motion, demand), motor_peak(drive, motion, demand)];
+    let is_limited = !limit::is_unlimited(drive.gear, CheckKind::GearStop);
+    if drive.gear.kind == GearKind::Actuator && is_limited {
+        checks.push(actuator_stop(drive, motion, demand));
+    }
     if motion.checks_motor_heat {
         checks.push(motor_rms(drive, motion, demand));
     }
@@ -119,6 +127,18 @@ fn motor_peak(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Chec
         motor_curve::peak_torque_nm(drive.motor, drive.motor_speed_rpm(motion)),
         peak_nm,
         limit::motor_peak_nm(drive, motion),
+    )
+}
+
+/// Check of an actuator in an emergency stop: the torque that stops the load and its own rotor, compared with its peak
+/// torque.
+fn actuator_stop(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check {
+    check(
+        CheckKind::GearStop,
+        limit::actuator_stop_of_rotor_nm(drive, motion).map(|rotor_nm| demand.stop_torque_nm + rotor_nm),
+        limit::gear_momentary_nm(drive.gear),
+        demand.stop_torque_nm,
+        limit::actuator_stop_nm(drive, motion),
     )
 }
 

@@ -65,6 +65,31 @@ fn each_check_fails_alone_when_its_own_limit_is_lowered() {
     assert_eq!(failing(|_, m, _, _| m.max_speed_rpm = Some(707.0)), [CheckKind::MotorSpeed]);
 }
 
+/// Besides the load, the motor of an actuator stops its own rotor: with 0.5 kg m² at the output, a ramp of α and a stop of
+/// 2 α, T + 2 T_lin + 2 · 0.5 α may reach the peak torque.
+#[test]
+fn an_actuator_stops_its_own_rotor_too() {
+    let (mut gear, mut motor) = ample();
+    gear.kind = GearKind::Actuator;
+    motor.rotor_inertia_kgm2 = Some(0.5 / gear.ratio.powi(2));
+    gear.inertia_input_kgm2 = Some(0.0);
+    gear.efficiency = Some(1.0);
+    let (motion, demand) = (motion(), demand());
+    let own_nm = 2.0 * 0.5 * motion.acceleration_rad_s2;
+    let stops = |peak_nm: f64| {
+        let gear = Gear { momentary_peak_torque_nm: Some(peak_nm), ..gear.clone() };
+        let drive = housed(&gear, &motor);
+        let stop = checks(&drive, &motion, &demand).into_iter().filter(|c| c.kind == CheckKind::GearStop);
+        let stop: Vec<Check> = stop.collect();
+        assert_eq!(stop.len(), 1);
+        assert!((stop[0].needed.expect("known") - (500.0 + own_nm)).abs() < 1e-9, "{:?}", stop[0]);
+        let holds = DriveLimits::of(&drive, &motion).expect("legal").stop_torque_nm >= demand.stop_torque_nm;
+        assert_eq!(holds, stop[0].holds());
+        holds
+    };
+    assert!(own_nm > 3.0 && stops(500.0 + own_nm + 1e-6) && !stops(500.0 + own_nm - 1e-6));
+}
+
 #[test]
 fn life_fails_alone_when_more_is_required_than_the_bearing_gives() {
     assert_eq!(failing(|_, _, motion, _| motion.life_h = 1.0e6), [CheckKind::GearLife]);

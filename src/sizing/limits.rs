@@ -95,7 +95,7 @@ impl DriveLimits {
         Ok(Self {
             static_torque_nm: motor_hold_nm(drive, motion)?,
             peak_torque_nm: gear_peak_nm(gear)?.min(motor_peak_nm(drive, motion)?),
-            stop_torque_nm: gear_stop_nm(gear)?,
+            stop_torque_nm: gear_stop_nm(gear)?.min(actuator_stop_nm(drive, motion)?),
             mean_torque_cubed_nm3: gear_average_cubed_nm3(gear)?.min(gear_life_cubed_nm3(gear, motion)?),
             bearing: BearingLimits::of(drive.bearing().as_ref(), motion.mean_speed_rad_s(), motion.life_h),
             widths: DriveWidths::of(&drive.gear_envelope(), &drive.motor.envelope, &motion.fit),
@@ -248,6 +248,21 @@ fn gear_stop_nm(gear: &Gear) -> Rating {
     Ok(gear_momentary_nm(gear)?.min(gear_buckling_nm(gear).unwrap_or(unknown)).min(jumps_nm))
 }
 
+/// Torque at the joint in an emergency stop at which an actuator brakes with its peak torque \[N m\]: T_peak - s J_out α. Its
+/// motor brakes its own rotor too, s times as hard as it is accelerated in a ramp. Infinite for other drives, whose rotor
+/// does not load the gear.
+pub(super) fn actuator_stop_nm(drive: &Drive, motion: &JointMotion) -> Rating {
+    if drive.gear.kind != GearKind::Actuator {
+        return Ok(f64::INFINITY);
+    }
+    Ok(gear_momentary_nm(drive.gear)? - actuator_stop_of_rotor_nm(drive, motion)?)
+}
+
+/// Torque that stops the rotor of an actuator in an emergency, at the output \[N m\].
+pub(super) fn actuator_stop_of_rotor_nm(drive: &Drive, motion: &JointMotion) -> Rating {
+    Ok(motion.stop_factor * drive.rotary_torque_motor_nm(motion)? * drive.gain()?)
+}
+
 /// Number of emergency stops (momentary peaks) that a gear may see in its life: 1e4 / (2 n t / 60), with n the input
 /// speed in rpm and t the duration of a stop in seconds; never more than 1e4. The factor 2 is there because the wave
 /// generator deforms the flexspline twice in each turn. `None` if the gear is no strain-wave gear, for which alone
@@ -257,11 +272,13 @@ fn gear_stop_nm(gear: &Gear) -> Rating {
 /// procedure); the formula as in the public program AimanHaidar/harmonic-drive-selector.
 pub(super) fn stops_allowed(gear: &Gear, motion: &JointMotion) -> Option<f64> {
     const WAVES: f64 = 1e4;
+    // a study states whole numbers of stops, and speeds are converted to rad/s
+    const ROUNDING: f64 = 1e-9;
     if gear.kind != GearKind::StrainWave {
         return None;
     }
     let waves_in_a_stop = 2.0 * input_speed_rpm(gear, motion) / 60.0 * motion.stop_time_s();
-    Some(WAVES / waves_in_a_stop.max(1.0))
+    Some(WAVES / waves_in_a_stop.max(1.0) * (1.0 + ROUNDING))
 }
 
 /// Whether a gear has no limit for the check `kind`, so that the check is left out.

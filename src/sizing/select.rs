@@ -61,6 +61,18 @@ impl DriveFilter {
         }
     }
 
+    /// This filter, but with the gear and the motor of `drive` as the only ones that it allows.
+    pub(crate) fn only(&self, drive: &Drive) -> Self {
+        let of_actuator = drive.gear.kind == GearKind::Actuator;
+        let one = |id: &str, is_one: bool| Some(if is_one { vec![id.to_string()] } else { Vec::new() });
+        Self {
+            gear_ids: one(&drive.gear.id, !of_actuator),
+            motor_ids: one(&drive.motor.id, !of_actuator),
+            actuator_ids: one(&drive.gear.id, of_actuator),
+            ..self.clone()
+        }
+    }
+
     /// Whether the filter allows this gear for the joint.
     pub fn allows_gear(&self, gear: &Gear) -> bool {
         if gear.kind == GearKind::Actuator {
@@ -326,6 +338,12 @@ impl<'c> DriveTable<'c> {
     /// The drive with the index `index` in the table.
     pub fn drive(&self, index: usize) -> Drive<'c> {
         self.drive_of(self.pairs[index])
+    }
+
+    /// The drive with the index `index`. If the table has none, it is the first pair that the filter allows, which turns too
+    /// fast or lacks a rating; `None` if the filter allows no pair.
+    pub(crate) fn drive_or_illegal(&self, index: usize) -> Option<Drive<'c>> {
+        self.pairs.get(index).map(|pair| self.drive_of(*pair)).or_else(|| self.all_drives().next())
     }
 
     /// Mass of the drive with the index `index`, including extras \[kg\].

@@ -18,8 +18,8 @@ pub struct StatedPhase {
 /// takes the place of the study's cycle. The static torque, peak and emergency stop that follow from poses and masses
 /// are still checked.
 ///
-/// A phase at half the speed of the next one is a ramp up to it; a phase at half the speed of the one before is a
-/// ramp down from it. In ramps rotor and wave generator are accelerated too.
+/// A phase at half the speed of the next one (within 5 %) is a ramp up to it; a phase at half the speed of the one before
+/// is a ramp down from it. In ramps rotor and wave generator are accelerated too.
 ///
 /// ```
 /// use armwright::sizing::{StatedDuty, StatedPhase};
@@ -50,8 +50,9 @@ pub struct StatedDemand {
     pub heat: StatedHeat,
 }
 
-/// Relative tolerance within which the speed of a phase counts as half the speed of a neighbouring phase.
-const SAME_SPEED: f64 = 1e-6;
+/// Relative tolerance within which the speed of a phase counts as half the speed of a neighbouring phase. Data sheets and
+/// worked examples print speeds with two or three digits.
+const ROUNDED: f64 = 0.05;
 
 impl StatedDuty {
     /// Duration of the cycle \[s\].
@@ -87,12 +88,19 @@ impl StatedDuty {
         ramps.filter(|(_, acceleration)| *acceleration > 0.0).map(|(phase, _)| phase.time_s).next()
     }
 
+    /// Whether the joint moves and no phase is a ramp, so that nothing says how hard rotor and wave generator are
+    /// accelerated.
+    pub fn moves_without_ramps(&self) -> bool {
+        self.fastest_rpm() > 0.0
+            && self.accelerations_rad_s2().iter().all(|acceleration| *acceleration == 0.0)
+    }
+
     /// Acceleration of the joint in each phase \[rad/s²\]: positive in a ramp up, negative in a ramp down, else 0.
     fn accelerations_rad_s2(&self) -> Vec<f64> {
         let count = self.phases.len();
         let is_half = |phase: &StatedPhase, of: &StatedPhase| {
             let full = of.speed_rpm.abs();
-            full > 0.0 && phase.time_s > 0.0 && (2.0 * phase.speed_rpm.abs() / full - 1.0).abs() < SAME_SPEED
+            full > 0.0 && phase.time_s > 0.0 && (2.0 * phase.speed_rpm.abs() / full - 1.0).abs() < ROUNDED
         };
         let ramp = |phase: &StatedPhase, of: &StatedPhase| of.speed_rpm.abs() * RAD_S_PER_RPM / phase.time_s;
         let of_phase = |(i, phase): (usize, &StatedPhase)| {
@@ -173,5 +181,34 @@ impl StatedHeat {
             acceleration_rad2_s4: self.acceleration_rad2_s4 * factor * factor,
             ..self
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn duty(speeds_rpm: [f64; 4]) -> StatedDuty {
+        let phase = |(torque_nm, time_s): (f64, f64), speed_rpm| StatedPhase { torque_nm, time_s, speed_rpm };
+        let torques = [(30.0, 0.15), (5.0, 0.5), (-20.0, 0.15), (0.0, 0.2)];
+        StatedDuty { phases: torques.into_iter().zip(speeds_rpm).map(|(t, rpm)| phase(t, rpm)).collect() }
+    }
+
+    /// A data sheet prints half of 14.3 rpm as 7.2 rpm.
+    #[test]
+    fn a_ramp_whose_mean_speed_is_rounded_is_a_ramp() {
+        let accelerations = |speeds_rpm| duty(speeds_rpm).accelerations_rad_s2();
+        let exact = accelerations([7.15, 14.3, 7.15, 0.0]);
+        assert!((exact[0] - 14.3 * RAD_S_PER_RPM / 0.15).abs() < 1e-12 && exact[2] == -exact[0], "{exact:?}");
+        assert_eq!(accelerations([7.2, 14.3, 7.1, 0.0]), exact);
+        assert_eq!(accelerations([7.0, 14.3, 7.0, 0.0]), exact);
+        assert_eq!(accelerations([8.0, 14.3, 8.0, 0.0]), [0.0; 4]);
+    }
+
+    #[test]
+    fn a_duty_whose_phases_are_all_at_one_speed_has_no_ramps() {
+        assert!(duty([14.0, 14.0, 14.0, 0.0]).moves_without_ramps());
+        assert!(!duty([7.0, 14.0, 7.0, 0.0]).moves_without_ramps());
+        assert!(!duty([0.0; 4]).moves_without_ramps(), "a joint at rest needs no ramps");
     }
 }

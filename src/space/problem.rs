@@ -248,8 +248,9 @@ impl<'c> ArmProblem<'c> {
             let (index, motion) = (option as usize, sized.table.motion());
             let demand = self.demand_in(cases, &partial, slot, Some(motion));
             if !sized.table.holds(index, &demand) {
-                let checks = checks(&sized.table.drive(index), motion, &demand);
-                return Some((self.piece_of_slot(slot), binding(&checks).cloned()));
+                let drive = sized.table.drive_or_illegal(index);
+                let check = drive.and_then(|drive| binding(&checks(&drive, motion, &demand)).cloned());
+                return Some((self.piece_of_slot(slot), check));
             }
             self.add_drive(slot, sized, index, &mut partial);
         }

@@ -8,7 +8,8 @@
 
 use super::capacity::{AtPose, Capacity, reach_m};
 use super::load_limits::LoadLimit;
-use super::window::{Limit, MOST_KG, Overload, Window, window_around};
+use super::overload::Overload;
+use super::window::{Limit, MOST_KG, Window, window_around};
 use crate::arm::load::LoadCase;
 use crate::arm::{Arm, Bearing};
 use crate::mechanics::chain::Chain;

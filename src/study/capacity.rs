@@ -1,4 +1,5 @@
-//! Capacity: the payloads that an arm holds with its drives unchanged, in each pose of a study and in all of them.
+//! Capacity: the payloads that an arm holds with its drives unchanged, in each pose of a study and in all of them, and the
+//! largest speed at which it holds the payloads of the study.
 //!
 //! The mass of the payload grows, and shrinks, from the one that the study states until a drive, an output bearing or
 //! the stress of a link exceeds its limit. The payload keeps its centre of gravity and its moments of inertia. The
@@ -10,13 +11,15 @@
 
 use super::chosen::{chosen_design, why_not_held};
 use super::definition::Study;
+use super::largest_speed::{LargestSpeed, largest_speed};
+use super::overload::{Overload, overload};
 use super::refusal::Refusal;
-use super::window::{Overload, Window, window_around};
+use super::window::{Window, window_around};
 use crate::arm::Arm;
 use crate::arm::load::LoadCase;
 use crate::catalog::Catalogs;
 use crate::report::number::{fixed, significant};
-use crate::space::design_space::{DesignSpace, SpacePiece};
+use crate::space::design_space::DesignSpace;
 use crate::space::full_model::full_objectives;
 use crate::space::problem::ArmProblem;
 use crate::space::station::Walk;
@@ -47,6 +50,9 @@ pub struct Capacity {
     /// The payloads that hold in each sizing pose, sorted by reach, shortest first. Poses that keep a payload of their
     /// own have no entry.
     pub table: Vec<AtPose>,
+    /// The largest speed with the payloads of the study; `None` if even the study's speed is too large for them, if
+    /// nothing limits the speed, or for an arm file, which states no motion.
+    pub largest_speed: Option<LargestSpeed>,
     /// What the numbers leave out, as sentences.
     pub remarks: Vec<String>,
 }
@@ -61,7 +67,7 @@ impl Capacity {
         let least_pose = least.filter(|at| at.window.least.payload_kg > 0.0);
         let least_pose = least_pose.map_or(String::new(), |at| at.pose.clone());
         table.sort_by(|a, b| a.reach_m.total_cmp(&b.reach_m));
-        Self { window, pose, least_pose, table, remarks }
+        Self { window, pose, least_pose, table, largest_speed: None, remarks }
     }
 
     /// The capacity as JSON, as `armwright capacity --json` prints it: the limits in all poses together, and one entry
@@ -77,8 +83,9 @@ impl Capacity {
         let row = |at: &AtPose| with(&at.window, json!({"reach_m": at.reach_m, "pose": at.pose}));
         let rows: Vec<Value> = self.table.iter().map(row).collect();
         let pose = if self.window.holds() { &self.pose } else { &self.least_pose };
-        let all =
-            json!({"pose": pose, "least_pose": self.least_pose, "table": rows, "remarks": self.remarks});
+        let speed = self.largest_speed.as_ref().map(LargestSpeed::to_json);
+        let all = json!({"pose": pose, "least_pose": self.least_pose, "table": rows, "largest_speed": speed,
+            "remarks": self.remarks});
         with(&self.window, all)
     }
 }
@@ -101,6 +108,8 @@ pub fn capacity_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Resu
     let problem = ArmProblem::new(&space, catalogs);
     let arm = problem.walk(&chosen, |_, _| {}).map_err(|slot| why_not_held(&problem, &chosen, slot))?;
     let mut found = capacity(&space, catalogs, arm.slot_options(), &study.own_payloads);
+    found.largest_speed = largest_speed(&problem, arm.slot_options(), catalogs);
+    found.remarks.extend(duty_remark(&space));
     let built = problem.arm_of(&arm);
     found.remarks.extend(built.and_then(|built| limits_remark(&space, &built, &study.own_payloads)));
     Ok(found)
@@ -130,6 +139,19 @@ fn capacity(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], own: &[us
     };
     let table = loaded.iter().map(at_pose).collect();
     Capacity::new(window(&space.sizing_cases, &loaded), table, remarks)
+}
+
+/// The sentence that duties which joints state in numbers are the same for every payload; `None` if no joint states one.
+fn duty_remark(space: &DesignSpace) -> Option<String> {
+    let stated: Vec<&str> =
+        space.joints().filter(|(_, j)| j.duty.is_some()).map(|(_, joint)| joint.name.as_str()).collect();
+    (!stated.is_empty()).then(|| {
+        format!(
+            "The duty of {} is stated in numbers and is taken for every payload: its mean torque, its gear's life and its motor's heat \
+             do not grow with the payload, and are not judged for more than the payload that the duty was made for.",
+            stated.join(", ")
+        )
+    })
 }
 
 /// Up to which payload the design `built` meets the study's limits on deflection and lowest mode in the judged cases, as a
@@ -188,24 +210,19 @@ fn held_payloads(
     cases: &[usize],
     vary: &[usize],
 ) -> Window {
-    let overload = |payload_kg: f64| {
+    let overloaded = |payload_kg: f64| {
         let mut loaded = space.clone();
         for &case in vary {
             loaded.cases[case].payload.mass_kg = payload_kg;
         }
-        let problem = ArmProblem::new(&loaded, catalogs);
-        problem.overload(options, cases).map(|(piece, check)| {
-            let piece = space.pieces.get(piece).map_or("", SpacePiece::name).to_string();
-            let check = check.map_or("link stress", |check| check.kind.label()).to_string();
-            Overload { piece, check }
-        })
+        overload(&loaded, catalogs, options, cases)
     };
     let mut stated_kg: Vec<f64> = vary.iter().map(|&case| space.cases[case].payload.mass_kg).collect();
     stated_kg.sort_by(|a, b| b.total_cmp(a));
     stated_kg.dedup();
-    match stated_kg.iter().find(|&&payload_kg| overload(payload_kg).is_none()) {
-        Some(&payload_kg) => window_around(payload_kg, &overload),
-        None => Window::empty(overload(0.0).unwrap_or_default()),
+    match stated_kg.iter().find(|&&payload_kg| overloaded(payload_kg).is_none()) {
+        Some(&payload_kg) => window_around(payload_kg, &overloaded),
+        None => Window::empty(overloaded(0.0).unwrap_or_default()),
     }
 }
 

@@ -48,7 +48,8 @@ pub(super) fn ramp_remark(motion: &MotionRequirement) -> Option<String> {
     })
 }
 
-/// Remarks on the joints that are sized for a stated duty which is slower than the speed that the study asks of the tip.
+/// Remarks on the joints with a stated duty: where it is slower than the speed that the study asks of the tip, and where it
+/// has no ramps.
 pub(super) fn duty_remarks(space: &DesignSpace) -> Vec<String> {
     let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
     let remark = |((_, joint), reach_m): ((usize, &SpaceJoint), f64)| {
@@ -64,7 +65,17 @@ pub(super) fn duty_remarks(space: &DesignSpace) -> Vec<String> {
             )
         })
     };
-    space.joints().zip(reaches_m(space, sizing)).filter_map(remark).collect()
+    let slower = space.joints().zip(reaches_m(space, sizing)).filter_map(remark);
+    let has_no_ramps = |joint: &&SpaceJoint| joint.duty.as_ref().is_some_and(StatedDuty::moves_without_ramps);
+    let without_ramps = space.joints().map(|(_, joint)| joint).filter(has_no_ramps).map(|joint| {
+        format!(
+            "Joint {}: no phase of its duty is at half the speed of a neighbour, so that none is a ramp. Motor heat leaves out the \
+             inertia of the rotor, and speeds count as constant in each phase. Give ramps at their mean speed, and between a ramp up \
+             and a ramp down a short phase at the speed that they reach.",
+            joint.name
+        )
+    });
+    slower.chain(without_ramps).collect()
 }
 
 /// Speeds that differ by less than this fraction count as equal: they were converted between units.

@@ -97,6 +97,7 @@ fn left_out_everywhere(space: &DesignSpace) -> String {
         words_of("the scatter and the friction of gears"),
         has_stages.then(|| "the pull and the strength of belts and stages".into()),
         has_sized_rail(space).then(|| "the friction of guides".into()),
+        has_rail(space).then(|| "the strength of guides".into()),
         tilts.is_empty().then(|| "the floor".into()),
         (!fits).then(|| "whether the parts fit into each other".into()),
     ];
@@ -109,6 +110,11 @@ fn left_out_everywhere(space: &DesignSpace) -> String {
 /// The places where the study states the effect of this name.
 fn places_of<'a>(space: &'a DesignSpace, effect: &str) -> Vec<&'a str> {
     space.effects.iter().filter(|e| e.effect == effect).map(|e| e.at.as_str()).collect()
+}
+
+/// Whether some joint of the study slides.
+fn has_rail(space: &DesignSpace) -> bool {
+    space.pieces.iter().any(|piece| matches!(piece, SpacePiece::Prismatic(_)))
 }
 
 /// Whether a screw or rack and its motor are chosen for some prismatic joint.

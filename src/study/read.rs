@@ -20,6 +20,7 @@ use super::motion::{duty_remarks, ramp_remark, read_duty, read_motion};
 use super::omissions::{actuators_remark, omissions};
 use super::piece_names::check_names;
 use super::rail_keys::{OF_CATALOG_DRIVE, PRISMATIC};
+use super::rail_remarks::rail_remarks;
 use super::rails::read_rail_drive;
 use super::range::{check_poses, read_range};
 use super::sections::{Aside, MOST_OPTIONS, cost_remark, read_materials, read_sections};
@@ -149,6 +150,7 @@ fn remarks_on(space: &DesignSpace, harness_kg_per_m: f64, catalogs: &Catalogs) -
     out.extend(harness_remark(space, harness_kg_per_m));
     out.extend(ramp_remark(&space.motion));
     out.extend(duty_remarks(space));
+    out.extend(rail_remarks(space));
     out.extend(fit_remarks(space, catalogs));
     out.extend(omissions(space));
     out.extend(actuators_remark(space, catalogs));

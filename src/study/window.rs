@@ -3,9 +3,10 @@
 //! Every load on a drive, a bearing or a link is a convex function of the payload's mass, because it is a norm or a
 //! mean of quantities that are affine in this mass. The payloads that hold are therefore one interval.
 
+use super::overload::Overload;
 use serde_json::{Value, json};
 
-/// Largest payload that is tried \[kg\]. An arm that still holds it is reported as having no limit.
+/// Largest amount that is tried, such as a payload \[kg\]. An arm that still holds it is reported as having no limit.
 pub(crate) const MOST_KG: f64 = 1e6;
 /// A bisection for an end of a window stops when its interval is this narrow, relative to the payload.
 const TOLERANCE: f64 = 1e-13;
@@ -31,15 +32,6 @@ pub struct Window {
     pub least: Limit,
     /// The largest payload that holds.
     pub most: Limit,
-}
-
-/// The first joint or link that a payload overloads.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct Overload {
-    /// Name of the joint or link.
-    pub piece: String,
-    /// Label of the check that fails.
-    pub check: String,
 }
 
 impl Limit {
@@ -90,34 +82,46 @@ impl Window {
 /// `held_kg`.
 pub(crate) fn window_around(held_kg: f64, overload: &dyn Fn(f64) -> Option<Overload>) -> Window {
     let least = overload(0.0).map(|fails| end_between(held_kg, 0.0, fails, overload));
-    let (mut held_kg, mut more_kg) = (held_kg, (2.0 * held_kg).max(1.0));
-    let most = loop {
-        match overload(more_kg) {
-            Some(fails) => break Some(end_between(held_kg, more_kg, fails, overload)),
-            None if more_kg > MOST_KG => break None,
-            None => (held_kg, more_kg) = (more_kg, 2.0 * more_kg),
-        }
-    };
     let open = Window::unlimited();
-    Window { least: least.unwrap_or(open.least), most: most.unwrap_or(open.most) }
+    Window {
+        least: least.map_or(open.least, |(payload_kg, fails)| Limit::new(payload_kg, fails)),
+        most: largest_held(held_kg, overload)
+            .map_or(open.most, |(most_kg, fails)| Limit::new(most_kg, fails)),
+    }
 }
 
-/// The end of a window between a payload that holds and one that fails, by bisection. `fails` is what the payload
-/// `failed_kg` overloads.
-fn end_between(
-    mut held_kg: f64,
-    mut failed_kg: f64,
-    mut fails: Overload,
+/// The largest amount that holds, and what a larger one overloads; `None` if amounts beyond [`MOST_KG`] hold. `overload`
+/// says what an amount overloads; it must be `None` for `held`.
+pub(crate) fn largest_held(
+    mut held: f64,
     overload: &dyn Fn(f64) -> Option<Overload>,
-) -> Limit {
-    while (failed_kg - held_kg).abs() > TOLERANCE * failed_kg.max(held_kg).max(SMALL_KG) {
-        let middle_kg = 0.5 * (held_kg + failed_kg);
-        match overload(middle_kg) {
-            Some(found) => (failed_kg, fails) = (middle_kg, found),
-            None => held_kg = middle_kg,
+) -> Option<(f64, Overload)> {
+    let mut more = (2.0 * held).max(1.0);
+    loop {
+        match overload(more) {
+            Some(fails) => break Some(end_between(held, more, fails, overload)),
+            None if more > MOST_KG => break None,
+            None => (held, more) = (more, 2.0 * more),
         }
     }
-    Limit::new(held_kg, fails)
+}
+
+/// The last amount that holds between one that holds and one that fails, by bisection, and what fails beyond it. `fails`
+/// is what the amount `failed` overloads.
+fn end_between(
+    mut held: f64,
+    mut failed: f64,
+    mut fails: Overload,
+    overload: &dyn Fn(f64) -> Option<Overload>,
+) -> (f64, Overload) {
+    while (failed - held).abs() > TOLERANCE * failed.max(held).max(SMALL_KG) {
+        let middle = 0.5 * (held + failed);
+        match overload(middle) {
+            Some(found) => (failed, fails) = (middle, found),
+            None => held = middle,
+        }
+    }
+    (held, fails)
 }
 
 #[cfg(test)]

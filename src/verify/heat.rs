@@ -186,14 +186,14 @@ impl StatedPhase {
     }
 }
 
-/// The phases of a stated duty. A phase at half the speed of the one after or before it is taken as the ramp
-/// between rest and that speed. With a brake, phases at rest need no motor torque and are left out.
+/// The phases of a stated duty. A phase at half the speed of the one after or before it, within 5 % because speeds are
+/// printed with few digits, is taken as the ramp between rest and that speed. With a brake, phases at rest need no motor torque and are left out.
 pub(super) fn stated_phases(duty: &[AskedDutyPhase], has_brake: bool) -> Vec<StatedPhase> {
     let whole_s: f64 = duty.iter().map(|phase| phase.time_s).sum();
     let full_rad_s = |place: usize| duty[place % duty.len()].speed_rpm * PI / 30.0;
     let ramps = |place: usize, to: usize| {
         let (half, full) = (full_rad_s(place), full_rad_s(to));
-        full > 0.0 && (half / full - 0.5).abs() < 5e-7 && duty[place].time_s > 0.0
+        full > 0.0 && (half / full - 0.5).abs() < 0.025 && duty[place].time_s > 0.0
     };
     let of_phase = |(place, phase): (usize, &AskedDutyPhase)| {
         let (next, before) = (place + 1, place + duty.len() - 1);

@@ -36,11 +36,12 @@ struct Check {
 }
 
 /// All checks of torques. A drive for which the catalog lacks a number of one of them is not offered.
-const CHECKS: [Check; 7] = [
+const CHECKS: [Check; 8] = [
     Check { on: Quantity::Static, most: motor_hold_nm },
     Check { on: Quantity::Peak, most: |gear, _, _| limit(gear, gear.repeated_peak_torque_nm) },
     Check { on: Quantity::Peak, most: motor_peak_nm },
     Check { on: Quantity::Stop, most: |gear, _, _| limit(gear, gear.momentary_peak_torque_nm) },
+    Check { on: Quantity::Stop, most: actuator_stop_nm },
     Check { on: Quantity::Stop, most: |gear, _, _| Some(breaks_nm(gear)) },
     Check {
         on: Quantity::MeanCubed,
@@ -155,13 +156,25 @@ fn breaks_nm(gear: &Gear) -> f64 {
     [gear.buckling_torque_nm, gear.ratcheting_torque_nm].into_iter().flatten().fold(f64::INFINITY, f64::min)
 }
 
+/// Torque at the joint in an emergency stop that an actuator's peak torque leaves after braking its own rotor \[N m\];
+/// infinite for other drives, whose gear does not carry the rotor's torque.
+fn actuator_stop_nm(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<f64> {
+    if gear.kind != GearKind::Actuator {
+        return Some(f64::INFINITY);
+    }
+    let output_kgm2 = input_inertia_kgm2(gear, motor, &duty.stage)? * gear.ratio * gain(gear, &duty.stage)?;
+    let most_nm = limit(gear, gear.momentary_peak_torque_nm)?;
+    Some(most_nm - duty.stop_factor * duty.acceleration_rad_s2 * output_kgm2)
+}
+
 /// Whether the gear survives the number of emergency stops that the study asks for. In all stops together, a
 /// strain-wave gear survives 1e4 waves of its wave generator. One turn of the wave generator makes two waves, and a
 /// stop is taken as at least one wave.
 fn bears_the_stops(gear: &Gear, duty: &Duty) -> bool {
     let waves = 2.0 * input_rpm(gear, duty.speed_rad_s) / 60.0 * duty.stop_s;
     let has_waves = gear.kind == GearKind::StrainWave;
-    duty.emergency_stops.is_none_or(|stops| !has_waves || stops <= 1e4 / waves.max(1.0))
+    // the study states a whole number, and the speed has gone through rad/s
+    duty.emergency_stops.is_none_or(|stops| !has_waves || stops * waves.max(1.0) <= 1e4 * (1.0 + 1e-9))
 }
 
 /// Speed of the gear's input \[rpm\] when the joint turns at `output_rad_s`.

@@ -156,8 +156,22 @@ fn what_a_rail_cannot_have_is_refused_by_name() {
 fn a_study_with_a_rail_that_is_sized_says_that_the_friction_of_guides_is_left_out() {
     let study = read(&lift(json!({})), &Catalogs::builtin());
     assert!(
-        study.remarks.iter().any(|words| words.contains("the friction of guides")),
+        study.remarks.iter().any(|words| words.contains("the friction of guides, the strength of guides")),
         "{:?}",
         study.remarks
     );
+}
+
+#[test]
+fn a_screw_without_load_rating_or_largest_force_is_said_to_be_unchecked() {
+    let said = |screw: Value| read(&lift(json!({"screws": [screw]})), &Catalogs::builtin()).remarks.join(" ");
+    let mut screw = json!({"name": "s-25", "lead_mm": 10, "root_diameter_mm": 20, "length_mm": 800});
+    let unrated = said(screw.clone());
+    assert!(unrated.contains("the life of s-25 is not checked: no dynamic_load_rating_n"), "{unrated}");
+    assert!(unrated.contains("the strength of s-25 is not checked: no max_force_n"), "{unrated}");
+    assert!(!unrated.contains("load factor"), "{unrated}");
+    screw["dynamic_load_rating_n"] = json!(15000);
+    screw["max_force_n"] = json!(9000);
+    let rated = said(screw);
+    assert!(!rated.contains("not checked") && rated.contains("1.7 to 3.4 times shorter"), "{rated}");
 }

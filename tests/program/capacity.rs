@@ -1,4 +1,5 @@
-//! The largest payload that `capacity` finds against `size`, which must hold just below it and fail just above it.
+//! The largest payload and speed that `capacity` finds against `size`, which must hold just below them and fail just above
+//! them.
 
 use serde_json::{Value, json};
 use std::path::Path;
@@ -87,6 +88,58 @@ fn the_capacity_is_where_sizing_begins_to_fail() {
         }
         println!("study {number}: {payload_kg} kg, {} {}", found["joint"], found["check"]);
     }
+}
+
+#[test]
+fn the_largest_speed_is_where_sizing_begins_to_fail() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut studies = studies();
+    // a joint with a speed of its own
+    studies[1]["chain"][2]["max_speed_rad_s"] = json!(3.0);
+    // a stop that does not become harder with the speed
+    studies[3]["motion"]["emergency_deceleration_m_s2"] = json!(4.0);
+    for (number, study) in studies.into_iter().enumerate() {
+        let write =
+            |study: &Value| std::fs::write(dir.path().join("s.json"), study.to_string()).expect("written");
+        write(&study);
+        let output = armwright(&["capacity", "s.json", "--json"], dir.path());
+        let found: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let speed = &found["largest_speed"];
+        let factor = speed["factor"].as_f64().unwrap_or_else(|| panic!("study {number}: {found}"));
+        assert!(speed["joint"].as_str().is_some_and(|joint| joint.starts_with('j')), "{speed}");
+        assert!((speed["tip_speed_m_s"].as_f64().expect("m/s") - 0.5 * factor).abs() < 1e-12);
+        for (times, code) in [(1.0 - 1e-6, 0), (1.0 + 1e-6, 6)] {
+            let mut fast = study.clone();
+            fast["motion"]["tip_speed_m_s"] = json!(0.5 * factor * times);
+            if number == 1 {
+                fast["chain"][2]["max_speed_rad_s"] = json!(3.0 * factor * times);
+            }
+            write(&fast);
+            let sized = armwright(&["size", "s.json"], dir.path());
+            let said = String::from_utf8_lossy(&sized.stderr).to_string();
+            assert_eq!(sized.status.code(), Some(code), "study {number}, {factor} times {times}: {said}");
+            if code != 0 {
+                assert!(
+                    said.contains(speed["joint"].as_str().expect("name")),
+                    "study {number}: {speed}\n{said}"
+                );
+            }
+        }
+        println!("study {number}: {speed}");
+    }
+}
+
+/// The torques of a duty in numbers belong to one payload; `capacity` says that it does not scale them.
+#[test]
+fn a_duty_in_numbers_is_said_not_to_grow_with_the_payload() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut study = studies().swap_remove(0);
+    study["chain"][0]["duty"] = json!([{"torque_nm": 20, "time_s": 0.3, "speed_rpm": 3},
+        {"torque_nm": 15, "time_s": 1, "speed_rpm": 6}, {"torque_nm": 5, "time_s": 0.3, "speed_rpm": 3}]);
+    std::fs::write(dir.path().join("s.json"), study.to_string()).expect("written");
+    let output = armwright(&["capacity", "s.json"], dir.path());
+    let said = String::from_utf8_lossy(&output.stdout).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said.contains("The duty of j1 is stated in numbers and is taken for every payload"), "{said}");
 }
 
 #[test]

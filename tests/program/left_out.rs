@@ -89,6 +89,21 @@ fn the_size_of_what_is_left_out_is_that_of_the_table() {
 
 /// Connections and cables are among the rows whose sizes are added up, so a study that states one of them has no use for the
 /// sum.
+/// The JSON of `size` is the list of joints; the sentences stand on standard error, as those of the table do.
+#[test]
+fn the_list_of_sizes_says_on_standard_error_what_it_leaves_out() {
+    let here = folder_with("study.json", &study(json!({"drive": "first_fit", "bearing": null}), json!({})));
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_armwright"))
+        .args(["size", "study.json", "--json"])
+        .current_dir(here.path())
+        .output()
+        .expect("the program starts");
+    let joints: Value = serde_json::from_slice(&output.stdout).expect("JSON alone on standard output");
+    assert_eq!(joints[0]["joint"], "shoulder");
+    let notes = String::from_utf8_lossy(&output.stderr).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(notes.contains(RIGID) && notes.contains(ALWAYS), "{notes}");
+}
+
 #[test]
 fn a_study_that_states_connections_or_cables_is_not_told_their_size_again() {
     let of = |key: &str, value: Value| {

@@ -1,8 +1,9 @@
-//! Rows of `motor_curves.csv`: points of torque against speed.
+//! Rows of `motor_curves.csv`: points of torque against speed, of a motor at its shaft and of an actuator at its output.
 
 use super::log::Log;
 use super::row::Row;
 use crate::catalog::Catalogs;
+use crate::catalog::gear::{Gear, GearKind};
 use crate::catalog::motor::MotorCurvePoint;
 use crate::input::json::closest;
 use std::collections::BTreeMap;
@@ -32,12 +33,30 @@ pub(crate) fn attach(catalogs: &mut Catalogs, rows: &[Row]) {
     }
     for (model, mut points) in curves {
         points.sort_by(|a, b| a.1.speed_rpm.total_cmp(&b.1.speed_rpm));
-        let curve = points.iter().map(|(_, point)| *point).collect();
+        let curve: Vec<MotorCurvePoint> = points.iter().map(|(_, point)| *point).collect();
+        let ratio = actuator_ratio(catalogs, model);
         match catalogs.motors.iter_mut().find(|motor| motor.id == model) {
-            Some(motor) => motor.curve = curve,
+            Some(motor) => motor.curve = at_shaft(curve, ratio),
             None => no_motor(catalogs, model, points[0].0),
         }
     }
+}
+
+/// Ratio of the actuator with this model; 1 if the model is a motor.
+fn actuator_ratio(catalogs: &Catalogs, model: &str) -> f64 {
+    let is_own = |gear: &&Gear| gear.kind == GearKind::Actuator && gear.id == model;
+    catalogs.gears.iter().find(is_own).map_or(1.0, |gear| gear.ratio)
+}
+
+/// The points of a curve converted from the output of an actuator to its motor's shaft, without losses, as the ratings
+/// of `actuators.csv` are.
+fn at_shaft(curve: Vec<MotorCurvePoint>, ratio: f64) -> Vec<MotorCurvePoint> {
+    let converted = |point: MotorCurvePoint| MotorCurvePoint {
+        speed_rpm: point.speed_rpm * ratio,
+        continuous_torque_nm: point.continuous_torque_nm.map(|nm| nm / ratio),
+        peak_torque_nm: point.peak_torque_nm.map(|nm| nm / ratio),
+    };
+    curve.into_iter().map(converted).collect()
 }
 
 fn no_motor(catalogs: &Catalogs, model: &str, row: &Row) {
@@ -56,5 +75,25 @@ pub(crate) fn check(catalogs: &Catalogs, log: &Log) {
             format!("{} has a torque curve of one point", motor.id),
             "give two speeds or more in motor_curves.csv".into(),
         );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalog::CatalogFile;
+    use crate::catalog::read::table::rows;
+
+    /// The figures of an actuator are those of its output, in its curve as in its row.
+    #[test]
+    fn the_curve_of_an_actuator_is_that_of_its_output() {
+        let (log, mut catalogs) = (Log::default(), Catalogs::builtin());
+        let text = "model,speed_rpm,continuous_torque_nm,peak_torque_nm,source,confidence\n\
+            CHA-25A-100,0,60,150,a test,verified\nCHA-25A-100,50,40,,a test,verified\n";
+        attach(&mut catalogs, &rows(CatalogFile::MotorCurves, "motor_curves.csv", text.as_bytes(), &log));
+        assert!(log.faults.borrow().is_empty());
+        let curve = &catalogs.motor("CHA-25A-100").expect("built in").curve;
+        let numbers = curve.iter().map(|p| (p.speed_rpm, p.continuous_torque_nm, p.peak_torque_nm));
+        assert_eq!(numbers.collect::<Vec<_>>(), [(0.0, Some(0.6), Some(1.5)), (5000.0, Some(0.4), None)]);
     }
 }

@@ -46,7 +46,7 @@ pub struct Layout {
     /// Strain coordinates of the links, base to tip.
     pub links: Vec<LinkSlot>,
     /// For each prismatic joint, base to tip, the first of its four coordinates: three of its guide, then its travel.
-    slides: Vec<usize>,
+    pub(crate) slides: Vec<usize>,
     /// Index and compliance of each coordinate that belongs to a frame compliance of the base or of a link's root. No
     /// fit changes these compliances.
     frames: Vec<(usize, f64)>,

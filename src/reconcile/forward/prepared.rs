@@ -51,11 +51,24 @@ pub struct Forward {
 impl Forward {
     /// Prepares a campaign for fitting: lists its data, and computes what does not depend on fitted parameters.
     pub fn new(campaign: &Campaign) -> Self {
-        let mut nominal = campaign.arm.subject(JointModel::ThreeSegment);
-        if campaign.statement.rigid_links {
-            make_links_rigid(&mut nominal);
-        }
+        let nominal = nominal_subject(campaign);
         let layout = Layout::new(&nominal.structure);
+        Self::prepare(campaign, nominal, layout)
+    }
+
+    /// Prepares a campaign for the prediction of its nominal arm alone: masses that this arm does not have are left
+    /// out, because their factors take most of the time of the preparation.
+    pub(crate) fn of_the_nominal_arm(campaign: &Campaign) -> Self {
+        let nominal = nominal_subject(campaign);
+        let mut layout = Layout::new(&nominal.structure);
+        let own = Coefficients::new(&layout, &nominal, &nominal);
+        if own.masses.iter().chain(&own.weights).all(|amount| *amount == 0.0) {
+            layout.with_mass.clear();
+        }
+        Self::prepare(campaign, nominal, layout)
+    }
+
+    fn prepare(campaign: &Campaign, nominal: Subject, layout: Layout) -> Self {
         let mut groups = Groups::default();
         let mut data = Vec::new();
         let statics = statics::prepare(campaign, &layout, &nominal, &mut groups, &mut data);
@@ -284,6 +297,15 @@ impl Forward {
             *value = coefficients.channels[datum.channel as usize].of(*value, datum.component, datum.row);
         }
     }
+}
+
+/// The nominal arm of a campaign, with rigid links if the campaign says so.
+fn nominal_subject(campaign: &Campaign) -> Subject {
+    let mut nominal = campaign.arm.subject(JointModel::ThreeSegment);
+    if campaign.statement.rigid_links {
+        make_links_rigid(&mut nominal);
+    }
+    nominal
 }
 
 /// Makes all links of the subject rigid.

@@ -20,7 +20,7 @@ use crate::reconcile::readings::components::POSITION;
 use crate::reconcile::readings::rows::PositionRow;
 use crate::reconcile::select::lack_of_fit::LackOfFit;
 use crate::reconcile::verdict::files::CORRECTED_FILE;
-use crate::reconcile::verdict::judgement::{does_not_predict, too_many_alternatives};
+use crate::reconcile::verdict::judgement::{TOO_FAR_OFF, does_not_predict, too_many_alternatives};
 use crate::reconcile::verdict::outcome::{Calibrated, Evidence, Located, Outcome, ReadingResidual, Verdict};
 use crate::reconcile::verdict::stage::Stage;
 use crate::reconcile::verdict::{caution, correct};
@@ -29,9 +29,6 @@ use std::collections::{HashMap, HashSet};
 
 /// Smallest number of positions from which anything can be concluded.
 pub(crate) const FEWEST: usize = 20;
-/// If the variance of the errors exceeds the declared variance by this factor, the verdict is `unexplained`, whatever
-/// else is found. The errors are then five times as large as those of the instrument.
-const HOPELESS_VARIANCE: f64 = 25.0;
 /// Largest ratio of the median error at held-out poses to the median error in the fit. If the ratio is larger, the
 /// poses are too similar to determine everything that is calibrated.
 const UNSTABLE: f64 = 8.0;
@@ -142,7 +139,7 @@ impl Positions {
             return (Verdict::InsufficientData, vec![text]);
         }
         let excess = left.chi2_per_dof > MATERIAL_VARIANCE;
-        if left.fails || (findings.is_empty() && excess) || left.chi2_per_dof > HOPELESS_VARIANCE {
+        if left.fails || (findings.is_empty() && excess) || left.chi2_per_dof.sqrt() > TOO_FAR_OFF {
             return (Verdict::Unexplained, self.left_over(left));
         }
         let last = &self.stages[self.stages.len() - 1];

@@ -6,6 +6,9 @@ use crate::reconcile::model::estimate::Finding;
 
 /// An effect is named only if at most this many alternatives would fit as well.
 const MOST_ALTERNATIVES: usize = 3;
+/// If readings are further off than this with all effects, in declared standard deviations, something else is missing,
+/// whatever is named. Effects that are right leave at most 1.3 in campaigns of several simulators.
+pub(crate) const TOO_FAR_OFF: f64 = 1.8;
 
 impl Verdict {
     /// The common verdict on several kinds of readings, each of which was judged by itself: the least favourable of

@@ -3,13 +3,14 @@
 //!
 //! A law may be a twist of a joint as a function of its torque (odd or even), of its angle, or of the order of the
 //! tests, or of the torque of its neighbour, friction in proportion to the torque, or an angle whose zero is off. It may
-//! be a compliance of a base, a bearing or a link in one direction only, a mass, wall or length of a link that differs
+//! be a compliance of a base, a bearing or a link in one direction only, or of a guide that changes with its position, a mass, wall or length of a link that differs
 //! from the drawing, or another direction of gravity. It may also be an error of a reading as a function of the actual value, the direction, the
 //! kind of load, or the time in a pose. A law consists of a few columns: changes of the readings, linearized about a
 //! fit.
 
 mod coupling;
 mod friction;
+mod guides;
 mod joints;
 mod lengths;
 mod level;
@@ -59,6 +60,7 @@ pub(crate) fn of_every_law<T: Send>(
     ask(builder.level_laws());
     ask(builder.length_laws());
     ask(builder.coupling_laws());
+    ask(builder.guide_laws());
     ask(builder.compliance_laws());
     ask(builder.link_laws());
     ask(builder.reading_laws());
@@ -76,7 +78,7 @@ impl Builder<'_> {
     /// The readings of the nominal arm of another campaign, which differs from this one in poses, loads or geometry and has
     /// the same rows, in the units of the file.
     fn nominal_readings(&self, campaign: &Campaign) -> Vec<f64> {
-        let mut forward = Forward::new(campaign);
+        let mut forward = Forward::of_the_nominal_arm(campaign);
         // modes that were put in order, or found to be missed, stay as they are
         for (own, stated) in forward.modal.iter_mut().zip(&self.forward.modal) {
             own.modes.clone_from(&stated.modes);
