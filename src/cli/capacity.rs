@@ -10,6 +10,7 @@ use crate::report::whole_file::folder_of;
 use crate::report::words::{TERMINAL, wrap};
 use crate::study::arm_capacity::{arm_capacity, has_rated_bearings};
 use crate::study::capacity::{AtPose, Capacity, capacity_of};
+use crate::study::import_ranges::beyond_ranges;
 use crate::study::largest_speed::LargestSpeed;
 use crate::study::load::load_study;
 use crate::study::load_limits::{example, limits_of_parts, read_limits};
@@ -126,7 +127,12 @@ fn of_arm(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Failure> {
             example(&arm)
         )));
     }
+    let import: Value = match beside.is_file() {
+        true => Document::read(&beside)?.root().value().clone(),
+        false => Value::Null,
+    };
     let mut remarks = vec![AT_REST.to_string()];
+    remarks.extend(beyond_ranges(&import, &arm, &cases));
     remarks.extend(args.cases.is_none().then(|| ONE_POSE.to_string()));
     Ok(said(args, &arm.name, &arm_capacity(&arm, &cases, &limits), &remarks))
 }

@@ -189,7 +189,9 @@ impl<'a> Robot<'a> {
             effects: Vec::new(),
             springs: Vec::new(),
         };
-        report.impossible = arm.impossible_bodies().into_iter().map(String::from).collect();
+        let still = self.tree.impossible_and_still();
+        report.impossible = arm.impossible_bodies().into_iter().chain(still).map(String::from).collect();
+        report.impossible.dedup();
         report.mass_kg = arm.mass_kg();
         (arm, report)
     }

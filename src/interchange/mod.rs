@@ -32,6 +32,7 @@ pub(crate) mod tree;
 pub(crate) mod urdf_file;
 pub(crate) mod urdf_out;
 mod urdf_place;
+mod urdf_shapes;
 mod xml;
 
 use crate::arm::Arm;

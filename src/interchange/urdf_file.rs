@@ -4,6 +4,7 @@
 //! names, links with two parents, loops, axes without a direction, and masses and inertias that no body can have.
 
 use super::urdf_place::{cut_off_at, line_of_robot, no_numbers};
+use super::urdf_shapes::without_shapes;
 use crate::input::json::{Fault, Faults};
 use crate::input::names::unfit_name;
 use nalgebra::{Isometry3, Matrix3, SymmetricEigen, Translation3, UnitQuaternion, Vector3};
@@ -44,8 +45,21 @@ pub(crate) fn isometry(pose: &Pose) -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::from(Vector3::from(pose.xyz.0)), turn)
 }
 
-/// Inertia tensor of a link about its centre of gravity, in axes of its inertial frame \[kg m²\].
+/// Inertia tensor of a link about its centre of gravity, in axes of its inertial frame \[kg m²\]. A negative principal
+/// moment is rounding and becomes zero.
 pub(crate) fn tensor(link: &Link) -> Matrix3<f64> {
+    let stated = stated_tensor(link);
+    let mut eigen = SymmetricEigen::new(stated);
+    if eigen.eigenvalues.min() >= 0.0 {
+        return stated;
+    }
+    eigen.eigenvalues.apply(|moment| *moment = moment.max(0.0));
+    let tensor = eigen.recompose();
+    0.5 * (tensor + tensor.transpose())
+}
+
+/// Inertia tensor of a link as the file states it \[kg m²\].
+fn stated_tensor(link: &Link) -> Matrix3<f64> {
     let i = &link.inertial.inertia;
     Matrix3::new(i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz)
 }
@@ -63,7 +77,7 @@ impl UrdfTree {
             problem,
             hint: hint.into(),
         };
-        let robot: Robot = urdf_rs::read_from_string(text).map_err(|e| {
+        let robot: Robot = urdf_rs::read_from_string(&without_shapes(text)).map_err(|e| {
             if let Some((line, wrong)) = no_numbers(text) {
                 let hint = "write numbers with a point, separated by spaces";
                 let problem = format!("is no list of numbers: {wrong}");
@@ -74,7 +88,12 @@ impl UrdfTree {
                 let problem = "is empty or cut off: no </robot> ends it".to_string();
                 return Faults(vec![Fault { line: Some(last), ..fault("", problem, hint) }]);
             }
-            let hint = "the file must be plain URDF: expand macros first with `xacro FILE.xacro > FILE.urdf`";
+            let hint = match text.contains("xacro:") || text.contains("${") {
+                true => "expand its macros first with `xacro FILE.xacro > FILE.urdf`",
+                false => {
+                    "check the elements and attributes of its links and joints against the format of URDF"
+                }
+            };
             Faults(vec![Fault { line: None, ..fault("", format!("is no URDF: {e}"), hint) }])
         })?;
         let tree = Self { name: robot.name, links: robot.links, joints: robot.joints };
@@ -116,6 +135,17 @@ impl UrdfTree {
         self.links.iter().filter(is_end).map(|link| link.name.as_str()).collect()
     }
 
+    /// Whether a link never moves: every joint from the root to it is fixed.
+    pub(crate) fn stands_still(&self, link: &str) -> bool {
+        self.path_to(link).into_iter().all(|joint| !moves(joint))
+    }
+
+    /// Links that never move and have a negative principal moment of inertia. It does not matter for any arm.
+    pub(crate) fn impossible_and_still(&self) -> Vec<&str> {
+        let links = self.links.iter().filter(|link| self.stands_still(&link.name));
+        links.filter(|link| least_moment_beyond_rounding(link).is_some()).map(|l| l.name.as_str()).collect()
+    }
+
     /// All faults of the robot, each with the name of the link or joint, the problem and the advice.
     fn problems(&self) -> Vec<(String, String, &'static str)> {
         let mut out = Vec::new();
@@ -135,7 +165,7 @@ impl UrdfTree {
         };
         names("link", self.links.iter().map(|link| &link.name).collect(), &mut out);
         names("joint", self.joints.iter().map(|joint| &joint.name).collect(), &mut out);
-        self.links.iter().for_each(|link| body_problems(link, &mut out));
+        self.links.iter().for_each(|link| body_problems(link, self.stands_still(&link.name), &mut out));
         self.joints.iter().for_each(|joint| self.joint_problems(joint, &mut out));
         self.tree_problems(&mut out);
         out
@@ -249,8 +279,16 @@ fn pose_problems(name: &str, origin: &Pose, out: &mut Vec<(String, String, &'sta
     }
 }
 
-/// Checks that the mass and the principal moments of a body are not negative.
-fn body_problems(link: &Link, out: &mut Vec<(String, String, &'static str)>) {
+/// The least principal moment of a body \[kg m²\] if it is negative by more than rounding; otherwise `None`.
+fn least_moment_beyond_rounding(link: &Link) -> Option<f64> {
+    let tensor = stated_tensor(link);
+    let least = SymmetricEigen::new(tensor).eigenvalues.min();
+    let at_origin = link.inertial.mass.value * Vector3::from(link.inertial.origin.xyz.0).norm_squared();
+    (least < -(ROUNDING * tensor.amax()).max(ROUNDING_AT_ORIGIN * at_origin)).then_some(least)
+}
+
+/// Checks that the mass of a body and, unless it stands still, its principal moments are not negative.
+fn body_problems(link: &Link, stands_still: bool, out: &mut Vec<(String, String, &'static str)>) {
     pose_problems(&link.name, &link.inertial.origin, out);
     let mass_kg = link.inertial.mass.value;
     if !(mass_kg >= 0.0 && mass_kg.is_finite()) {
@@ -260,17 +298,14 @@ fn body_problems(link: &Link, out: &mut Vec<(String, String, &'static str)>) {
             "give a mass that is not negative",
         ));
     }
-    let tensor = tensor(link);
-    if tensor.iter().any(|entry| !entry.is_finite()) {
+    if stated_tensor(link).iter().any(|entry| !entry.is_finite()) {
         out.push((link.name.clone(), "has an inertia that is no number".into(), ""));
         return;
     }
     if link.inertial.origin.xyz.0.iter().any(|number| !number.is_finite()) {
         return;
     }
-    let least = SymmetricEigen::new(tensor).eigenvalues.min();
-    let at_origin = mass_kg * Vector3::from(link.inertial.origin.xyz.0).norm_squared();
-    if least < -(ROUNDING * tensor.amax()).max(ROUNDING_AT_ORIGIN * at_origin) {
+    if let Some(least) = least_moment_beyond_rounding(link).filter(|_| !stands_still) {
         let problem = format!("has a negative principal moment of inertia, {least} kg m²");
         out.push((
             link.name.clone(),
@@ -296,7 +331,7 @@ mod tests {
         let text = r#"<robot name="r">
           <link name="a"><inertial><mass value="-1"/><inertia ixx="1" ixy="2" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
           <link name="b"/><link name="b"/><link name="c"/>
-          <joint name="j" type="revolute"><parent link="a"/><child link="d"/><axis xyz="0 0 0"/>
+          <joint name="j" type="revolute"><parent link="d"/><child link="a"/><axis xyz="0 0 0"/>
             <limit effort="1" velocity="1"/><mimic joint="k"/></joint>
         </robot>"#;
         let faults = UrdfTree::read("r.urdf", text).expect_err("faults").0;
@@ -323,5 +358,38 @@ mod tests {
                    <child link=\"b\"/><origin xyz=\"0 0 X\"/></joint></robot>";
         assert!(refused(&far.replace('X', "nan")).contains("j: has an origin that is no number"));
         assert!(refused(&far.replace('X', "1e300")).contains("m away"));
+    }
+
+    /// A product of inertia of 1e-20 beside zeros is rounding of a tensor that was moved from the origin.
+    #[test]
+    fn a_tensor_within_rounding_has_no_negative_moments_and_a_link_that_stands_still_may_have_any() {
+        let inertial = |ixx: &str, ixz: &str| {
+            format!(
+                "<inertial><origin xyz=\"0.1 0 0.3\"/><mass value=\"0.5\"/>\
+                 <inertia ixx=\"{ixx}\" ixy=\"0\" ixz=\"{ixz}\" iyy=\"0\" iyz=\"0\" izz=\"0\"/></inertial>"
+            )
+        };
+        let robot = |kind: &str, of_b: String| {
+            let text = format!(
+                "<robot name=\"r\"><link name=\"a\"/><link name=\"b\">{of_b}</link><joint name=\"j\" type=\"{kind}\">\
+                 <parent link=\"a\"/><child link=\"b\"/><axis xyz=\"0 1 0\"/>\
+                 <limit lower=\"-1\" upper=\"1\" effort=\"10\" velocity=\"1\"/></joint></robot>"
+            );
+            UrdfTree::read("r.urdf", &text)
+        };
+        let rounded = robot("revolute", inertial("0", "1e-20")).expect("rounding");
+        let tensor = tensor(&rounded.links[1]);
+        assert!(SymmetricEigen::new(tensor).eigenvalues.min() >= -1e-6 * tensor.amax(), "{tensor}");
+        assert!(rounded.impossible_and_still().is_empty());
+        assert!(robot("revolute", inertial("-1", "0")).is_err());
+        let still = robot("fixed", inertial("-1", "0")).expect("it never moves");
+        assert_eq!(still.impossible_and_still(), ["b"]);
+    }
+
+    #[test]
+    fn what_the_robot_looks_like_does_not_matter() {
+        let text = "<robot name=\"r\"><link name=\"a\"><visual><geometry><box size=\"1 1 1\"/></geometry>\
+            <material name=\"m\"><texture/></material></visual></link></robot>";
+        assert_eq!(UrdfTree::read("r.urdf", text).expect("a robot").links.len(), 1);
     }
 }

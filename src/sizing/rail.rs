@@ -97,11 +97,13 @@ pub struct Screw {
     pub max_force_n: Option<f64>,
     /// Largest speed that the balls allow \[rpm\]; `None` means that only the critical speed limits it.
     pub max_speed_rpm: Option<f64>,
-    /// Efficiency.
+    /// Turns of the motor per turn of the screw, by a belt or gear between them.
+    pub ratio: f64,
+    /// Efficiency, that of a belt or gear included.
     pub efficiency: f64,
     /// Stiffness of nut and end bearings in series \[N/m\]; `None` means rigid.
     pub series_n_per_m: Option<f64>,
-    /// Moment of inertia beyond that of the shaft, such as a coupling's \[kg m²\].
+    /// Moment of inertia beyond that of the shaft, at the screw, such as a coupling's or a pulley's \[kg m²\].
     pub further_inertia_kgm2: f64,
     /// Mass beyond that of the shaft, which stays where the joint begins \[kg\].
     pub further_mass_kg: f64,
@@ -144,21 +146,22 @@ impl Screw {
 
     /// Moment of inertia of the shaft and of the parts that turn with it, referred to the motor \[kg m²\].
     pub fn inertia_kgm2(&self) -> f64 {
-        self.shaft_kg() * self.root_diameter_m.powi(2) / 8.0 + self.further_inertia_kgm2
+        let at_screw = self.shaft_kg() * self.root_diameter_m.powi(2) / 8.0 + self.further_inertia_kgm2;
+        at_screw / self.ratio.powi(2)
     }
 
-    /// The screw as a gear whose ratings are forces.
+    /// The screw as a gear whose ratings are forces. Its input is the motor's shaft, so speeds are those of the motor.
     pub fn gear(&self) -> Gear {
-        let turns_h = self.dynamic_load_rating_n.map(|_| RATED_TURNS / 60.0);
+        let turns_h = self.dynamic_load_rating_n.map(|_| RATED_TURNS / 60.0 * self.ratio);
         Gear {
             life: LifeLaw { rated_h: turns_h.map(|_| 1.0), rated_speed_rpm: turns_h, exponent: 3.0 },
             rated_torque_nm: self.dynamic_load_rating_n,
             momentary_peak_torque_nm: self.max_force_n,
             buckling_torque_nm: Some(self.buckling_n()),
-            max_input_speed_rpm: Some(self.max_speed_rpm()),
+            max_input_speed_rpm: Some(self.max_speed_rpm() * self.ratio),
             inertia_input_kgm2: Some(self.inertia_kgm2()),
             k1_nm_per_rad: Some(self.stiffness_n_per_m()),
-            ..linear(GearKind::Screw, &self.name, 2.0 * PI / self.lead_m, self.efficiency)
+            ..linear(GearKind::Screw, &self.name, 2.0 * PI / self.lead_m * self.ratio, self.efficiency)
                 .weighing(self.shaft_kg() + self.further_mass_kg)
         }
     }
@@ -239,6 +242,7 @@ mod tests {
             dynamic_load_rating_n: None,
             max_force_n: None,
             max_speed_rpm: None,
+            ratio: 1.0,
             efficiency: 0.9,
             series_n_per_m: None,
             further_inertia_kgm2: 0.0,
@@ -281,6 +285,20 @@ mod tests {
         let always = JointMotion { mean_speed_fraction: 1.0, ..motion };
         let life_h = gear_life_h(&gear, &always, 1200f64.powi(3)).expect("known");
         assert!((life_h / 20_000.0 - 1.0).abs() < 1e-4, "{life_h}");
+    }
+
+    /// A belt of 1 : 2 before the screw: the motor turns twice as fast with half the torque, and the screw lives as long.
+    #[test]
+    fn a_belt_before_the_screw_changes_what_the_motor_sees_and_not_the_life() {
+        let alone = Screw { dynamic_load_rating_n: Some(9000.0), further_inertia_kgm2: 1e-4, ..screw(0.8) };
+        let belted = Screw { ratio: 2.0, ..alone.clone() };
+        let [a, b] = [alone.gear(), belted.gear()];
+        assert!((b.ratio / a.ratio - 2.0).abs() < 1e-15);
+        assert!((alone.inertia_kgm2() / belted.inertia_kgm2() - 4.0).abs() < 1e-12);
+        assert!((b.max_input_speed_rpm.unwrap() / a.max_input_speed_rpm.unwrap() - 2.0).abs() < 1e-12);
+        let motion = MotionRequirement::default().joint_motion(1.0, Some(0.1));
+        let [of_a, of_b] = [a, b].map(|gear| gear_life_h(&gear, &motion, 1e9).expect("known"));
+        assert!((of_a / of_b - 1.0).abs() < 1e-12, "{of_a} {of_b}");
     }
 
     /// A screw held at both ends is most compliant in its middle, where its two halves act in parallel.

@@ -26,6 +26,7 @@ pub(crate) mod gear_remarks;
 pub(crate) mod given_parts;
 pub(crate) mod given_remarks;
 mod harness;
+pub(crate) mod import_ranges;
 pub(crate) mod joint_obstacle;
 pub(crate) mod keys;
 pub(crate) mod largest_speed;

@@ -101,7 +101,7 @@ const PART_BACKLASH: Key = optional(
 );
 
 /// Keys of a ball screw.
-const SCREW_KEYS: [Key; 13] = [
+const SCREW_KEYS: [Key; 14] = [
     PART_NAME,
     required("lead_mm", Kind::Positive, "mm", "Way of the nut a turn."),
     required("root_diameter_mm", Kind::Positive, "mm", "Diameter of the shaft at the root of the thread."),
@@ -122,6 +122,13 @@ const SCREW_KEYS: [Key; 13] = [
     ),
     PART_FORCE,
     optional("max_speed_rpm", Kind::Positive, "rpm", "the critical speed", "Largest speed for the balls."),
+    optional(
+        "ratio",
+        Kind::Positive,
+        "-",
+        "1",
+        "Turns of the motor per turn of the screw, by a belt or gear between them.",
+    ),
     PART_EFFICIENCY,
     PART_BACKLASH,
     optional(
@@ -131,7 +138,13 @@ const SCREW_KEYS: [Key; 13] = [
         "rigid",
         "Stiffness of nut and end bearings in series.",
     ),
-    optional("inertia_kgm2", Kind::NonNegative, "kg m²", "0", "Moment of inertia beyond that of the shaft."),
+    optional(
+        "inertia_kgm2",
+        Kind::NonNegative,
+        "kg m²",
+        "0",
+        "Moment of inertia beyond that of the shaft, at the screw.",
+    ),
     optional(
         "mass_kg",
         Kind::NonNegative,

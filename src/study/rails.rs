@@ -97,6 +97,7 @@ fn read_screw(node: &Node) -> Option<Gear> {
     let ends = object.or("ends", Ends::FixedSupported, read_ends);
     let (life, force, speed) = (known("dynamic_load_rating_n"), known("max_force_n"), known("max_speed_rpm"));
     let series = known("nut_stiffness_n_per_m");
+    let ratio = object.or("ratio", 1.0, Node::positive);
     let (inertia, mass) = (further("inertia_kgm2"), further("mass_kg"));
     let backlash = further("backlash_mm");
     let screw = Screw {
@@ -108,6 +109,7 @@ fn read_screw(node: &Node) -> Option<Gear> {
         dynamic_load_rating_n: life?,
         max_force_n: force?,
         max_speed_rpm: speed?,
+        ratio: ratio?,
         efficiency: efficiency?,
         series_n_per_m: series?,
         further_inertia_kgm2: inertia?,

@@ -269,3 +269,24 @@ fn an_actuator_that_is_named_as_the_gear_alone_limits_by_its_motor() {
     let said = String::from_utf8_lossy(&refused.stderr).to_string();
     assert!(refused.status.code() == Some(3) && said.contains("did you mean \"j1\"?"), "{said}");
 }
+
+/// With every joint at zero, the elbow and the wrist of this robot are beyond their ranges.
+#[test]
+fn poses_beyond_the_ranges_of_an_imported_robot_are_named() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let urdf = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/urdf/panda.urdf");
+    let urdf = urdf.to_str().expect("text");
+    let imported = armwright(&["import", urdf, "--tip", "panda_link8", "--out", "panda"], dir.path());
+    assert!(imported.status.success());
+    let said = |words: &[&str]| {
+        let output = armwright(&[&["capacity", "panda/arm.json"], words].concat(), dir.path());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8_lossy(&output.stdout).split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let zero = said(&[]);
+    assert!(zero.contains("cannot take every pose") && zero.contains("panda_joint4 at 0 deg"), "{zero}");
+    std::fs::write(dir.path().join("poses.json"), r#"[{"pose_deg": [0, 0, 0, -90, 0, 90, 0]}]"#)
+        .expect("written");
+    let bent = said(&["--cases", "poses.json"]);
+    assert!(!bent.contains("cannot take"), "{bent}");
+}

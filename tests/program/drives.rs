@@ -222,7 +222,11 @@ fn an_actuator_is_checked_by_what_its_row_states_at_the_output() {
     // an actuator is one part: one line, and no word of a motor for it or of a gear before it
     let of_x: Vec<&str> =
         said.lines().filter(|line| line.contains("ACT-X") && !line.contains("bearing")).collect();
-    assert_eq!(of_x, ["joint j: ACT-X cannot be checked: no inertia_output_kgm2 (peak and rms)"], "{said}");
+    assert_eq!(
+        of_x,
+        ["joint j: ACT-X cannot be checked: no inertia_output_kgm2 (peak and stop and rms)"],
+        "{said}"
+    );
     let mut heavy = one_joint(json!({"actuators": "all"}));
     heavy["payload"]["mass_kg"] = json!(7.9);
     let here = folder(&heavy, &[("actuators.csv", ACTUATORS)]);
@@ -233,7 +237,9 @@ fn an_actuator_is_checked_by_what_its_row_states_at_the_output() {
     assert!(!said.contains("finds no motor") && !said.contains("behind"), "{said}");
     let (_, said) = armwright(here.path(), &["catalog", "check", "--catalogs", "parts"]);
     assert!(
-        said.contains("ACT-X: cannot be chosen by size and run: no inertia_output_kgm2 (peak and rms)"),
+        said.contains(
+            "ACT-X: cannot be chosen by size and run: no inertia_output_kgm2 (peak and stop and rms)"
+        ),
         "{said}"
     );
 }

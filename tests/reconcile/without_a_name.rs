@@ -136,3 +136,33 @@ fn what_changes_in_the_course_of_the_tests_is_a_law_of_the_corrected_arm() {
         assert!(corrected_mm < nominal_mm / 1.5, "{hidden}: {corrected_mm} of {nominal_mm} mm");
     }
 }
+
+/// A bench alone has no poses; every fourth of its rows is held out in turn. The joint is softer in one sense of its torque.
+#[test]
+fn a_bench_alone_is_judged_on_rows_that_were_held_out() {
+    let folder = tempfile::tempdir().expect("temporary folder");
+    let dice = &mut Dice(3);
+    let mut rows = String::from("test,joint,torque_nm,windup_arcmin,sigma_arcmin\n");
+    for row in 0..24 {
+        let torque_nm = dice.between(1.0, 10.0) * if row % 2 == 0 { 1.0 } else { -1.0 };
+        let rad = torque_nm / 160.0 + 0.15 * f64::abs(torque_nm) / 160.0;
+        let arcmin = rad.to_degrees() * 60.0 + 0.3 * dice.normal();
+        rows += &format!("{row},j,{torque_nm},{arcmin},0.3\n");
+    }
+    let arm = json!({"chain": [
+        {"type": "joint", "name": "j", "axis": [0, 1, 0], "stiffness_nm_per_rad": 160},
+        {"type": "link", "name": "l", "vector_m": [0.3, 0, 0], "mass_kg": 1}]});
+    let campaign = json!({"arm": "arm.json",
+        "tolerance": {"joint_stiffness": 0.1, "joint_mass": 0.02, "modulus": 0.03}});
+    for (name, text) in
+        [("arm.json", arm.to_string()), ("campaign.json", campaign.to_string()), ("windup.csv", rows)]
+    {
+        std::fs::write(folder.path().join(name), text).expect("written");
+    }
+    let outcome = reconcile(&Campaign::read(folder.path(), &Catalogs::default()).expect("sound"));
+    assert_eq!(outcome.verdict, Verdict::Unexplained, "{}", outcome.to_text());
+    let [given, calibrated] = [0, 1].map(|row| outcome.models[row].kept_out_rms_sigma);
+    let written = outcome.models.iter().find(|row| row.is_written).expect("a model");
+    assert!(given > 20.0 && calibrated > 20.0 && written.kept_out_rms_sigma < 2.0, "{}", outcome.to_text());
+    assert!(written.model.contains("a further twist of j that is even"), "{}", written.model);
+}

@@ -3,7 +3,8 @@
 //! The poses are divided into four folds. Each fold in turn is held out, the model is refitted to the rest, and the
 //! fold is predicted. The effects stay the same. Their sizes and the calibration are fitted again. Only the break
 //! points of gear curves keep their values. All rows of a pose belong to the same fold, because they share a history
-//! and a reference reading. Bench rows belong to no pose and stay in every fit.
+//! and a reference reading. Bench rows belong to no pose and stay in every fit, unless there is nothing else: then every
+//! fourth row of the bench is a fold.
 
 use super::descent::{Effort, Weights, descent};
 use crate::reconcile::forward::prepared::Forward;
@@ -27,6 +28,15 @@ pub struct HeldOut {
     pub count: usize,
 }
 
+/// The fold to which a datum belongs; `None` if it stays in every fit.
+pub(crate) fn fold_of(forward: &Forward, datum: usize) -> Option<usize> {
+    let group = match forward.groups.is_empty() {
+        true => datum,
+        false => Some(forward.data[datum].group).filter(|group| *group != usize::MAX)?,
+    };
+    Some(group % HANDS)
+}
+
 /// Residual of every datum, predicted with its pose held out, measured minus predicted \[declared standard
 /// deviations\]. `u` are the parameters of the full fit, from which each refit starts. `None` for data that are never
 /// held out.
@@ -39,7 +49,7 @@ pub(crate) fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &W
     let hands: Vec<Vec<(usize, f64)>> = (0..HANDS)
         .into_par_iter()
         .map(|hand| {
-            let out = |i: usize| forward.data[i].group != usize::MAX && forward.data[i].group % HANDS == hand;
+            let out = |i: usize| fold_of(forward, i) == Some(hand);
             let mut kept = weights.clone();
             (0..forward.data.len()).filter(|&i| out(i)).for_each(|i| kept.inverse[i] = 0.0);
             // the start is close to the minimum, so a few steps are enough

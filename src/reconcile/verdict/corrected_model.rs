@@ -1,6 +1,6 @@
 //! Chooses the model of the corrected arm if no known effect explains the readings. The models are the arm as it was
 //! given, the calibrated arm, the arm with the best known effects, and arms with laws without a name. The one that
-//! predicts held-out poses best is taken.
+//! predicts held-out readings best is taken: those of whole poses, or of a bench if there is nothing else.
 //!
 //! The verdict stays `unexplained`: a model that predicts better is no explanation.
 
@@ -13,16 +13,16 @@ use crate::reconcile::select::empirical;
 use crate::reconcile::select::search::Search;
 use serde_json::{Value, json};
 
-/// A model with more parameters is taken only if it lowers the error on held-out poses by at least this fraction
+/// A model with more parameters is taken only if it lowers the error on held-out readings by at least this fraction
 /// compared with the simpler one.
 const WORTHWHILE: f64 = 0.02;
 
-/// A model that the corrected arm could have, with its error on held-out poses.
+/// A model that the corrected arm could have, with its error on held-out readings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
     /// Description of the model in words.
     pub model: String,
-    /// Root mean square of the residuals that the model leaves on held-out poses \[standard deviations\].
+    /// Root mean square of the residuals that the model leaves on held-out readings \[standard deviations\].
     pub kept_out_rms_sigma: f64,
     /// Whether this model was chosen for `arm.corrected.json`.
     pub is_written: bool,
@@ -113,14 +113,14 @@ fn nominal_rms(search: &Search, noise: &Noise) -> f64 {
     let forward = search.forward;
     let predicted = forward.predict(&forward.coefficients(&forward.nominal));
     let counted = (0..forward.data.len())
-        .filter(|&i| forward.data[i].group != usize::MAX && search.weights.inverse[i] > 0.0);
+        .filter(|&i| held_out::fold_of(forward, i).is_some() && search.weights.inverse[i] > 0.0);
     rms(counted.map(|i| {
         let datum = &forward.data[i];
         (datum.value - predicted[i]) / datum.sigma / noise.scale[datum.channel as usize]
     }))
 }
 
-/// Root mean square of the residuals of the model `fit`, predicted with their poses held out \[standard deviations,
+/// Root mean square of the residuals of the model `fit`, predicted with their folds held out \[standard deviations,
 /// scaled by `noise`\].
 fn fit_rms(search: &Search, noise: &Noise, fit: &Fit) -> f64 {
     let residuals = held_out::residuals(search.forward, &fit.model, &fit.point.u, search.weights);

@@ -82,7 +82,7 @@ fn corrected_models(outcome: &Outcome) -> Option<PageSection> {
     }
     let mut table = Table::new(vec![
         Column::left("model"),
-        Column::unit("error on held-out poses", "sigma"),
+        Column::unit("error on held-out readings", "sigma"),
         Column::left("in arm.corrected.json"),
     ]);
     for row in &outcome.models {
@@ -92,10 +92,12 @@ fn corrected_models(outcome: &Outcome) -> Option<PageSection> {
     let laws = outcome.empirical.iter().map(|law| format!("{}: {}", law.law, law.may_be));
     Some(PageSection {
         title: "The corrected arm".into(),
-        words: ["The model in arm.corrected.json predicts held-out poses best. It explains nothing.".into()]
-            .into_iter()
-            .chain(laws)
-            .collect(),
+        words: [
+            "The model in arm.corrected.json predicts held-out readings best. It explains nothing.".into()
+        ]
+        .into_iter()
+        .chain(laws)
+        .collect(),
         tables: vec![("The models from which it was chosen.".into(), table)],
         figures: Vec::new(),
     })

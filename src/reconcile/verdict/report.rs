@@ -79,12 +79,12 @@ impl Outcome {
     }
 
     /// Appends to `out` the table of the models that the corrected arm could have, with their errors on held-out
-    /// poses, and the laws in the chosen one.
+    /// readings, and the laws in the chosen one.
     fn models_table(&self, out: &mut String) {
         if self.models.is_empty() {
             return;
         }
-        out.push_str("  error on held-out poses [sigma]; * is in arm.corrected.json, which predicts better but explains nothing\n");
+        out.push_str("  error on held-out readings [sigma]; * is in arm.corrected.json, which predicts better but explains nothing\n");
         for row in &self.models {
             let mark = if row.is_written { '*' } else { ' ' };
             let _ = writeln!(out, "  {mark} {:>8.2}  {}", row.kept_out_rms_sigma, row.model);
