@@ -85,7 +85,10 @@ impl Motor {
     /// `actuators.csv`.
     pub fn lacks(&self) -> Vec<Lack> {
         let of_actuator = self.kind == super::motor::MotorKind::OfActuator;
-        let inertia = if of_actuator { "inertia_output_kgm2" } else { "rotor_inertia_kgm2" };
+        let (inertia, of_inertia) = match of_actuator {
+            true => ("inertia_output_kgm2", "peak and stop and rms"),
+            false => ("rotor_inertia_kgm2", "peak and rms"),
+        };
         let continuous = self.curve.iter().find_map(|point| point.continuous_torque_nm);
         let peak = self.curve.iter().find_map(|point| point.peak_torque_nm);
         let fastest = self.curve.last().map(|point| point.speed_rpm);
@@ -93,7 +96,7 @@ impl Motor {
             (continuous.or(self.rated_torque_nm), "rated_torque_nm", "hold and rms"),
             (peak.or(self.peak_torque_nm), "peak_torque_nm", "peak"),
             (fastest.or(self.max_speed_rpm).or(self.rated_speed_rpm), "max_speed_rpm", "speed"),
-            (self.rotor_inertia_kgm2, inertia, "peak and rms"),
+            (self.rotor_inertia_kgm2, inertia, of_inertia),
             (self.mass_kg, "mass_kg", "mass"),
         ])
     }

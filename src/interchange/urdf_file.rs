@@ -348,8 +348,10 @@ mod tests {
             assert!(said.iter().any(|s| s.contains(part)), "{part} in {said:#?}");
         }
         let refused = |text: &str| UrdfTree::read("r.urdf", text).expect_err("no URDF").to_string();
-        let xacro = refused("<robot name=\"r\"><link/></robot>");
-        assert!(xacro.contains("is no URDF") && xacro.contains("xacro"), "{xacro}");
+        let nameless = refused("<robot name=\"r\"><link/></robot>");
+        assert!(nameless.contains("is no URDF") && !nameless.contains("xacro"), "{nameless}");
+        let xacro = refused("<robot name=\"r\"><xacro:part/><link/></robot>");
+        assert!(xacro.contains("is no URDF") && xacro.contains("expand its macros"), "{xacro}");
         for cut in ["", "<robot", "<robot name=\"r\">\n<link name=\"a\"/>"] {
             let said = refused(cut);
             assert!(said.contains("is empty or cut off"), "{cut}: {said}");

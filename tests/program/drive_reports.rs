@@ -173,7 +173,7 @@ fn messages_on_drives_name_all_that_is_missing_and_nothing_that_cannot_matter() 
 
     let here = folder(&one_joint(json!({"actuators": ["ACT-X"]})), &files);
     let refused = said(here.path(), &["size", "study.json", "--catalogs", "parts"], 6);
-    let only = "can be checked in full: ACT-X: no inertia_output_kgm2 (peak and rms) (state";
+    let only = "can be checked in full: ACT-X: no inertia_output_kgm2 (peak and stop and rms) (state";
     assert!(refused.contains(only), "{refused}");
 
     let here = folder(&one_joint(json!({"gear_kinds": ["belt"]})), &[]);
