@@ -238,7 +238,7 @@ pub struct Link {
     pub bodies: Vec<RigidBody>,
 }
 
-/// The structure of a link.
+/// What a link consists of: a tube or bar of constant section, or a rigid offset.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LinkBody {
     /// A straight tube or bar of constant section.

@@ -140,7 +140,7 @@ impl Link {
 }
 
 impl Section {
-    /// The section as files write it: the word for its shape, and its sizes \[m\].
+    /// The section as files write it: the word for its shape, and its sizes \[m\] or its stated stiffnesses and mass.
     pub fn to_json(&self) -> Value {
         match self {
             Section::RectangularTube { width_m, height_m, wall_m } => json!({

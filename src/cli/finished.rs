@@ -359,8 +359,8 @@ impl Finished<'_> {
         of_study.chain(of_bearings).chain(of_lives).chain(of_play).chain(of_given).collect()
     }
 
-    /// A sentence that names the parts of the picks whose ratings are not those of their vendor; `None` if there are
-    /// none.
+    /// A sentence on parts whose ratings were not read in a document of their vendor. It names the picks that use them.
+    /// `None` if there is no such part.
     fn caveats(&self, summary: &SummaryInput) -> Option<String> {
         let picked = picks::rows_and_names(&picks::picks(&picks::designs(&summary.overall)));
         let sentence = summary.facts.caveats.sentence(&summary.overall, &picked);

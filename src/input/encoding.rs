@@ -3,7 +3,7 @@
 /// Why a file is not read as text.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct NotUtf8 {
-    /// Line with the first byte that begins no character, counted from 1.
+    /// Line with the first byte that is not UTF-8, counted from 1; 1 for a file in UTF-16.
     pub line: usize,
     /// What is wrong, for a message.
     pub problem: String,

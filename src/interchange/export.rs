@@ -8,7 +8,7 @@ use super::calculix::model::model;
 use super::design_table::design_csv;
 use super::import::GRAVITY_M_S2;
 use super::left_out::{LeftOut, Remainder};
-use super::mjcf::mjcf;
+use super::mjcf::{Mjcf, mjcf};
 use super::motors::{motors, plays};
 use super::snapshot::{FileSprings, Snapshot};
 use super::table_notes::{not_in_bill, not_in_design_table};
@@ -241,6 +241,7 @@ fn solids_notes(asked: &Asked, links: LinkModel, impossible: &[String]) -> Vec<S
     out
 }
 
+/// The arm as an MJCF file of MuJoCo.
 fn to_mjcf(asked: &Asked, catalogs: &Catalogs) -> Export {
     let mut rest = Remainder::new(asked.arm.structure_in(asked.case), asked.case, FileSprings::Tangents);
     rest.without_water();
@@ -265,27 +266,8 @@ fn to_mjcf(asked: &Asked, catalogs: &Catalogs) -> Export {
     };
     let motors = motors(asked.arm, catalogs, &mut notes);
     let file = mjcf(&asked.arm.name, &snapshot, &options, &motors);
-    notes.push(match options.pieces {
-        0 => "links are rigid".into(),
-        n => format!(
-            "links are cut into {n} parts; the error of their compliance falls with 1/{n}². Their springs are stiff: the \
-             time step is small"
-        ),
-    });
-    notes.push("the keyframe \"pose\" is the pose with straight springs, in which torques and frequencies are compared; \"deflected\" has \
-                every spring where it rests under the load"
-        .into());
-    if file.step.is_short() {
-        notes.push(format!(
-            "the time step is {} s, for a light body between stiff springs vibrates at {:.0} Hz; a heavier body or a rigid element \
-             allows a longer one",
-            file.step.step_s, file.step.highest_hz
-        ));
-    }
+    notes.extend(mjcf_notes(options.pieces, &file));
     notes.extend(working_points_note(&rest.left_out));
-    if file.balanced {
-        notes.push("no solid has the inertia of a body: MuJoCo makes its moments equal (balanceinertia), so frequencies differ".into());
-    }
     Export {
         files: vec![("arm.xml".into(), file.text.into_bytes())],
         left_out: rest.left_out,
@@ -294,6 +276,33 @@ fn to_mjcf(asked: &Asked, catalogs: &Catalogs) -> Export {
     }
 }
 
+/// Remarks on what an MJCF file does otherwise than the arm. `pieces` is the number of parts of each link; 0 if links are
+/// rigid.
+fn mjcf_notes(pieces: usize, file: &Mjcf) -> Vec<String> {
+    let mut out = vec![match pieces {
+        0 => "links are rigid".into(),
+        n => format!(
+            "links are cut into {n} parts; the error of their compliance falls with 1/{n}². Their springs are stiff: the \
+             time step is small"
+        ),
+    }];
+    out.push("the keyframe \"pose\" is the pose with straight springs, in which torques and frequencies are compared; \"deflected\" has \
+                every spring where it rests under the load"
+        .into());
+    if file.step.is_short() {
+        out.push(format!(
+            "the time step is {} s, for a light body between stiff springs vibrates at {:.0} Hz; a heavier body or a rigid element \
+             allows a longer one",
+            file.step.step_s, file.step.highest_hz
+        ));
+    }
+    if file.balanced {
+        out.push("no solid has the inertia of a body: MuJoCo makes its moments equal (balanceinertia), so frequencies differ".into());
+    }
+    out
+}
+
+/// The arm as a URDF file.
 fn to_urdf(asked: &Asked) -> Export {
     let case = LoadCase { payload: Payload::default(), ..asked.case.clone() };
     let structure = asked.arm.structure_in(asked.case);

@@ -91,7 +91,7 @@ pub struct ElasticElement {
     /// Name of the element: the name of the joint or link, `NAME.bearing`, `NAME.guide`, `NAME.frame_compliance`, or
     /// `base`.
     pub name: String,
-    /// Position in the world \[m\]: of the joint, the bearing or the frame, or of the root of the link.
+    /// Position of the element in the world \[m\]. For a link it is the position of its root.
     pub at_m: Vector3<f64>,
     /// Motion of everything outboard per unit of each strain coordinate, as a vector of velocity and angular velocity
     /// at the world's origin.

@@ -7,7 +7,8 @@ use serde::ser::Error;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
 
-/// The keys that a joint that slides does not have, and the keys in their place. The values are the same \[N\].
+/// Torque keys of a joint that turns, each with the force key of a joint that slides. The value stays, because it is a
+/// force \[N\] already.
 const OF_SLIDES: [(&str, &str); 6] = [
     ("static_torque_nm", "static_force_n"),
     ("linear_torque_nm", "linear_force_n"),

@@ -154,10 +154,10 @@ impl StatedDemand {
 /// torque to continuous torque for each newton metre at the joint, and c is this ratio for each rad/s² of the joint.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct StatedHeat {
-    /// Sum of w T² \[(N m)²\]: first over the phases in which the motor drives, then over those in which the load
+    /// Sum of w T² (w: fraction of the time, T: torque) \[(N m)²\]: first over the phases in which the motor drives, then over those in which the load
     /// drives it.
     torque_nm2: [f64; 2],
-    /// Sum of w T α over the phases in which the motor drives, then over those in which the load drives it \[N m
+    /// Sum of w T α (α: acceleration) over the phases in which the motor drives, then over those in which the load drives it \[N m
     /// rad/s²\].
     mixed_nm_rad_s2: [f64; 2],
     /// Sum of w α² over all phases \[rad²/s⁴\].

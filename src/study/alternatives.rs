@@ -12,9 +12,9 @@ use crate::space::design_space::DesignSpace;
 use crate::space::design_space::{LinkChoice, LinkOption, SpaceJoint, SpacePiece};
 use crate::space::problem::ArmProblem;
 
-/// For each element of the chain of `arm`, the parts that may replace its part, each as a name and as the element with
-/// this part. `options` are the options of the design, tip first; the parts are taken from the space `whole`, of which
-/// `problem` may have an excerpt.
+/// For each element of the chain of `arm`, the parts that may replace its part. Each is given by its name and by the
+/// element that has it. `options` are the options of the design, tip first. `problem` may have an excerpt of the space;
+/// the parts come from the whole space `whole`. `None` if the design is not possible.
 pub(super) fn alternatives(
     problem: &ArmProblem,
     whole: &DesignSpace,

@@ -130,7 +130,8 @@ fn object<'a>(node: &Node<'a>, known: &[&str], any: bool) -> Option<Object<'a>> 
     node.object(if any { &all } else { known })
 }
 
-/// Reads the limit of the joint `text`, named at `name`. The inner `None` means that the file states none.
+/// Reads the limit of the joint with the name `text`. Faults of the name are recorded at the node `name`. The outer `None`
+/// means a fault, the inner `None` that the file states no limit.
 fn read_limit(joint: &Object, name: &Node, text: &str, arm: &Arm) -> Option<Option<LoadLimit>> {
     let Some(motion) = motion_of(arm, text) else {
         let names: Vec<&str> = joint_names(arm).collect();

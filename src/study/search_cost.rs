@@ -59,7 +59,7 @@ impl SearchCost {
         }
     }
 
-    /// Both estimated times and the search that is chosen, in a sentence; `None` if the exact search was not estimated.
+    /// Both estimated times and the search that is chosen, in two sentences; `None` if the exact search was not estimated.
     pub(crate) fn words(&self) -> Option<String> {
         let seconds = |s: f64| format!("{} s", significant(s, 1));
         let exact_core_s = self.exact_core_s?;

@@ -4,7 +4,7 @@
 use super::bound::{IdealPoint, ROUNDING};
 use super::modes::eigenvalue_of;
 
-/// A local upper bound. A design is below it if it is no heavier, deflects no more and has no lower mode.
+/// A local upper bound. A design is below it if it is no heavier, deflects no more, and its lowest mode is no lower.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct UpperBound {
     pub mass_kg: f64,

@@ -15,6 +15,12 @@ use crate::mechanics::chain::Chain;
 use crate::mechanics::{Wrench, force_wrench};
 use nalgebra::{Rotation3, Vector3};
 
+/// Number of coordinates of a base or a bearing: its tilts about two axes. Those of a bearing stand before the joint's
+/// twist.
+const TILTS: usize = 2;
+/// Number of coordinates of a guide: its rotations about three axes. They stand before the joint's travel.
+const GUIDE_ROTATIONS: usize = 3;
+
 /// Where the strain coordinates of a joint stand among all strain coordinates.
 #[derive(Debug, Clone)]
 pub struct JointSlot {
@@ -175,7 +181,7 @@ impl Layout {
     /// Lists the strain coordinates that the arm `structure` can have.
     pub fn new(structure: &Structure) -> Self {
         let full = with_everything(structure);
-        let mut n = 2;
+        let mut n = TILTS;
         let (mut joints, mut links) = (Vec::new(), Vec::new());
         let (mut frames, mut drawn, mut slides) = (Vec::new(), Vec::new(), Vec::new());
         let mut add_frame = |frame: &FrameCompliance, n: &mut usize| {
@@ -188,12 +194,12 @@ impl Layout {
         for piece in &full.pieces {
             match piece {
                 Piece::Joint(joint) => {
-                    joints.push(JointSlot { name: joint.name.clone(), twist: n + 2 });
-                    n += 3;
+                    joints.push(JointSlot { name: joint.name.clone(), twist: n + TILTS });
+                    n += TILTS + 1;
                 }
                 Piece::Prismatic(_) => {
                     slides.push(n);
-                    n += 4;
+                    n += GUIDE_ROTATIONS + 1;
                 }
                 Piece::Link(link) => {
                     add_frame(&link.root_frame, &mut n);

@@ -233,7 +233,7 @@ impl PoseGeometry {
         torques_nm
     }
 
-    /// Replaces the content of `torques_nm` by the result of `dead_torques_nm`, so that no memory is allocated.
+    /// Replaces the content of `torques_nm` by the result of `dead_torques_nm`. No memory is allocated if it is large enough.
     fn add_up_dead_torques(
         &self,
         coefficients: &Coefficients,

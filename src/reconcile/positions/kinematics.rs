@@ -70,7 +70,8 @@ impl Number {
         }
     }
 
-    /// Whether the number is a rotation that may be large, as for a placement. The fit shortens its steps.
+    /// Whether the number is a rotation that may be large, as for a placement. The fit shortens a step in which such a
+    /// rotation is too large.
     pub(crate) fn turns(&self) -> bool {
         matches!(self, Number::BaseRotation(_) | Number::Mount(..))
     }
@@ -173,8 +174,8 @@ pub(crate) struct Geometry {
     vectors_m: Vec<Vector3<f64>>,
     mounts: Vec<Rotation3<f64>>,
     angles: Vec<Option<JointAngle>>,
-    /// The number of each dependence of the nominal deflection ([`Dependence`](super::dependence::Dependence)); 0 for the
-    /// nominal arm.
+    /// How far the arm is from its nominal state: one number for each
+    /// [`Dependence`](super::dependence::Dependence) of the nominal deflection. All are 0 for the nominal arm.
     pub dependences: Vec<f64>,
     arms: Vec<Vec<usize>>,
 }

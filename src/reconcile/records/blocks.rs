@@ -12,8 +12,8 @@ use nalgebra::{DMatrix, DVector};
 /// gets a coefficient near zero instead of a large one.
 const LEAST: f64 = 1e-10;
 
-/// Sums, over the rows of a record, of the products of every two columns: one matrix per block of time. The last
-/// column is the target, which a fit explains by the others.
+/// Sums, over the rows of a record, of the products of every two columns: one matrix per block of time. A fit explains one
+/// column by others.
 pub(crate) struct Blocks {
     sums: Vec<DMatrix<f64>>,
     total: DMatrix<f64>,

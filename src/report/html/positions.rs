@@ -36,7 +36,7 @@ pub struct Step {
 /// The error of one position: measured less predicted, by component \[mm\].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Position {
-    /// Row in the file, counted from 1.
+    /// Row in the file without its header, counted from 1.
     pub row: usize,
     /// Joint angles \[deg\].
     pub pose_deg: Vec<f64>,

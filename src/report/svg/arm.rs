@@ -115,7 +115,8 @@ impl ArmSketch {
             );
         }
         self.springs.iter().for_each(|(from, to)| coil(&mut out, at(*from), at(*to)));
-        self.pivots(&mut out, scale, &at);
+        self.pivots(&mut out, &at);
+        self.pivot_names(&mut out, scale, &at);
         self.payload(&mut out, &at);
         self.foot(&mut out, scale, height, &caption);
         out.push_str("</svg>\n");
@@ -154,11 +155,8 @@ impl ArmSketch {
         }
     }
 
-    /// Draws the joints at their positions in the deformed arm. Joints at the same position share one label.
-    fn pivots(&self, out: &mut String, scale: f64, at: &impl Fn(Place) -> (f64, f64)) {
-        // labels are above the thickest link
-        let raised = 9.0 + self.tubes.iter().map(|t| t.size_m / 2.0 * scale).fold(8.0, f64::max);
-        let mut labels: Vec<((f64, f64), Vec<&str>)> = Vec::new();
+    /// Draws the joints at their positions in the deformed arm.
+    fn pivots(&self, out: &mut String, at: &impl Fn(Place) -> (f64, f64)) {
         for pivot in &self.pivots {
             let (x, y) = at(displaced(pivot.at, self.factor));
             match pivot.axis {
@@ -184,6 +182,15 @@ impl ArmSketch {
                     line(out, (x - dx, y - dy), (x + dx, y + dy), INK, 3.0);
                 }
             }
+        }
+    }
+
+    /// Writes the names of the joints above the undeformed arm. Joints at the same position share one label.
+    fn pivot_names(&self, out: &mut String, scale: f64, at: &impl Fn(Place) -> (f64, f64)) {
+        // labels are above the thickest link
+        let raised = 9.0 + self.tubes.iter().map(|t| t.size_m / 2.0 * scale).fold(8.0, f64::max);
+        let mut labels: Vec<((f64, f64), Vec<&str>)> = Vec::new();
+        for pivot in &self.pivots {
             let (x, y) = at(pivot.at.0);
             match labels.iter_mut().find(|((lx, ly), _)| libm::hypot(lx - x, ly - y) < 24.0) {
                 Some((_, names)) => names.push(&pivot.name),
