@@ -66,7 +66,7 @@ pub(crate) fn size(
     design: Option<&str>,
 ) -> PyResult<(String, Vec<String>)> {
     let parts = &catalogs.parts;
-    let (study, _) = study.study(parts)?;
+    let (study, _) = py.detach(|| study.study(parts))?;
     let rows = py.detach(|| sizing_of(&study, design, parts)).map_err(errors::refused)?;
     Ok((serde_json::to_string(&rows).map_err(errors::usage)?, sizing_remarks(&study, &rows, parts)))
 }
@@ -96,7 +96,7 @@ pub(crate) fn capacity(
     if cases.is_some() || limits.is_some() {
         return Err(errors::usage("cases and limits are for arms; a study has its own poses and drives"));
     }
-    let (study, _) = asked.study(parts)?;
+    let (study, _) = py.detach(|| asked.study(parts))?;
     let found = py.detach(|| capacity_of(&study, design, parts)).map_err(errors::refused)?;
     let mut json = found.to_json();
     json["remarks"] = found.remarks.iter().chain(&study.remarks).cloned().collect();
@@ -105,9 +105,15 @@ pub(crate) fn capacity(
 
 /// The arm of a design and the cases in which it is judged.
 #[pyfunction]
-pub(crate) fn design(catalogs: &Catalogs, study: Source, id: &str) -> PyResult<(String, String)> {
-    let (study, _) = study.study(&catalogs.parts)?;
-    let (arm, cases) = arm_of_design(&study, id, &catalogs.parts).map_err(errors::refused)?;
+pub(crate) fn design(
+    py: Python<'_>,
+    catalogs: &Catalogs,
+    study: Source,
+    id: &str,
+) -> PyResult<(String, String)> {
+    let parts = &catalogs.parts;
+    let (study, _) = py.detach(|| study.study(parts))?;
+    let (arm, cases) = py.detach(|| arm_of_design(&study, id, parts)).map_err(errors::refused)?;
     let cases: Vec<Value> = cases.iter().map(|case| case.to_json(&arm.driven_joints())).collect();
     Ok((arm.to_json().to_string(), Value::Array(cases).to_string()))
 }
@@ -155,7 +161,8 @@ pub(crate) fn reconcile(
 ) -> PyResult<Reconciled> {
     let mut read = Vec::new();
     for folder in &campaigns {
-        read.push(Campaign::read(folder, &catalogs.parts).map_err(errors::input)?);
+        let campaign = py.detach(|| Campaign::read(folder, &catalogs.parts));
+        read.push(campaign.map_err(errors::input)?);
     }
     if read.is_empty() {
         return Err(errors::usage("give the folder of a campaign"));

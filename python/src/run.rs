@@ -71,7 +71,8 @@ pub(crate) fn run(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Found> {
     let parts = catalogs.parts.clone();
-    let (study, text) = study.study(&parts)?;
+    // a study of many parts takes a while to read
+    let (study, text) = py.detach(|| study.study(&parts))?;
     let time_limit = time_limit_s.map(Duration::try_from_secs_f64).transpose().map_err(errors::usage)?;
     let wish = SearchWish {
         method: method.map(search_method).transpose()?,
