@@ -16,6 +16,9 @@ from .errors import FileError, InputError, UsageError
 
 Source = Tuple[str, Optional[str]]
 
+#: What may stand before the text of a file: blanks, and a byte order mark.
+BLANK = "\ufeff \t\r\n"
+
 
 @lru_cache(maxsize=None)
 def _builtin() -> Catalogs:
@@ -51,7 +54,7 @@ def source(value: Any, what: str) -> Source:
     if isinstance(value, os.PathLike):
         return path(value), None
     if isinstance(value, str):
-        return (what, value) if value.lstrip()[:1] in ("{", "[") else (path(value), None)
+        return (what, value) if value.lstrip(BLANK)[:1] in ("{", "[") else (path(value), None)
     try:
         return what, json.dumps(value, default=plain, indent=1, allow_nan=False)
     except ValueError:

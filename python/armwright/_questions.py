@@ -13,7 +13,7 @@ import numpy as np
 
 from . import _armwright
 from ._armwright import Catalogs
-from ._input import catalogs_or_builtin, finite, path, source, vector, whole
+from ._input import BLANK, catalogs_or_builtin, finite, path, source, vector, whole
 from .errors import UsageError
 from .table import Prediction, Table
 
@@ -256,7 +256,7 @@ def from_urdf(
         given = source({"joints": {joint: keys(value) for joint, value in stiffness.items()}}, "stiffness")
     elif stiffness is not None:
         given = source(stiffness, "stiffness")
-    is_text = isinstance(file, str) and file.lstrip("\ufeff \t\r\n").startswith("<")
+    is_text = isinstance(file, str) and file.lstrip(BLANK).startswith("<")
     robot = ("urdf", str(file)) if is_text else (path(file), None)
     arm, report = _armwright.from_urdf(catalogs_or_builtin(catalogs), robot, tip, given)
     return {**json.loads(arm), "provenance": json.loads(report)}

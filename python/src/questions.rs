@@ -1,7 +1,7 @@
 //! Questions that are answered at once, and reconciliation.
 
 use crate::catalogs::Catalogs;
-use crate::conduct::workers;
+use crate::conduct::{pooled, workers};
 use crate::errors;
 use crate::source::Source;
 use armwright::arm::read_load_cases;
@@ -41,14 +41,14 @@ pub(crate) fn analyze(
         damping,
         frequencies_hz,
     });
-    Ok(py.detach(|| {
+    pooled(py, || {
         let solve = |case| Analysis::of(&arm, case, modes, harmonic.as_ref());
         let solved: Vec<Analysis> = cases.into_iter().map(solve).collect();
         let ignored = ignored_words(&arm).map_or(String::new(), |words| format!("  {words}\n"));
         let json = Value::Array(solved.iter().map(|one| one.to_json(&arm)).collect()).to_string();
         let texts = solved.iter().map(|one| one.to_text(&arm) + &ignored).collect();
         (json, texts, arm_remarks(&arm, &catalogs.parts))
-    }))
+    })
 }
 
 #[pyfunction]
@@ -66,8 +66,8 @@ pub(crate) fn size(
     design: Option<&str>,
 ) -> PyResult<(String, Vec<String>)> {
     let parts = &catalogs.parts;
-    let (study, _) = py.detach(|| study.study(parts))?;
-    let rows = py.detach(|| sizing_of(&study, design, parts)).map_err(errors::refused)?;
+    let (study, _) = pooled(py, || study.study(parts))??;
+    let rows = pooled(py, || sizing_of(&study, design, parts))?.map_err(errors::refused)?;
     Ok((serde_json::to_string(&rows).map_err(errors::usage)?, sizing_remarks(&study, &rows, parts)))
 }
 
@@ -90,14 +90,14 @@ pub(crate) fn capacity(
         let limits = limits.or_else(|| asked.beside("import.json"));
         let [cases, limits] = [cases, limits].map(|source| source.map(|s| s.document()).transpose());
         let (cases, limits) = (cases?, limits?);
-        let found = py.detach(|| capacity_of_arm(&arm, cases, limits, parts)).map_err(errors::refused)?;
+        let found = pooled(py, || capacity_of_arm(&arm, cases, limits, parts))?.map_err(errors::refused)?;
         return Ok(found.to_json().to_string());
     }
     if cases.is_some() || limits.is_some() {
         return Err(errors::usage("cases and limits are for arms; a study has its own poses and drives"));
     }
-    let (study, _) = py.detach(|| asked.study(parts))?;
-    let found = py.detach(|| capacity_of(&study, design, parts)).map_err(errors::refused)?;
+    let (study, _) = pooled(py, || asked.study(parts))??;
+    let found = pooled(py, || capacity_of(&study, design, parts))?.map_err(errors::refused)?;
     let mut json = found.to_json();
     json["remarks"] = found.remarks.iter().chain(&study.remarks).cloned().collect();
     Ok(json.to_string())
@@ -112,8 +112,8 @@ pub(crate) fn design(
     id: &str,
 ) -> PyResult<(String, String)> {
     let parts = &catalogs.parts;
-    let (study, _) = py.detach(|| study.study(parts))?;
-    let (arm, cases) = py.detach(|| arm_of_design(&study, id, parts)).map_err(errors::refused)?;
+    let (study, _) = pooled(py, || study.study(parts))??;
+    let (arm, cases) = pooled(py, || arm_of_design(&study, id, parts))?.map_err(errors::refused)?;
     let cases: Vec<Value> = cases.iter().map(|case| case.to_json(&arm.driven_joints())).collect();
     Ok((arm.to_json().to_string(), Value::Array(cases).to_string()))
 }
@@ -135,7 +135,7 @@ pub(crate) fn from_urdf(
 /// The files of a study of the paper, by name.
 #[pyfunction]
 pub(crate) fn paper(py: Python<'_>, catalogs: &Catalogs, name: &str) -> PyResult<Vec<(String, String)>> {
-    let output = py.detach(|| armwright::paper::run(name, &catalogs.parts)).map_err(errors::usage)?;
+    let output = pooled(py, || armwright::paper::run(name, &catalogs.parts))?.map_err(errors::usage)?;
     let text = |(name, bytes): (String, Vec<u8>)| (name, String::from_utf8_lossy(&bytes).into_owned());
     Ok(output.files.into_iter().map(text).collect())
 }
@@ -161,7 +161,7 @@ pub(crate) fn reconcile(
 ) -> PyResult<Reconciled> {
     let mut read = Vec::new();
     for folder in &campaigns {
-        let campaign = py.detach(|| Campaign::read(folder, &catalogs.parts));
+        let campaign = pooled(py, || Campaign::read(folder, &catalogs.parts))?;
         read.push(campaign.map_err(errors::input)?);
     }
     if read.is_empty() {
@@ -214,6 +214,6 @@ pub(crate) fn predict(
     campaign: PathBuf,
 ) -> PyResult<(String, Option<String>)> {
     let files = Files { arm: &arm, readings: &readings, campaign: &campaign };
-    let found = py.detach(|| predict_files(&files, &catalogs.parts)).map_err(errors::input)?;
+    let found = pooled(py, || predict_files(&files, &catalogs.parts))?.map_err(errors::input)?;
     Ok((found.csv, found.remark))
 }

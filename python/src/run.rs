@@ -71,15 +71,15 @@ pub(crate) fn run(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Found> {
     let parts = catalogs.parts.clone();
+    let pool = workers(threads)?;
     // a study of many parts takes a while to read
-    let (study, text) = py.detach(|| study.study(&parts))?;
+    let (study, text) = py.detach(|| pool.install(|| study.study(&parts)))?;
     let time_limit = time_limit_s.map(Duration::try_from_secs_f64).transpose().map_err(errors::usage)?;
     let wish = SearchWish {
         method: method.map(search_method).transpose()?,
         has_gap: gap_percent.is_some(),
         has_time_limit: time_limit.is_some(),
     };
-    let pool = workers(threads)?;
     let told = Mutex::new(Told::default());
     let tell = |py: Python<'_>, elapsed: Duration| match &progress {
         Some(call) => call.call1(py, (progress_dict(py, &read(&told), elapsed)?,)).map(drop),

@@ -168,8 +168,8 @@ def test_faulty_catalogs_name_every_row(tmp_path):
 def test_catalogs_of_a_folder_go_to_another_process(tmp_path):
     import pickle
 
-    row = "own steel,7850,2.1e11,8.1e10,0.3,a test,third party\n"
-    (tmp_path / "materials.csv").write_text("name,density_kg_m3,e_pa,g_pa,poisson,source,confidence\n" + row)
+    row = "own steel,metal,7850,2.1e11,8.1e10,0.3,a test,third party\n"
+    (tmp_path / "materials.csv").write_text("name,class,density_kg_m3,e_pa,g_pa,poisson,source,confidence\n" + row)
     catalogs = armwright.Catalogs.load(tmp_path)
     again = pickle.loads(pickle.dumps(catalogs))
     assert again.folder == tmp_path and "own steel" in again.materials
