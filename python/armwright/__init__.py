@@ -15,7 +15,9 @@ from ._armwright import Catalogs, __version__
 from ._front import Front
 from ._mujoco import from_mujoco
 from ._questions import (
+    Analysis,
     Outcome,
+    Sizing,
     analyze,
     capacity,
     design,
@@ -43,6 +45,7 @@ from .errors import (
 from .table import Prediction, Table
 
 __all__ = [
+    "Analysis",
     "ArmwrightError",
     "CatalogError",
     "Catalogs",
@@ -56,6 +59,7 @@ __all__ = [
     "OutOfTimeError",
     "Outcome",
     "Prediction",
+    "Sizing",
     "Table",
     "UsageError",
     "__version__",

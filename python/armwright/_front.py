@@ -18,7 +18,8 @@ class Front(Table):
     """
 
     facts: Dict[str, Any]
-    """What is known of the search, by the keys of ``run.json``: ``status``, ``designs_total``, ``gap``, ``elapsed_s`` and others."""
+    """What is known of the search, by the keys of ``run.json``: ``status``, ``designs_total``, ``gap``, ``elapsed_s``, ``remarks``,
+    ``caveats``, ``not_checked`` and others. ``search_reason`` says why this search was chosen."""
     by_material: Dict[str, Front]
     """The fronts of the designs whose chosen links are all of one material. An exact search has them only if it found the
     whole front."""
@@ -36,6 +37,19 @@ class Front(Table):
     def status(self) -> str:
         """How the search ended: ``complete``, ``certified``, ``partial`` or ``interrupted``."""
         return self.facts["status"]
+
+    @property
+    def remarks(self) -> List[str]:
+        """What a reader of the numbers should know, in sentences: what is left out of them, lives and backlash of gears, given
+        drives that are too weak, parts whose figures are not their vendor's, and parts that could not be checked."""
+        caveats = self.facts["caveats"]
+        return [*self.facts["remarks"], *([caveats] if caveats else []), *self.facts["not_checked"]]
+
+    @property
+    def picks(self) -> Dict[str, str]:
+        """The ``design_id`` of the picks by their names: ``lightest``, ``stiffest``, ``highest mode`` and ``knee``, which is nearest
+        to the best of all three. The front of one material has none."""
+        return {name: pick["design_id"] for pick in self.facts["picks"] for name in pick["names"]}
 
     @property
     def ids(self) -> List[str]:
@@ -56,7 +70,7 @@ class Front(Table):
         """The cases in which a design is judged, for :func:`armwright.analyze`."""
         return _questions.design(self._study, design_id, catalogs=self._catalogs)[1]
 
-    def size(self, design_id: str) -> List[Dict[str, Any]]:
+    def size(self, design_id: str) -> _questions.Sizing:
         """The sizing of the joints of a design, as :func:`armwright.size` gives it."""
         return _questions.size(self._study, design=design_id, catalogs=self._catalogs)
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
-from typing import Any, Callable, Dict, Optional, Tuple
+from typing import Any, Callable, Dict, Optional
 
 from . import _armwright
 from ._armwright import Catalogs
 from ._front import Front
-from ._input import catalogs_or_builtin, source
-from ._questions import Described, studies
+from ._input import catalogs_or_builtin, finite, source, whole
+from ._questions import Described
+from .errors import UsageError
 
 
 class Interrupted(KeyboardInterrupt):
@@ -48,15 +48,22 @@ def run(
     """
     held = catalogs_or_builtin(catalogs)
     asked = source(study, "study")
+    if progress is not None and not callable(progress):
+        raise TypeError(f"progress is {progress!r}: give a function of one argument")
+    if gap_percent is not None and not 0 <= gap_percent < 100:
+        raise UsageError(f"gap_percent is {gap_percent}: give a percentage from 0 to below 100")
+    if time_limit_s is not None:
+        time_limit_s = finite(time_limit_s, "time_limit_s", 0)
+    threads = whole(threads, "threads")
 
     def front(found: Any) -> Front:
-        (columns, rows), materials, facts = found
+        (columns, rows), materials, facts, text = found
         facts = json.loads(facts)
-        by_material = {name: Front(c, r, facts, asked_again, held) for name, (c, r) in materials}
-        return Front(columns, rows, facts, asked_again, held, by_material)
+        # a file may change: the designs of this front are those of the study as it was read
+        of_material = {**facts, "picks": []}
+        by_material = {name: Front(c, r, of_material, text, held) for name, (c, r) in materials}
+        return Front(columns, rows, facts, text, held, by_material)
 
-    # a file may change: the designs of this front are those of the study as it was read
-    asked_again = _as_read(asked)
     try:
         return front(_armwright.run(held, asked, search, gap_percent, time_limit_s, threads, progress))
     except KeyboardInterrupt as stopped:
@@ -65,11 +72,3 @@ def run(
         if found is not None and found[0][1]:
             interrupted.front = front(found)
         raise interrupted from None
-
-
-def _as_read(asked: Tuple[str, Optional[str]]) -> Any:
-    name, text = asked
-    if text is not None:
-        return text
-    path = Path(name)
-    return path.read_text(encoding="utf-8") if path.is_file() and name not in studies() else name

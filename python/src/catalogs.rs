@@ -9,19 +9,26 @@ use std::sync::Arc;
 #[pyclass(module = "armwright", frozen)]
 pub(crate) struct Catalogs {
     pub(crate) parts: Arc<armwright::catalog::Catalogs>,
+    /// The folder that was laid over the built-in rows.
+    folder: Option<PathBuf>,
 }
 
 #[pymethods]
 impl Catalogs {
     #[staticmethod]
     fn builtin() -> Self {
-        Self { parts: Arc::new(armwright::catalog::Catalogs::builtin()) }
+        Self { parts: Arc::new(armwright::catalog::Catalogs::builtin()), folder: None }
     }
 
     #[staticmethod]
     fn load(folder: PathBuf) -> PyResult<Self> {
         let parts = armwright::catalog::Catalogs::load(Some(&folder)).map_err(catalog_fault)?;
-        Ok(Self { parts: Arc::new(parts) })
+        Ok(Self { parts: Arc::new(parts), folder: Some(folder) })
+    }
+
+    #[getter]
+    fn folder(&self) -> Option<PathBuf> {
+        self.folder.clone()
     }
 
     #[getter]

@@ -20,6 +20,13 @@ pub(crate) fn workers(threads: usize) -> PyResult<ThreadPool> {
     pool.build().map_err(errors::usage)
 }
 
+/// Does short work without the interpreter's lock, on workers of its own: the workers that the library would else share by all
+/// calls are missing in a process that Python forks, and the work would wait for them without end.
+pub(crate) fn pooled<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    let pool = workers(0)?;
+    Ok(py.detach(|| pool.install(work)))
+}
+
 /// Does the work on another thread while this one answers signals every 50 ms and calls `tell` every 200 ms and at the end.
 /// An exception of either sets the flag that the work gets, and is returned with what the work then had.
 pub(crate) fn conduct<T: Send>(

@@ -30,9 +30,26 @@ fn faulty(class: &str, faults: Faults) -> PyErr {
     exception(class, message, Some(faults.0.into_iter().map(row).collect()))
 }
 
+/// What messages call options and verbs of the program, and what a call has in their place.
+const IN_PYTHON: [(&str, &str); 8] = [
+    ("--search exact", "search=\"exact\""),
+    ("--search", "search"),
+    ("--time-limit", "time_limit_s"),
+    ("--gap", "gap_percent"),
+    ("--design", "design"),
+    ("--limits FILE", "limits"),
+    ("--cases FILE", "cases"),
+    ("`armwright run` has it, no other verb", "armwright.paper has it"),
+];
+
+/// A message of the program in the words of a call.
+fn in_python(words: impl ToString) -> String {
+    IN_PYTHON.iter().fold(words.to_string(), |words, (theirs, ours)| words.replace(theirs, ours))
+}
+
 /// The words or options of a call are wrong.
 pub(crate) fn usage(words: impl ToString) -> PyErr {
-    exception("UsageError", words.to_string(), None)
+    exception("UsageError", in_python(words), None)
 }
 
 /// An input file is faulty or cannot be read.
@@ -72,7 +89,7 @@ pub(crate) fn refused(refusal: Refusal) -> PyErr {
         Refusal::Unknown(words) => usage(words),
         Refusal::Unreadable(words) => file(words),
         Refusal::Faulty(all) => faults(all),
-        Refusal::EmptySpace(words) => exception("EmptySpaceError", words, None),
-        Refusal::Infeasible(words) => exception("InfeasibleError", words, None),
+        Refusal::EmptySpace(words) => exception("EmptySpaceError", in_python(words), None),
+        Refusal::Infeasible(words) => exception("InfeasibleError", in_python(words), None),
     }
 }

@@ -1,7 +1,7 @@
 //! Questions that are answered at once, and reconciliation.
 
 use crate::catalogs::Catalogs;
-use crate::conduct::workers;
+use crate::conduct::{pooled, workers};
 use crate::errors;
 use crate::source::Source;
 use armwright::arm::read_load_cases;
@@ -9,7 +9,10 @@ use armwright::interchange::import_urdf;
 use armwright::reconcile::predict_files::{Files, predict_files};
 use armwright::reconcile::{Campaign, Outcome};
 use armwright::report::analysis::{Analysis, Harmonic};
-use armwright::study::{arm_of_design, capacity_of, named, names, sizing_of};
+use armwright::study::{
+    arm_of_design, arm_remarks, capacity_of, capacity_of_arm, ignored_words, named, names, sizing_of,
+    sizing_remarks,
+};
 use pyo3::prelude::*;
 use serde_json::Value;
 use std::path::PathBuf;
@@ -19,6 +22,9 @@ use std::time::Duration;
 /// Force \[N\], damping ratio, frequencies \[Hz\].
 type HarmonicOf = ([f64; 3], f64, Vec<f64>);
 
+/// The results of every case in JSON, each in words, and remarks on all of them.
+type Analyzed = (String, Vec<String>, Vec<String>);
+
 #[pyfunction]
 pub(crate) fn analyze(
     py: Python<'_>,
@@ -27,7 +33,7 @@ pub(crate) fn analyze(
     cases: Source,
     modes: usize,
     harmonic: Option<HarmonicOf>,
-) -> PyResult<String> {
+) -> PyResult<Analyzed> {
     let arm = arm.arm(&catalogs.parts)?;
     let cases = read_load_cases(cases.document()?, &arm.driven_joints()).map_err(errors::faults)?;
     let harmonic = harmonic.map(|(force_n, damping, frequencies_hz)| Harmonic {
@@ -35,10 +41,14 @@ pub(crate) fn analyze(
         damping,
         frequencies_hz,
     });
-    Ok(py.detach(|| {
-        let solve = |case| Analysis::of(&arm, case, modes, harmonic.as_ref()).to_json(&arm);
-        Value::Array(cases.into_iter().map(solve).collect()).to_string()
-    }))
+    pooled(py, || {
+        let solve = |case| Analysis::of(&arm, case, modes, harmonic.as_ref());
+        let solved: Vec<Analysis> = cases.into_iter().map(solve).collect();
+        let ignored = ignored_words(&arm).map_or(String::new(), |words| format!("  {words}\n"));
+        let json = Value::Array(solved.iter().map(|one| one.to_json(&arm)).collect()).to_string();
+        let texts = solved.iter().map(|one| one.to_text(&arm) + &ignored).collect();
+        (json, texts, arm_remarks(&arm, &catalogs.parts))
+    })
 }
 
 #[pyfunction]
@@ -47,35 +57,63 @@ pub(crate) fn driven_joints(catalogs: &Catalogs, arm: Source) -> PyResult<Vec<St
     Ok(arm.driven_joint_names().into_iter().map(String::from).collect())
 }
 
+/// The rows of the sizing in JSON, and remarks on them.
 #[pyfunction]
 pub(crate) fn size(
     py: Python<'_>,
     catalogs: &Catalogs,
     study: Source,
     design: Option<&str>,
-) -> PyResult<String> {
-    let study = study.study(&catalogs.parts)?;
-    let rows = py.detach(|| sizing_of(&study, design, &catalogs.parts)).map_err(errors::refused)?;
-    serde_json::to_string(&rows).map_err(errors::usage)
+) -> PyResult<(String, Vec<String>)> {
+    let parts = &catalogs.parts;
+    let (study, _) = pooled(py, || study.study(parts))??;
+    let rows = pooled(py, || sizing_of(&study, design, parts))?.map_err(errors::refused)?;
+    Ok((serde_json::to_string(&rows).map_err(errors::usage)?, sizing_remarks(&study, &rows, parts)))
 }
 
+/// The capacity of a design of a study, or of an arm, which has cases and limits.
 #[pyfunction]
 pub(crate) fn capacity(
     py: Python<'_>,
     catalogs: &Catalogs,
-    study: Source,
+    asked: Source,
     design: Option<&str>,
+    cases: Option<Source>,
+    limits: Option<Source>,
 ) -> PyResult<String> {
-    let study = study.study(&catalogs.parts)?;
-    let found = py.detach(|| capacity_of(&study, design, &catalogs.parts)).map_err(errors::refused)?;
-    Ok(found.to_json().to_string())
+    let parts = &catalogs.parts;
+    if asked.is_arm() {
+        if design.is_some() {
+            return Err(errors::usage("this is an arm; a design is one of a study"));
+        }
+        let arm = asked.arm(parts)?;
+        let limits = limits.or_else(|| asked.beside("import.json"));
+        let [cases, limits] = [cases, limits].map(|source| source.map(|s| s.document()).transpose());
+        let (cases, limits) = (cases?, limits?);
+        let found = pooled(py, || capacity_of_arm(&arm, cases, limits, parts))?.map_err(errors::refused)?;
+        return Ok(found.to_json().to_string());
+    }
+    if cases.is_some() || limits.is_some() {
+        return Err(errors::usage("cases and limits are for arms; a study has its own poses and drives"));
+    }
+    let (study, _) = pooled(py, || asked.study(parts))??;
+    let found = pooled(py, || capacity_of(&study, design, parts))?.map_err(errors::refused)?;
+    let mut json = found.to_json();
+    json["remarks"] = found.remarks.iter().chain(&study.remarks).cloned().collect();
+    Ok(json.to_string())
 }
 
 /// The arm of a design and the cases in which it is judged.
 #[pyfunction]
-pub(crate) fn design(catalogs: &Catalogs, study: Source, id: &str) -> PyResult<(String, String)> {
-    let study = study.study(&catalogs.parts)?;
-    let (arm, cases) = arm_of_design(&study, id, &catalogs.parts).map_err(errors::refused)?;
+pub(crate) fn design(
+    py: Python<'_>,
+    catalogs: &Catalogs,
+    study: Source,
+    id: &str,
+) -> PyResult<(String, String)> {
+    let parts = &catalogs.parts;
+    let (study, _) = pooled(py, || study.study(parts))??;
+    let (arm, cases) = pooled(py, || arm_of_design(&study, id, parts))?.map_err(errors::refused)?;
     let cases: Vec<Value> = cases.iter().map(|case| case.to_json(&arm.driven_joints())).collect();
     Ok((arm.to_json().to_string(), Value::Array(cases).to_string()))
 }
@@ -84,13 +122,12 @@ pub(crate) fn design(catalogs: &Catalogs, study: Source, id: &str) -> PyResult<(
 #[pyfunction]
 pub(crate) fn from_urdf(
     catalogs: &Catalogs,
-    file: &str,
-    text: &str,
+    robot: Source,
     tip: &str,
     stiffness: Option<Source>,
 ) -> PyResult<(String, String)> {
     let stiffness = stiffness.map(|source| source.document()).transpose()?;
-    let made = import_urdf(file, text, tip, stiffness, &catalogs.parts);
+    let made = import_urdf(robot.name(), &robot.text()?, tip, stiffness, &catalogs.parts);
     let (arm, report) = made.map_err(errors::faults)?;
     Ok((arm.to_json().to_string(), report.to_string()))
 }
@@ -98,7 +135,7 @@ pub(crate) fn from_urdf(
 /// The files of a study of the paper, by name.
 #[pyfunction]
 pub(crate) fn paper(py: Python<'_>, catalogs: &Catalogs, name: &str) -> PyResult<Vec<(String, String)>> {
-    let output = py.detach(|| armwright::paper::run(name, &catalogs.parts)).map_err(errors::usage)?;
+    let output = pooled(py, || armwright::paper::run(name, &catalogs.parts))?.map_err(errors::usage)?;
     let text = |(name, bytes): (String, Vec<u8>)| (name, String::from_utf8_lossy(&bytes).into_owned());
     Ok(output.files.into_iter().map(text).collect())
 }
@@ -124,7 +161,8 @@ pub(crate) fn reconcile(
 ) -> PyResult<Reconciled> {
     let mut read = Vec::new();
     for folder in &campaigns {
-        read.push(Campaign::read(folder, &catalogs.parts).map_err(errors::input)?);
+        let campaign = pooled(py, || Campaign::read(folder, &catalogs.parts))?;
+        read.push(campaign.map_err(errors::input)?);
     }
     if read.is_empty() {
         return Err(errors::usage("give the folder of a campaign"));
@@ -176,6 +214,6 @@ pub(crate) fn predict(
     campaign: PathBuf,
 ) -> PyResult<(String, Option<String>)> {
     let files = Files { arm: &arm, readings: &readings, campaign: &campaign };
-    let found = py.detach(|| predict_files(&files, &catalogs.parts)).map_err(errors::input)?;
+    let found = pooled(py, || predict_files(&files, &catalogs.parts))?.map_err(errors::input)?;
     Ok((found.csv, found.remark))
 }

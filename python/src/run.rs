@@ -7,12 +7,14 @@ use crate::source::Source;
 use armwright::catalog;
 use armwright::exact::Known;
 use armwright::pareto::hypervolume::front_hypervolume;
+use armwright::report::facts::constraint_words;
 use armwright::report::front_table::FrontTable;
+use armwright::report::picks::{Pick, designs, picks};
 use armwright::search::Status;
 use armwright::space::ArmProblem;
 use armwright::study::{
-    Extent, Refusal, SearchMethod, SearchWish, Study, StudyOutcome, front_table, run_exact, run_study,
-    why_infeasible,
+    Extent, Refusal, SearchMethod, SearchWish, Study, StudyOutcome, caveats_on, effects_json, front_table,
+    judged_cases, run_exact, run_study, table_and_remarks, why_infeasible,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -24,8 +26,8 @@ use std::time::{Duration, Instant};
 /// A table: its columns and rows.
 type Table = (Vec<String>, Vec<Vec<String>>);
 
-/// What a search found, as Python gets it: the front, the front of each material, and facts in JSON.
-type Found = (Table, Vec<(String, Table)>, String);
+/// What a search found, as Python gets it: the front, the front of each material, facts in JSON, and the study's text.
+type Found = (Table, Vec<(String, Table)>, String, String);
 
 /// What a search tells while it runs.
 #[derive(Debug, Clone, Copy, Default)]
@@ -38,7 +40,11 @@ struct Told {
 /// How a study is searched.
 struct Asked<'a> {
     study: &'a Study,
+    /// Text of the study's file.
+    text: &'a str,
     catalogs: &'a catalog::Catalogs,
+    /// Why this method was chosen, if an estimate chose it.
+    why: Option<String>,
     method: SearchMethod,
     /// Gap at which an exact search may end, as a fraction.
     gap: f64,
@@ -65,14 +71,15 @@ pub(crate) fn run(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Found> {
     let parts = catalogs.parts.clone();
-    let study = study.study(&parts)?;
+    let pool = workers(threads)?;
+    // a study of many parts takes a while to read
+    let (study, text) = py.detach(|| pool.install(|| study.study(&parts)))?;
     let time_limit = time_limit_s.map(Duration::try_from_secs_f64).transpose().map_err(errors::usage)?;
     let wish = SearchWish {
         method: method.map(search_method).transpose()?,
         has_gap: gap_percent.is_some(),
         has_time_limit: time_limit.is_some(),
     };
-    let pool = workers(threads)?;
     let told = Mutex::new(Told::default());
     let tell = |py: Python<'_>, elapsed: Duration| match &progress {
         Some(call) => call.call1(py, (progress_dict(py, &read(&told), elapsed)?,)).map(drop),
@@ -80,9 +87,9 @@ pub(crate) fn run(
     };
     let (found, raised) = conduct(py, tell, |stop| {
         pool.install(|| {
-            let (method, _) = wish.method(&study, &parts).map_err(NoFront::Refused)?;
-            let gap = gap_percent.map_or(study.gap, |percent| percent / 100.0);
-            let asked = Asked { study: &study, catalogs: &parts, method, gap, time_limit };
+            let (method, why) = wish.method(&study, &parts).map_err(NoFront::Refused)?;
+            let gap = gap_percent.map_or(study.gap, |percent| percent * 0.01);
+            let asked = Asked { study: &study, text: &text, catalogs: &parts, why, method, gap, time_limit };
             find(&asked, stop, &told)
         })
     });
@@ -157,8 +164,8 @@ fn visit_all(asked: &Asked, stop: &AtomicBool, told: &Mutex<Told>) -> Result<Fou
     if outcome.sweep.status == Status::Infeasible {
         return Err(infeasible(asked, stop, None));
     }
-    let facts = facts(study, &outcome, started, "exhaustive");
-    Ok(tables(study, catalogs, &outcome, &facts))
+    let facts = facts(asked, &outcome, started, "exhaustive");
+    Ok(tables(asked, study, &outcome, facts))
 }
 
 /// Finds the front without visiting every design.
@@ -177,22 +184,23 @@ fn search_exactly(asked: &Asked, stop: &AtomicBool, told: &Mutex<Told>) -> Resul
         Status::Partial if outcome.front.is_empty() => return Err(NoFront::OutOfTime),
         _ => {}
     }
-    let mut facts = facts(study, outcome, started, "exact");
+    let mut facts = facts(asked, outcome, started, "exact");
     facts["boxes"] = json!(found.boxes[0]);
     facts["boxes_open"] = json!(found.boxes[1]);
     facts["gap"] = json!(found.gap);
     facts["ties_listed"] = json!(found.ties_listed);
-    Ok(tables(&found.study, catalogs, outcome, &facts))
+    Ok(tables(asked, &found.study, outcome, facts))
 }
 
-/// The facts of a search, by the keys that `run.json` has for them.
-fn facts(study: &Study, outcome: &StudyOutcome, started: Instant, search: &str) -> Value {
-    let sweep = &outcome.sweep;
+/// The facts of a search, by the keys that `run.json` has for them; `search_reason` is said on the terminal.
+fn facts(asked: &Asked, outcome: &StudyOutcome, started: Instant, search: &str) -> Value {
+    let (study, sweep) = (asked.study, &outcome.sweep);
     json!({
         "study": study.name,
         "question": study.question,
         "status": sweep.status.word(),
         "search": search,
+        "search_reason": asked.why,
         "designs_total": count(sweep.designs_total),
         "designs_evaluated": sweep.designs_evaluated,
         "designs_excluded": count(sweep.designs_excluded),
@@ -204,8 +212,12 @@ fn facts(study: &Study, outcome: &StudyOutcome, started: Instant, search: &str) 
         "boxes_open": null,
         "gap": null,
         "ties_listed": true,
+        "models": {"links": study.space.links.word(), "joints": study.space.joints.word()},
+        "constraints": constraint_words(&study.space.constraints),
+        "cases": judged_cases(study),
+        "effects": effects_json(study),
+        "effects_mass_kg": study.space.effects_mass_kg(),
         "not_checked": study.not_checked,
-        "remarks": study.remarks,
         "tool_version": env!("CARGO_PKG_VERSION"),
     })
 }
@@ -215,12 +227,21 @@ fn count(n: u128) -> Value {
     u64::try_from(n).map_or_else(|_| json!(n as f64), |n| json!(n))
 }
 
-fn tables(study: &Study, catalogs: &catalog::Catalogs, outcome: &StudyOutcome, facts: &Value) -> Found {
-    let problem = ArmProblem::new(&study.space, catalogs);
-    let table = |front| {
-        let FrontTable { columns, rows } = front_table(&problem, catalogs, front);
-        (columns, rows)
-    };
-    let by_material = outcome.by_material.iter().map(|of| (of.name.clone(), table(&of.front)));
-    (table(&outcome.front), by_material.collect(), facts.to_string())
+/// The tables of a search, with what is to be said of them added to the facts. `searched` has the designs of the outcome.
+fn tables(asked: &Asked, searched: &Study, outcome: &StudyOutcome, mut facts: Value) -> Found {
+    let &Asked { study, catalogs, text, .. } = asked;
+    let problem = ArmProblem::new(&searched.space, catalogs);
+    let (front, remarks) = table_and_remarks(study, &problem, catalogs, &outcome.front);
+    facts["remarks"] = json!(remarks);
+    facts["caveats"] = json!(caveats_on(study, catalogs, &front));
+    facts["picks"] = picks(&designs(&front)).iter().map(pick_json).collect();
+    let table = |FrontTable { columns, rows }| (columns, rows);
+    let of_material = |front| table(front_table(&problem, catalogs, front));
+    let by_material = outcome.by_material.iter().map(|of| (of.name.clone(), of_material(&of.front)));
+    (table(front), by_material.collect(), facts.to_string(), text.to_string())
+}
+
+/// A pick by the keys that it has in `run.json`, without what its budget adds there.
+fn pick_json(pick: &Pick) -> Value {
+    json!({"names": pick.names, "design_id": pick.design.design_id, "mass_kg": pick.design.mass_kg})
 }

@@ -18,6 +18,13 @@ LEVER = {
     ],
 }
 
+URDF = """<robot name="two"><link name="base"/>
+  <link name="arm"><inertial><origin xyz="0.4 0 0"/><mass value="2"/>
+    <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link>
+  <link name="hand"/>
+  <joint name="j" type="continuous"><parent link="base"/><child link="arm"/><axis xyz="0 1 0"/></joint>
+  <joint name="f" type="fixed"><parent link="arm"/><child link="hand"/><origin xyz="0.8 0 0"/></joint></robot>"""
+
 
 @pytest.fixture
 def lever():

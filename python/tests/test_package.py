@@ -9,6 +9,7 @@ import time
 import armwright
 import numpy as np
 import pytest
+from conftest import ROOT, URDF
 
 
 def test_a_lever_bears_its_weight(lever):
@@ -38,10 +39,106 @@ def test_all_faults_of_an_arm_are_in_the_exception(lever):
     assert isinstance(raised.value, ValueError)
 
 
-def test_numbers_that_json_lacks_are_a_fault(lever):
+def test_numbers_that_json_lacks_are_faults_with_their_fields(lever):
     lever["chain"][1]["mass_kg"] = float("nan")
-    with pytest.raises(armwright.InputError):
+    lever["chain"][1]["vector_m"] = np.array([1, 0, np.inf])
+    with pytest.raises(armwright.InputError, match="2 faults") as raised:
         armwright.analyze(lever)
+    assert [fault.field for fault in raised.value.faults] == ["chain[1].vector_m[2]", "chain[1].mass_kg"]
+    with pytest.raises(armwright.InputError, match=r"\[0\].pose_deg\[0\]: is nan"):
+        armwright.analyze(lever | {"chain": lever["chain"][:1]}, [float("nan")])
+
+
+def test_what_a_response_cannot_have_is_refused(lever):
+    for wrong in [{"damping": -1}, {"damping": np.nan}, {"response_hz": [-1]}, {"response_hz": [np.inf]}]:
+        with pytest.raises(armwright.UsageError, match=next(iter(wrong))):
+            armwright.analyze(lever, response_n=[0, 0, 1], **wrong)
+    for force_n in [[0, 0, np.nan], [1, 0]]:
+        with pytest.raises(armwright.UsageError, match="response_n"):
+            armwright.analyze(lever, response_n=force_n)
+    with pytest.raises(TypeError, match="response_hz without response_n"):
+        armwright.analyze(lever, response_hz=[1])
+    with pytest.raises(armwright.UsageError, match="modes"):
+        armwright.analyze(lever, modes=-1)
+
+
+def test_cases_do_not_silently_lose_a_load(lever):
+    cases = [{"name": "level", "pose_deg": [0]}]
+    for argument in [{"pose": [0]}, {"payload_kg": 3}, {"force_n": [0, 0, 1]}, {"links": "rigid"}]:
+        with pytest.raises(TypeError, match=next(iter(argument))):
+            armwright.analyze(lever, cases=cases, **argument)
+    with pytest.raises(armwright.UsageError, match="cases and limits are for arms"):
+        armwright.capacity("light-arm", cases=cases)
+    with pytest.raises(armwright.UsageError, match="give limits with"):
+        armwright.capacity(lever)
+
+
+def test_what_a_search_cannot_have_is_refused(bench_arm):
+    for wrong in [{"gap_percent": np.nan}, {"gap_percent": -1}, {"gap_percent": 100}, {"time_limit_s": -1},
+                  {"time_limit_s": np.nan}, {"threads": -1}]:  # fmt: skip
+        with pytest.raises(armwright.UsageError, match=next(iter(wrong))):
+            armwright.run(bench_arm, **wrong)
+    with pytest.raises(TypeError, match="progress"):
+        armwright.run(bench_arm, progress=3)
+    # messages have the words of a call and not those of the command line
+    with pytest.raises(armwright.UsageError, match='^gap_percent goes with search="exact"'):
+        armwright.run(bench_arm, search="exhaustive", gap_percent=1)
+    with pytest.raises(armwright.UsageError, match="armwright.paper has it"):
+        armwright.run("paper-table1")
+    with pytest.raises(armwright.UsageError, match="armwright.paper"):
+        armwright.study("paper-table1")
+    with pytest.raises(armwright.UsageError, match="compare-materials"):
+        armwright.study("compare-material")
+
+
+def test_a_file_of_another_kind_is_said_to_be_what_it_is(bench_arm):
+    arm = ROOT / "examples" / "measured-arm" / "arm.json"
+    for ask in [armwright.run, armwright.size]:
+        with pytest.raises(armwright.InputError, match="is an arm, and a study is asked for") as raised:
+            ask(arm)
+        assert len(raised.value.faults) == 1
+    with pytest.raises(armwright.InputError, match="is a study, and an arm is asked for"):
+        armwright.analyze(bench_arm)
+    # a study that lacks its poses is a faulty study, and no arm
+    del bench_arm["poses"]
+    with pytest.raises(armwright.InputError, match="poses"):
+        armwright.run(bench_arm)
+
+
+def test_files_of_every_encoding_and_name_are_read_or_refused_as_faults(bench_arm, tmp_path):
+    folder = tmp_path / "Prüfstand 中"
+    folder.mkdir()
+    text = json.dumps(bench_arm)
+    for encoding in ["utf-8", "utf-8-sig"]:
+        path = folder / f"{encoding}.json"
+        path.write_text(text, encoding=encoding)
+        front = armwright.run(path)
+        path.unlink()
+        # the study is the one that was read, whatever became of its file
+        assert front.arm(front.ids[0])["chain"]
+    (folder / "utf-16.json").write_text(text, encoding="utf-16")
+    with pytest.raises(armwright.InputError):
+        armwright.run(folder / "utf-16.json")
+    (folder / "latin.urdf").write_bytes(URDF.replace("two", "zw\xf6lf").encode("latin-1"))
+    with pytest.raises(armwright.InputError, match="latin.urdf"):
+        armwright.from_urdf(folder / "latin.urdf", "hand")
+    with pytest.raises(armwright.FileError, match="not Unicode"):
+        armwright.analyze(os.fsdecode(b"arm-\xff.json"))
+
+
+def test_results_with_remarks_are_the_plain_values_that_they_look_like(lever):
+    import copy
+    import pickle
+
+    solved = armwright.analyze(lever)
+    for again in [pickle.loads(pickle.dumps(solved)), copy.deepcopy(solved), json.loads(json.dumps(solved))]:
+        assert again == solved == dict(solved)
+    assert pickle.loads(pickle.dumps(solved)).text == solved.text
+    front = armwright.run(armwright.study("paper-electric"))
+    again = pickle.loads(pickle.dumps(front))
+    assert again.to_csv() == front.to_csv() and again.arm(again.ids[0]) == front.arm(front.ids[0])
+    sizing = armwright.size("paper-electric")
+    assert json.loads(json.dumps(sizing)) == sizing and pickle.loads(pickle.dumps(sizing)).remarks == sizing.remarks
 
 
 def test_each_reason_has_its_exception(bench_arm, tmp_path):
@@ -66,6 +163,16 @@ def test_faulty_catalogs_name_every_row(tmp_path):
     with pytest.raises(armwright.CatalogError) as raised:
         armwright.Catalogs.load(tmp_path)
     assert raised.value.faults
+
+
+def test_catalogs_of_a_folder_go_to_another_process(tmp_path):
+    import pickle
+
+    row = "own steel,metal,7850,2.1e11,8.1e10,0.3,a test,third party\n"
+    (tmp_path / "materials.csv").write_text("name,class,density_kg_m3,e_pa,g_pa,poisson,source,confidence\n" + row)
+    catalogs = armwright.Catalogs.load(tmp_path)
+    again = pickle.loads(pickle.dumps(catalogs))
+    assert again.folder == tmp_path and "own steel" in again.materials
 
 
 def test_catalogs_are_read_once_and_shared(lever):
@@ -138,21 +245,49 @@ def test_ctrl_c_ends_a_search_and_other_threads_run_meanwhile():
     assert time.monotonic() - started < 120
 
 
-def test_a_campaign_has_a_verdict(tmp_path):
-    from conftest import ROOT
+@pytest.mark.skipif(os.name == "nt", reason="a signal to oneself ends a process on Windows")
+def test_ctrl_c_ends_the_wait_for_a_verdict():
+    timer = threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT))
+    started = time.monotonic()
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        armwright.reconcile(ROOT / "examples" / "measured-arm")
+        # a verdict that came before the signal
+        time.sleep(60)
+    assert time.monotonic() - started < 30
 
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+def test_a_forked_process_answers_too(lever, bench_arm):
+    import multiprocessing
+
+    armwright.run(bench_arm)
+    armwright.size(bench_arm)
+    with multiprocessing.get_context("fork").Pool(2) as pool:
+        sizes = pool.map_async(armwright.size, [bench_arm] * 2).get(timeout=120)
+        solved = pool.map_async(armwright.analyze, [lever] * 4).get(timeout=120)
+        fronts = pool.map_async(_csv, [bench_arm] * 2).get(timeout=120)
+    assert sizes[0] == armwright.size(bench_arm) and solved[0].text
+    assert fronts[0] == fronts[1] == armwright.run(bench_arm).to_csv()
+
+
+def _csv(study):
+    return armwright.run(study).to_csv()
+
+
+def test_threads_ask_at_once(bench_arm):
+    from concurrent.futures import ThreadPoolExecutor
+
+    with ThreadPoolExecutor(4) as pool:
+        fronts = list(pool.map(_csv, [bench_arm] * 4))
+    assert len(set(fronts)) == 1
+
+
+def test_a_campaign_has_a_verdict(tmp_path):
     found = armwright.reconcile(ROOT / "examples" / "paper-frequencies")
     assert found.verdict in ("no_gap", "explained", "unexplained", "insufficient_data")
     assert found.corrected_arm["chain"] and len(found.residuals) > 0
     assert found.text and found.json["verdict"] == found.verdict
-
-
-URDF = """<robot name="two"><link name="base"/>
-  <link name="arm"><inertial><origin xyz="0.4 0 0"/><mass value="2"/>
-    <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link>
-  <link name="hand"/>
-  <joint name="j" type="continuous"><parent link="base"/><child link="arm"/><axis xyz="0 1 0"/></joint>
-  <joint name="f" type="fixed"><parent link="arm"/><child link="hand"/><origin xyz="0.8 0 0"/></joint></robot>"""
 
 
 def test_a_urdf_becomes_an_arm(tmp_path):

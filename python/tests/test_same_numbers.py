@@ -6,7 +6,7 @@ import json
 import armwright
 import numpy as np
 import pytest
-from conftest import ROOT
+from conftest import ROOT, URDF
 
 MEASURED = ROOT / "examples" / "measured-arm"
 
@@ -34,9 +34,60 @@ def test_cases_equal_the_programs_json(program, tmp_path, lever):
     assert armwright.analyze(tmp_path / "arm.json", cases=tmp_path / "cases.json") == json.loads(text)
 
 
+def words(text):
+    """A text without the breaks of its lines."""
+    return " ".join(text.split())
+
+
+def test_analyze_says_in_words_what_the_program_says(program):
+    text = program("analyze", MEASURED / "arm.json", "--payload-kg", 5)
+    ours = armwright.analyze(MEASURED / "arm.json", payload_kg=5)
+    assert ours.text and ours.remarks and "arm mass" in ours.text
+    assert words(ours.text + " ".join(ours.remarks)) == words(text)
+
+
+def test_a_response_has_the_frequencies_and_the_damping_of_the_program(program):
+    text = program("analyze", MEASURED / "arm.json", "--json", "--response-n", "0,0,1")
+    assert armwright.analyze(MEASURED / "arm.json", response_n=[0, 0, 1]) == json.loads(text)
+
+
 def test_size_and_capacity_equal_the_programs_json(program):
-    assert armwright.size("light-arm") == json.loads(program("size", "light-arm", "--json"))
-    assert armwright.capacity("light-arm") == json.loads(program("capacity", "light-arm", "--json"))
+    sizing = armwright.size("light-arm")
+    assert sizing == json.loads(program("size", "light-arm", "--json"))
+    assert sizing.remarks
+    assert words(program("size", "light-arm")).endswith(words(" ".join(sizing.remarks)))
+    capacity = armwright.capacity("light-arm")
+    assert capacity == json.loads(program("capacity", "light-arm", "--json"))
+    assert any("Left out" in remark for remark in capacity["remarks"])
+
+
+def test_the_capacity_of_an_arm_equals_the_programs_json(program, tmp_path, lever):
+    lever["chain"][0]["stiffness_nm_per_rad"] = None
+    cases = [{"name": "level", "pose_deg": [0]}, {"name": "up", "pose_deg": [-60]}]
+    limits = {"joints": [{"name": "j1", "max_torque_nm": 50}]}
+    for name, value in [("arm", lever), ("cases", cases), ("limits", limits)]:
+        (tmp_path / f"{name}.json").write_text(json.dumps(value))
+    arm = tmp_path / "arm.json"
+    flags = ["--limits", tmp_path / "limits.json"]
+    theirs = json.loads(program("capacity", arm, "--json", *flags, "--cases", tmp_path / "cases.json"))
+    # 2 kg at half a metre and the payload at a metre
+    assert theirs["payload_kg"] == pytest.approx(50 / 9.81 - 1)
+    assert armwright.capacity(arm, cases=tmp_path / "cases.json", limits=tmp_path / "limits.json") == theirs
+    assert armwright.capacity(lever, cases=cases, limits={"j1": 50}) == theirs
+    assert armwright.capacity(lever, limits=limits) == json.loads(program("capacity", arm, "--json", *flags))
+    # limits that stand beside the arm file, and those of a robot in the arm's own dict
+    (tmp_path / "limits.json").rename(tmp_path / "import.json")
+    assert armwright.capacity(arm) == json.loads(program("capacity", arm, "--json"))
+
+
+def test_the_capacity_of_a_robot_has_the_limits_of_its_file(program, tmp_path):
+    robot = tmp_path / "robot.urdf"
+    limited = '<axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="60" velocity="1"/>'
+    robot.write_text(URDF.replace('<axis xyz="0 1 0"/>', limited).replace("continuous", "revolute"))
+    program("import", robot, "--tip", "hand", "--out", tmp_path / "arm")
+    theirs = json.loads(program("capacity", tmp_path / "arm" / "arm.json", "--json"))
+    assert theirs["payload_kg"] == pytest.approx((60 / 9.81 - 2 * 0.4) / 0.8)
+    assert armwright.capacity(armwright.from_urdf(robot, "hand")) == theirs
 
 
 @pytest.mark.parametrize("search", ["exhaustive", "exact"])
@@ -49,7 +100,11 @@ def test_a_front_equals_the_programs_front(program, tmp_path, search, bench_arm)
     assert front.to_csv() == (tmp_path / "out" / "front.csv").read_text()
     run = json.loads((tmp_path / "out" / "run.json").read_text())
     same = ["study", "status", "search", "designs_total", "front_size", "hypervolume", "gap", "ties_listed"]
-    assert {key: front.facts[key] for key in same} == {key: run[key] for key in same}
+    said = ["remarks", "caveats", "not_checked", "models", "constraints", "cases", "effects", "effects_mass_kg"]
+    assert {key: front.facts[key] for key in same + said} == {key: run[key] for key in same + said}
+    assert front.picks == {name: pick["design_id"] for pick in run["picks"] for name in pick["names"]}
+    assert front.picks["lightest"] == front.lightest() and "knee" in front.picks
+    assert front.remarks == run["remarks"] + [run["caveats"]] * bool(run["caveats"]) + run["not_checked"]
     for material in run["materials"]:
         path = tmp_path / "out" / f"front.{material['slug']}.csv"
         theirs = path.read_text() if path.exists() else None
@@ -90,4 +145,35 @@ def test_a_prediction_equals_the_programs_prediction(program):
     ours = armwright.predict(arm, readings, campaign)
     theirs = list(csv.reader(text.splitlines()))
     assert ours.columns == theirs[0]
+    in_memory = armwright.predict(json.loads(arm.read_text()), readings, campaign)
+    assert in_memory.to_csv() == ours.to_csv() and in_memory.remark == ours.remark
     assert np.array_equal(ours["model_dz_mm"], [float(row[theirs[0].index("model_dz_mm")]) for row in theirs[1:]])
+
+
+def test_a_prediction_of_a_verdict_is_that_of_its_written_arm(tmp_path):
+    campaign = ROOT / "examples" / "paper-frequencies"
+    found = armwright.reconcile(campaign)
+    found.write(tmp_path)
+    files = campaign / "modal.csv", campaign / "campaign.json"
+    written = armwright.predict(tmp_path / "arm.corrected.json", *files)
+    assert armwright.predict(found, *files).to_csv() == written.to_csv()
+
+
+def test_the_remarks_on_a_front_are_those_of_its_gears_and_not_of_its_study_alone(program, tmp_path, bench_arm):
+    # the built-in gears of one series, under another name and with backlash
+    rows = list(csv.DictReader((ROOT / "catalogs" / "gears.csv").read_text(encoding="utf-8").splitlines()))
+    loose = {"series": "PG", "alias_series": "", "kind": "planetary", "backlash_arcmin": "9"}
+    parts = tmp_path / "parts"
+    parts.mkdir()
+    with open(parts / "gears.csv", "w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, rows[0].keys())
+        writer.writeheader()
+        writer.writerows({**row, **loose} for row in rows if row["series"] == "CSG")
+    bench_arm["drives"]["gear_series"] = ["PG"]
+    study = tmp_path / "study.json"
+    study.write_text(json.dumps(bench_arm))
+    program("--catalogs", parts, "run", study, "--out", tmp_path / "out", "--quiet")
+    run = json.loads((tmp_path / "out" / "run.json").read_text())
+    front = armwright.run(study, catalogs=armwright.Catalogs.load(parts))
+    assert sum("loose by up to" in remark for remark in front.remarks) == 2, front.remarks
+    assert front.facts["remarks"] == run["remarks"] and front.facts["caveats"] == run["caveats"]

@@ -4,16 +4,14 @@ use super::failure::Failure;
 use super::pose_flags::PoseArgs;
 use super::values::{choice, numbers};
 use super::wrong_kind::refuse_other_kind;
-use crate::arm::effect::entry::Effect;
 use crate::arm::file::read_arm;
 use crate::arm::load::{LoadCase, Payload, read_load_cases};
-use crate::arm::pieces::factors_sentence;
-use crate::arm::{Arm, Element, JointModel, Link, LinkBody, LinkModel};
+use crate::arm::{Arm, JointModel, LinkModel};
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::report::analysis::{Analysis, Harmonic};
 use crate::report::words::{TERMINAL, wrap};
-use crate::study::creep::creep_sentence;
+use crate::study::arm_remarks::{arm_remarks, ignored_words};
 use clap::Args;
 use nalgebra::Vector3;
 use serde_json::Value;
@@ -125,7 +123,6 @@ pub(super) fn run(args: &AnalyzeArgs, catalogs: &Catalogs) -> Result<String, Fai
         }
         None => vec![case_of_flags(args, &arm)?],
     };
-    let ignored: Vec<String> = arm.ignored_effects().into_iter().map(Effect::label).collect();
     let harmonic = args.harmonic();
     let solve = |case| Analysis::of(&arm, case, args.modes, harmonic.as_ref());
     let solved: Vec<Analysis> = cases.into_iter().map(solve).collect();
@@ -134,44 +131,12 @@ pub(super) fn run(args: &AnalyzeArgs, catalogs: &Catalogs) -> Result<String, Fai
         (true, Some(_)) => pretty(&Value::Array(solved.iter().map(|s| s.to_json(&arm)).collect())),
         (false, _) => {
             let text = solved.iter().map(|s| s.to_text(&arm)).collect::<Vec<_>>().join("\n");
-            text + &ignored_text(&ignored) + &creep_text(&arm, catalogs) + &left_out_text(&arm)
+            let ignored = ignored_words(&arm).map_or(String::new(), |words| format!("  {words}\n"));
+            let remarks: String =
+                arm_remarks(&arm, catalogs).iter().map(|words| wrap(words, TERMINAL, "")).collect();
+            text + &ignored + &remarks
         }
     })
-}
-
-/// One line with the names of the effects that the analysis ignores, because they describe a test and not the arm.
-/// Empty if there are none.
-fn ignored_text(ignored: &[String]) -> String {
-    match ignored {
-        [] => String::new(),
-        effects => {
-            format!("  ignored, because they describe a test and not the arm: {}\n", effects.join(", "))
-        }
-    }
-}
-
-/// A sentence about what is left out of every number of an arm with gears; empty for an arm without gears.
-fn left_out_text(arm: &Arm) -> String {
-    let has_gear = |element: &Element| matches!(element, Element::Joint(joint) if joint.gear.is_some());
-    let words = "Left out of every number, unless the file states it: the compliance of the connections between links and \
-                 joints, and the cables along the links. Also temperature, and whether the parts fit into each other.";
-    if arm.chain.iter().any(has_gear) { wrap(words, TERMINAL, "") } else { String::new() }
-}
-
-/// Sentences about those materials of the arm that creep, and about links with stated factors; empty if there are none.
-fn creep_text(arm: &Arm, catalogs: &Catalogs) -> String {
-    let tubes = arm.chain.iter().filter_map(|element| match element {
-        Element::Link(Link { name, body: LinkBody::Tube { material_name, .. }, .. }) => {
-            Some((material_name, name))
-        }
-        _ => None,
-    });
-    let tubes: Vec<(&str, &str)> = tubes.map(|(material, link)| (material.as_str(), link.as_str())).collect();
-    let creep = tubes.iter().filter_map(|(material, link)| creep_sentence(catalogs, material, link));
-    creep
-        .chain(factors_sentence(tubes.iter().copied()))
-        .map(|sentence| wrap(&sentence, TERMINAL, ""))
-        .collect()
 }
 
 fn pretty(value: &Value) -> String {

@@ -2,21 +2,18 @@
 
 use super::failure::Failure;
 use crate::arm::file::read_arm;
-use crate::arm::load::read_load_cases;
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::report::number::{fixed, significant};
 use crate::report::whole_file::folder_of;
 use crate::report::words::{TERMINAL, wrap};
-use crate::study::arm_capacity::{arm_capacity, has_rated_bearings};
+use crate::study::arm_capacity::{capacity_of_arm, is_arm_file};
 use crate::study::capacity::{AtPose, Capacity, capacity_of};
-use crate::study::import_ranges::beyond_ranges;
 use crate::study::largest_speed::LargestSpeed;
 use crate::study::load::load_study;
-use crate::study::load_limits::{example, limits_of_parts, read_limits};
 use crate::study::window::{Limit, Window};
 use clap::Args;
-use serde_json::{Value, json};
+use serde_json::json;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -56,7 +53,7 @@ pub(crate) struct CapacityArgs {
 
 /// Runs `armwright capacity` and returns the text to print.
 pub(super) fn run(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Failure> {
-    if is_arm_file(&args.study) {
+    if is_arm(&args.study) {
         return of_arm(args, catalogs);
     }
     if args.cases.is_some() || args.limits.is_some() {
@@ -84,17 +81,9 @@ fn said(args: &CapacityArgs, name: &str, found: &Capacity, remarks: &[String]) -
     format!("{}{above}{lines}", to_text(name, found))
 }
 
-/// The remark on the capacity of an arm file that says what is checked and what is not.
-const AT_REST: &str = "Judged are torques, forces and output bearings at rest, as far as their limits are known. Motion, heat and strength are not checked.";
-
-/// The remark on the capacity of an arm file without `--cases`.
-const ONE_POSE: &str = "Asked is one pose only, with every joint at zero and the payload at the tip: give your poses with --cases FILE.";
-
-/// Whether the file at `path` is an arm file. It then has a chain and, in contrast to a study file, no poses.
-fn is_arm_file(path: &str) -> bool {
-    let text = std::fs::read_to_string(path).unwrap_or_default();
-    let file: Value = serde_json::from_str(&text).unwrap_or_default();
-    file["chain"].is_array() && file["poses"].is_null()
+/// Whether the file at `path` is an arm file.
+fn is_arm(path: &str) -> bool {
+    Document::read(Path::new(path)).is_ok_and(|document| is_arm_file(&document))
 }
 
 /// The largest payload of an arm file at rest. The torques of the joints are compared with the limits that the user
@@ -106,35 +95,10 @@ fn of_arm(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     }
     let path = Path::new(&args.study);
     let arm = read_arm(path, catalogs)?;
-    let cases = match &args.cases {
-        Some(file) => read_load_cases(Document::read(file)?, &arm.driven_joints())?,
-        None => {
-            let zero = json!([{"name": "every joint at zero", "pose": {}}]).to_string();
-            read_load_cases(Document::parse("zero", &zero)?, &arm.driven_joints())?
-        }
-    };
     let beside = folder_of(path).join("import.json");
-    let limits = match &args.limits {
-        Some(file) => read_limits(Document::read(file)?, &arm)?,
-        None if beside.is_file() => read_limits(Document::read(&beside)?, &arm)?,
-        None => limits_of_parts(&arm, catalogs),
-    };
-    if limits.is_empty() && !has_rated_bearings(&arm) {
-        return Err(Failure::Usage(format!(
-            "nothing is known of the torques and forces that the joints of {} may bear: give --limits FILE with {}, or name gears and \
-             motors of the catalogs in the arm file",
-            args.study,
-            example(&arm)
-        )));
-    }
-    let import: Value = match beside.is_file() {
-        true => Document::read(&beside)?.root().value().clone(),
-        false => Value::Null,
-    };
-    let mut remarks = vec![AT_REST.to_string()];
-    remarks.extend(beyond_ranges(&import, &arm, &cases));
-    remarks.extend(args.cases.is_none().then(|| ONE_POSE.to_string()));
-    Ok(said(args, &arm.name, &arm_capacity(&arm, &cases, &limits), &remarks))
+    let limits = args.limits.as_deref().or(beside.is_file().then_some(&beside));
+    let [cases, limits] = [args.cases.as_deref(), limits].map(|file| file.map(Document::read).transpose());
+    Ok(said(args, &arm.name, &capacity_of_arm(&arm, cases?, limits?, catalogs)?, &[]))
 }
 
 /// The largest payload of a window in words.

@@ -10,11 +10,9 @@ use super::manifest::{Files, RUN};
 use super::progress::Progress;
 use super::stop::stop_if_wanted;
 use super::supplements::{Found, SupplementArgs};
-use crate::arm::effect::entry::Effect;
 use crate::catalog::Catalogs;
 use crate::pareto::hypervolume::front_hypervolume;
 use crate::report::budget::{PickBudget, budget_csv};
-use crate::report::caveats::Caveats;
 use crate::report::certificate::certificate_section;
 use crate::report::facts::{SummaryFacts, constraint_words};
 use crate::report::file_names::file_names;
@@ -34,18 +32,15 @@ use crate::search::near::NearDesigns;
 use crate::search::sweep::Status;
 use crate::space::design_space::DesignSpace;
 use crate::space::problem::ArmProblem;
-use crate::study::bearing_remarks::bearing_remarks;
 use crate::study::budget::budgets;
 use crate::study::definition::Study;
 use crate::study::effects::Correction;
-use crate::study::gear_remarks::{life_remarks_on, play_remarks};
-use crate::study::given_parts::given_parts;
-use crate::study::given_remarks::GivenDrives;
+use crate::study::front_remarks::{caveats_of, caveats_on, effects_json, judged_cases, table_and_remarks};
 use crate::study::outcome::StudyOutcome;
 use crate::study::page::study_page;
 use crate::study::partial_materials::links_without;
 use crate::study::range::range_words;
-use crate::study::table::{front_table, front_table_with};
+use crate::study::table::front_table;
 use crate::study::ties::ties;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -308,9 +303,7 @@ impl Finished<'_> {
     fn summary(&self) -> SummaryInput {
         let (study, sweep) = (self.study, &self.outcome.sweep);
         let cost = |name: &str| self.catalogs.materials.iter().find(|m| m.name == name)?.cost_eur_per_kg;
-        let mut given = GivenDrives::of(self.problem, self.catalogs);
-        let overall =
-            front_table_with(self.problem, self.catalogs, &self.outcome.front, |rows| given.take(rows));
+        let (overall, remarks) = table_and_remarks(study, self.problem, self.catalogs, &self.outcome.front);
         SummaryInput {
             budgets: Vec::new(),
             facts: SummaryFacts {
@@ -325,12 +318,12 @@ impl Finished<'_> {
                 threads: rayon::current_num_threads(),
                 tool_version: env!("CARGO_PKG_VERSION").into(),
                 constraints: constraint_words(&study.space.constraints),
-                cases: self.judged_cases(),
+                cases: judged_cases(study),
                 ranges: range_words(&study.space),
                 not_checked: study.not_checked.clone(),
-                remarks: self.remarks(&overall, &given),
+                remarks,
                 materials_of_some_links: links_without(self.whole),
-                caveats: Caveats::of(self.catalogs).with_given(given_parts(&study.space)),
+                caveats: caveats_of(study, self.catalogs),
                 results: self.dir.display().to_string(),
             },
             overall,
@@ -349,34 +342,6 @@ impl Finished<'_> {
         }
     }
 
-    /// What a reader should know of the question, and of the output bearings, gears and given drives in the answer.
-    fn remarks(&self, front: &FrontTable, given: &GivenDrives) -> Vec<String> {
-        let of_study = self.study.remarks.iter().cloned();
-        let of_bearings = bearing_remarks(&self.study.space, self.catalogs, front);
-        let of_lives = life_remarks_on(&self.study.space, self.catalogs, front);
-        let of_play = play_remarks(&self.study.space, self.catalogs, front);
-        let of_given = given.remarks(self.outcome.front.len());
-        of_study.chain(of_bearings).chain(of_lives).chain(of_play).chain(of_given).collect()
-    }
-
-    /// A sentence on parts whose ratings were not read in a document of their vendor. It names the picks that use them.
-    /// `None` if there is no such part.
-    fn caveats(&self, summary: &SummaryInput) -> Option<String> {
-        let picked = picks::rows_and_names(&picks::picks(&picks::designs(&summary.overall)));
-        let sentence = summary.facts.caveats.sentence(&summary.overall, &picked);
-        (!sentence.is_empty()).then(|| sentence.split_whitespace().collect::<Vec<_>>().join(" "))
-    }
-
-    /// The study's effects as JSON. An effect that describes a test is marked as one that does not count.
-    fn effects(&self) -> Vec<Value> {
-        let counted = |effect: &Effect| {
-            let mut value = effect.to_json();
-            value["counts"] = json!(!effect.is_of_test());
-            value
-        };
-        self.study.space.effects.iter().map(counted).collect()
-    }
-
     /// The page of the result for a browser. `picture` is the picture of the front, `sections` are those of the
     /// supplements, and `run` is the content of `run.json`.
     fn page(&self, summary: &SummaryInput, picture: String, sections: Vec<PageSection>, run: &Value) -> Page {
@@ -391,11 +356,6 @@ impl Finished<'_> {
 
     fn ties_listed(&self) -> bool {
         self.exact.is_none_or(|exact| exact.ties_listed)
-    }
-
-    fn judged_cases(&self) -> Vec<String> {
-        let space = &self.study.space;
-        space.judged_cases.iter().map(|&i| space.cases[i].name.clone()).collect()
     }
 
     fn run_json(&self, summary: &SummaryInput, supplements: &[Supplement], not_written: &[String]) -> Value {
@@ -434,8 +394,8 @@ impl Finished<'_> {
             "materials": materials,
             "not_checked": study.not_checked,
             "remarks": summary.facts.remarks,
-            "caveats": self.caveats(summary),
-            "effects": self.effects(),
+            "caveats": caveats_on(study, self.catalogs, &summary.overall),
+            "effects": effects_json(study),
             "effects_mass_kg": study.space.effects_mass_kg(),
             "carried_over": corrections::to_json(self.corrections),
             "catalogs": self.overlay.map(|p| p.display().to_string()),

@@ -15,9 +15,8 @@ use crate::sizing::select::DriveTable;
 use crate::sizing::sheet::render_rows;
 use crate::space::design_space::SpacePiece;
 use crate::space::problem::{ArmProblem, Partial};
-use crate::study::chosen::{chosen_design, why_not_held};
+use crate::study::chosen::{chosen_design, sizing_remarks, why_not_held};
 use crate::study::definition::Study;
-use crate::study::gear_remarks::life_remarks;
 use crate::study::load::refuse_empty;
 use crate::study::table::sizing_rows;
 use clap::Args;
@@ -70,8 +69,7 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs, log: Log) -> Result<Stri
     }
     let rows =
         sizing_rows(&problem, catalogs, &chosen).map_err(|slot| why_not_held(&problem, &chosen, slot))?;
-    let of_lives = life_remarks(rows.iter().map(|row| row.gear.as_str()), catalogs);
-    let said = [study.remarks.clone(), of_lives].concat();
+    let said = sizing_remarks(&study, &rows, catalogs);
     let remarks = paragraphs(&said);
     let text = format!(
         "{}{}{remarks}",

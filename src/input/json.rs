@@ -84,7 +84,7 @@ pub enum InputError {
 ///
 /// # Errors
 /// [`InputError::Unreadable`] if the file cannot be read, [`InputError::Faulty`] if it is not in UTF-8.
-pub(crate) fn read_text(path: &Path) -> Result<String, InputError> {
+pub fn read_text(path: &Path) -> Result<String, InputError> {
     let file = path.display().to_string();
     let unreadable = |source| InputError::Unreadable { file: file.clone(), source };
     let bytes = std::fs::read(path).map_err(|source| unreadable(is_folder(path).unwrap_or(source)))?;

@@ -7,19 +7,73 @@
 //! has these ratings.
 
 use super::capacity::{AtPose, Capacity, reach_m};
-use super::load_limits::LoadLimit;
+use super::import_ranges::beyond_ranges;
+use super::load_limits::{LoadLimit, example, limits_of_parts, read_limits};
 use super::overload::Overload;
+use super::refusal::Refusal;
 use super::window::{Limit, MOST_KG, Window, window_around};
-use crate::arm::load::LoadCase;
+use crate::arm::load::{LoadCase, read_load_cases};
 use crate::arm::{Arm, Bearing};
+use crate::catalog::Catalogs;
+use crate::input::json::Document;
 use crate::mechanics::chain::Chain;
 use crate::mechanics::statics::JointLoad;
 use crate::sizing::bearing::BearingLimits;
 use crate::space::bearing_loads::{at_centre, bearings_of};
 
+/// The remark that says what is checked and what is not.
+const AT_REST: &str = "Judged are torques, forces and output bearings at rest, as far as their limits are known. Motion, heat and strength are not checked.";
+
+/// The remark on an arm for which no cases are given.
+const ONE_POSE: &str = "Asked is one pose only, with every joint at zero and the payload at the tip: give your poses with --cases FILE.";
+
+/// Whether a document is an arm file. It then has a chain and, in contrast to a study file, no poses.
+pub fn is_arm_file(document: &Document) -> bool {
+    let root = document.root();
+    let file = root.value();
+    file["chain"].is_array() && file["poses"].is_null()
+}
+
+/// The payloads that an arm holds at rest, as `armwright capacity` finds them for an arm file. Without `cases`, every joint
+/// stands at zero. `limits` states the largest torques and forces of the joints; without it they are those of the gears
+/// and motors that the arm names.
+///
+/// # Errors
+/// All faults of the cases or of the limits, or [`Refusal::Unknown`] if nothing is known of what the joints may bear.
+pub fn capacity_of_arm(
+    arm: &Arm,
+    cases: Option<Document>,
+    limits: Option<Document>,
+    catalogs: &Catalogs,
+) -> Result<Capacity, Refusal> {
+    let has_cases = cases.is_some();
+    let zero = r#"[{"name": "every joint at zero", "pose": {}}]"#;
+    let cases = cases.map_or_else(|| Document::parse("zero", zero), Ok)?;
+    let cases = read_load_cases(cases, &arm.driven_joints())?;
+    // the limits may be the import.json of a robot, which states ranges too
+    let beyond = limits.as_ref().and_then(|file| beyond_ranges(file.root().value(), arm, &cases));
+    let limits = match limits {
+        Some(file) => read_limits(file, arm)?,
+        None => limits_of_parts(arm, catalogs),
+    };
+    if limits.is_empty() && !has_rated_bearings(arm) {
+        return Err(Refusal::Unknown(format!(
+            "nothing is known of the torques and forces that the joints of {} may bear: give --limits FILE with {}, or name gears and \
+             motors of the catalogs in the arm file",
+            arm.name,
+            example(arm)
+        )));
+    }
+    let mut found = arm_capacity(arm, &cases, &limits);
+    found.remarks.push(AT_REST.into());
+    found.remarks.extend(beyond);
+    found.remarks.extend((!has_cases).then(|| ONE_POSE.into()));
+    Ok(found)
+}
+
 /// The payloads that an arm holds at rest, in each of its cases and in all of them, with which no joint exceeds its
 /// limit in `limits` and no output bearing exceeds its ratings.
-pub(crate) fn arm_capacity(arm: &Arm, cases: &[LoadCase], limits: &[LoadLimit]) -> Capacity {
+fn arm_capacity(arm: &Arm, cases: &[LoadCase], limits: &[LoadLimit]) -> Capacity {
     let table: Vec<AtPose> = cases
         .iter()
         .map(|case| {
@@ -102,7 +156,7 @@ fn limits_at_rest(bearing: &Bearing) -> BearingLimits {
 }
 
 /// Whether any output bearing of an arm has a rating that limits its load at rest.
-pub(crate) fn has_rated_bearings(arm: &Arm) -> bool {
+fn has_rated_bearings(arm: &Arm) -> bool {
     bearings_of(arm).any(|(_, bearing)| {
         let limits = limits_at_rest(&bearing);
         limits.running_moment_nm.min(limits.at_rest_n).is_finite()

@@ -2,6 +2,7 @@
 //! demand.
 
 use super::definition::Study;
+use super::gear_remarks::life_remarks;
 use super::joint_obstacle::{first_fit_at, obstacle_at};
 use super::load::refuse_empty;
 use super::refusal::Refusal;
@@ -55,6 +56,13 @@ pub fn sizing_of(
     let (space, chosen) = chosen_design(study, id, catalogs)?;
     let problem = ArmProblem::new(&space, catalogs);
     sizing_rows(&problem, catalogs, &chosen).map_err(|slot| why_not_held(&problem, &chosen, slot))
+}
+
+/// Remarks on the sizing `rows` of a design of a study, in sentences: those on the question, and those on the lives of the
+/// gears.
+pub fn sizing_remarks(study: &Study, rows: &[JointSizingRow], catalogs: &Catalogs) -> Vec<String> {
+    let of_lives = life_remarks(rows.iter().map(|row| row.gear.as_str()), catalogs);
+    study.remarks.iter().cloned().chain(of_lives).collect()
 }
 
 /// Largest number of options of a link among which the option of median mass is chosen.

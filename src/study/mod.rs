@@ -2,6 +2,7 @@
 
 pub(crate) mod alternatives;
 pub(crate) mod arm_capacity;
+pub(crate) mod arm_remarks;
 mod balance;
 pub(crate) mod ballast;
 pub(crate) mod bearing_remarks;
@@ -22,6 +23,7 @@ mod drives;
 pub(crate) mod effects;
 pub(crate) mod exact_shards;
 mod fit;
+pub(crate) mod front_remarks;
 pub(crate) mod gear_remarks;
 pub(crate) mod given_parts;
 pub(crate) mod given_remarks;
@@ -66,15 +68,18 @@ mod transmissions;
 pub(crate) mod window;
 pub(crate) mod worst_pose;
 
+pub use arm_capacity::{capacity_of_arm, is_arm_file};
+pub use arm_remarks::{arm_remarks, ignored_words};
 pub use ballast::{BallastFlags, ballast_flags};
 pub use budget::budgets;
 pub use capacity::{AtPose, Capacity, capacity_of};
 pub use check::{Claim, Completeness, FrontCheck, check_front, resume_check};
-pub use chosen::{arm_of_design, sizing_of};
+pub use chosen::{arm_of_design, sizing_of, sizing_remarks};
 pub use definition::Study;
 pub use diagnose::{empty_pieces, why_infeasible};
 pub use effects::{CorrectedStudy, Correction, apply_corrections, left_out};
 pub use exact_shards::{exact_shard, fronts_of, joined_exactly};
+pub use front_remarks::{caveats_on, effects_json, judged_cases, table_and_remarks};
 pub use keys::STUDY_FILE;
 pub use largest_speed::LargestSpeed;
 pub use load::{load_study, refuse_empty};
