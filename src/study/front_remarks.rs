@@ -40,7 +40,7 @@ pub(crate) fn caveats_of(study: &Study, catalogs: &Catalogs) -> Caveats {
 }
 
 /// A sentence on parts whose ratings were not read in a document of their vendor. It names the picks of the front that use
-/// them. `None` if there is no such part.
+/// them. It is the one that `run.json` has under `caveats`. `None` if there is no such part.
 pub fn caveats_on(study: &Study, catalogs: &Catalogs, front: &FrontTable) -> Option<String> {
     let picked = picks::rows_and_names(&picks::picks(&picks::designs(front)));
     let sentence = caveats_of(study, catalogs).sentence(front, &picked);
