@@ -17,6 +17,7 @@
 pub(crate) mod adjusted;
 pub(crate) mod align;
 pub(crate) mod analysis;
+mod angle_laws;
 pub(crate) mod boundary;
 pub(crate) mod conventions;
 pub(crate) mod dependence;

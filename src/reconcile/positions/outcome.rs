@@ -1,6 +1,7 @@
 //! Reaches the verdict on a campaign of absolute positions.
 
 use super::analysis::{Positions, analyze};
+use super::angle_laws::Competing;
 use super::fitted::Fitted;
 use super::kinematics::Number;
 use super::loads::FRAME_ENTRIES;
@@ -142,6 +143,10 @@ impl Positions {
         if left.fails || (findings.is_empty() && excess) || left.chi2_per_dof.sqrt() > TOO_FAR_OFF {
             return (Verdict::Unexplained, self.left_over(left));
         }
+        let angle_laws = self.angle_laws();
+        if let Some(text) = angle_laws.iter().find_map(Competing::better) {
+            return (Verdict::Unexplained, vec![text]);
+        }
         let last = &self.stages[self.stages.len() - 1];
         if last.median_mm > UNSTABLE * last.fitted_median_mm.max(campaign.positions[0].sigma_mm()) {
             let text = format!(
@@ -193,6 +198,7 @@ impl Positions {
         if excess {
             reasons.extend(self.left_over(left));
         }
+        reasons.extend(angle_laws.iter().filter_map(Competing::as_good));
         (Verdict::Explained, reasons)
     }
 

@@ -64,14 +64,19 @@ impl Positions {
         order.into_par_iter().map(with).collect()
     }
 
-    /// Indices of the other driven joints whose transmission error, in place of that of `joint`, would fit the
-    /// positions as well.
-    pub(crate) fn transmission_competitors(&self, joint: usize) -> Vec<usize> {
+    /// The model without the transmission error of the driven joint with index `joint`, fitted again.
+    pub(super) fn without_transmission(&self, joint: usize) -> Self {
         let mut without = self.without_numbers(|n| matches!(n, Number::Transmission(j, _) if *j == joint));
         without.fitted.geometry.transmissions_rad[joint] = [0.0; 4];
         without.transmissions.retain(|j| *j != joint);
         without.refit();
-        let tried = without.best_transmissions().into_iter();
+        without
+    }
+
+    /// Indices of the other driven joints whose transmission error, in place of that of `joint`, would fit the
+    /// positions as well.
+    pub(crate) fn transmission_competitors(&self, joint: usize) -> Vec<usize> {
+        let tried = self.without_transmission(joint).best_transmissions().into_iter();
         tried
             .filter(|(j, f)| *j != joint && f.ln_likelihood > self.fitted.ln_likelihood - TIE)
             .map(|(j, _)| j)
