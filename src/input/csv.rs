@@ -73,11 +73,16 @@ fn utf8(record: ByteRecord) -> Result<StringRecord, String> {
     StringRecord::from_byte_record(record).map_err(|e| e.utf8_error().to_string())
 }
 
-/// The separators other than commas that occur at least `least` times in the first cell of a header.
+/// The separators other than commas that occur at least `least` times in the first cell of a header. Spaces are
+/// separators if there is no other one, and a run of spaces counts once.
 pub(crate) fn other_separators(header: &[String], least: usize) -> impl Iterator<Item = &'static str> + '_ {
-    let words = [(';', "semicolons"), ('\t', "tabs")];
     let occurs = move |separator: char| header.first().is_some_and(|c| c.matches(separator).count() >= least);
-    words.into_iter().filter(move |(separator, _)| occurs(*separator)).map(|(_, word)| word)
+    let words = [(';', "semicolons"), ('\t', "tabs")].map(|(separator, word)| (occurs(separator), word));
+    let spaces = match header {
+        [only] => only.split_whitespace().count() > least && !words.iter().any(|(occurs, _)| *occurs),
+        _ => false,
+    };
+    words.into_iter().chain([(spaces, "spaces")]).filter(|(occurs, _)| *occurs).map(|(_, word)| word)
 }
 
 /// Whether an earlier column of the header has the same name as the column with the index `column`.
@@ -108,6 +113,9 @@ mod tests {
         let header = |text: &str| Csv::parse(text.as_bytes(), None).records.remove(0).cells;
         assert_eq!(other_separators(&header("a;b;c"), 2).collect::<Vec<_>>(), ["semicolons"]);
         assert_eq!(other_separators(&header("a,b"), 1).next(), None);
+        assert_eq!(other_separators(&header("q1   q2  x"), 2).collect::<Vec<_>>(), ["spaces"]);
+        assert_eq!(other_separators(&header("a\tb\tc d"), 2).collect::<Vec<_>>(), ["tabs"]);
+        assert_eq!(other_separators(&header("a long name,b"), 1).next(), None);
         assert!(is_repeated(&header("a,b,a"), 2) && !is_repeated(&header("a,b,a"), 1));
     }
 }

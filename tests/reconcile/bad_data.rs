@@ -317,6 +317,10 @@ fn tables_of_other_programs_are_refused_in_one_line() {
     let text = faults(folder.path());
     assert!(text.contains("its columns are separated by semicolons"), "{text}");
     assert!(!text.contains("the column is missing"), "{text}");
+    let folder = edited("static.csv", |_, text| Some(text.replace(',', "   ")));
+    let text = faults(folder.path());
+    assert!(text.contains("its columns are separated by spaces"), "{text}");
+    assert!(!text.contains("the column is missing"), "{text}");
     let folder = edited("static.csv", |line, text| {
         Some(if line == 1 { format!("{text},dx_mm") } else { format!("{text},0") })
     });

@@ -25,7 +25,7 @@ fn said_of(written: &dyn Fn(Row) -> Row) -> (Outcome, Option<String>) {
 
 fn said(folder: &Path) -> (Outcome, Option<String>) {
     let outcome = outcome(folder);
-    let said = outcome.reasons.iter().find(|r| r.contains("times better if")).cloned();
+    let said = outcome.reasons.iter().find(|r| r.contains("correct the file if that is so")).cloned();
     (outcome, said)
 }
 
@@ -52,7 +52,54 @@ fn what_is_written_as_asked_is_not_doubted() {
 fn metres_are_recognized() {
     let (_, said) = said_of(&|(angles, at)| (angles, at.map(|x| x / 1e3)));
     let said = said.expect("said");
-    assert!(said.contains("the positions are in metres"), "{said}");
+    assert!(said.contains("the positions are in metres (calibration"), "nothing else is named: {said}");
+}
+
+/// The second and the third joint are parallel, so that either may be the one that is coupled.
+#[test]
+fn swapped_columns_and_coupled_axes_are_recognized() {
+    let (_, said) = said_of(&|([a, b, c], at)| ([b, a, c], at));
+    let said = said.expect("said");
+    assert!(said.contains("the columns of q1 and q2 are swapped"), "{said}");
+    let (_, said) = said_of(&|([a, b, c], at)| ([a, b, c - b], at));
+    let said = said.expect("said");
+    assert!(said.contains("q3 turns by the column of q3 plus the column of q2"), "{said}");
+    let (_, said) = said_of(&|([a, b, c], at)| ([a, b, c + b], at));
+    let said = said.expect("said");
+    assert!(said.contains("q3 turns by the column of q3 less the column of q2"), "{said}");
+}
+
+#[test]
+fn a_scale_that_the_links_absorb_explains_nothing() {
+    for scale in [0.6, 0.9, 1.1] {
+        let (outcome, said) = said_of(&|(angles, at)| (angles, at.map(|x| scale * x)));
+        assert_eq!(outcome.verdict, Verdict::InsufficientData, "{}", outcome.to_text());
+        let told = |part: &str| outcome.reasons.iter().any(|r| r.contains(part));
+        assert!(told("check the unit of the positions"), "{}", outcome.to_text());
+        assert!(told("the vector of link2 by"), "{}", outcome.to_text());
+        assert_eq!(said, None, "no convention has this scale");
+    }
+}
+
+/// The priors of a small arm's links leave room for links of any length.
+#[test]
+fn a_unit_that_the_links_absorb_is_named() {
+    let folder = standard().write(&crate::positions_maker::Made::rigid);
+    rewrite(folder.path(), &|(angles, at)| (angles, at.map(|x| 0.1 * x / 25.4)));
+    let path = folder.path().join("arm.json");
+    let text = std::fs::read_to_string(&path).expect("text");
+    let mut arm: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    for part in arm["chain"].as_array_mut().expect("a chain") {
+        for x in part["vector_m"].as_array_mut().into_iter().flatten() {
+            *x = json!(0.1 * x.as_f64().expect("a number"));
+        }
+    }
+    std::fs::write(&path, arm.to_string()).expect("written");
+    let (outcome, said) = said(folder.path());
+    assert_eq!(outcome.verdict, Verdict::InsufficientData, "{}", outcome.to_text());
+    let said = said.unwrap_or_else(|| panic!("{}", outcome.to_text()));
+    let expected = "no link and no axis moves further than its prior expects if the positions are in inches (calibration";
+    assert!(said.contains(expected), "{said}");
 }
 
 #[test]

@@ -6,12 +6,15 @@ use super::fit::fit;
 use super::fitted::Sample;
 use super::kinematics::Placing;
 use super::moved::{Boundary, Kind, Moved};
+use super::sessions::telling_part;
 use crate::reconcile::fit::stats::median;
 use crate::reconcile::readings::campaign::Campaign;
 
 /// A jump of the measured points of at least this size is too large to come from a reflector that was put back
 /// \[mm\].
 const LARGE_MM: f64 = 1.0;
+/// The evidence for a session is strong if its gain exceeds its price by at least this much \[ln of the likelihood\].
+const STRONG: f64 = 10.0;
 /// Number of rows on each side of a session boundary that are compared to find what else changes at the boundary.
 const BESIDE: usize = 15;
 /// Smallest number of rows on each side of a session boundary from which it is judged what else changes at the
@@ -59,8 +62,12 @@ impl Positions {
             }
             _ => format!("something jumps before row {row}"),
         };
+        let is_weak = || self.session_gain(boundary).0 < STRONG;
         match (boundary.declared, self.changes_at(campaign, boundary)) {
             (true, _) => format!("{what} (as declared)"),
+            (false, None) if is_weak() => {
+                format!("it looks as if {what} (a session of its own, for which the evidence is not strong)")
+            }
             (false, None) => format!("{what}: a session of its own"),
             (false, Some(change)) => format!(
                 "{what}, or something depends on {change}: these readings cannot tell a session from that, because both \
@@ -143,31 +150,34 @@ impl Positions {
     pub(crate) fn drop_needless_sessions(&mut self) -> bool {
         let before = self.sessions.len();
         loop {
-            let kinds = self.kinds(true, true).len();
-            let open = (0..self.sessions.len()).filter(|&k| !self.sessions[k].declared);
-            let tried = open.map(|k| {
-                let price = self.session_price(self.sessions[k].earlier.numbers().len(), kinds);
-                let without = self.without_session(k);
-                (without.fitted.ln_likelihood + price - self.fitted.ln_likelihood, without)
-            });
-            let needless = tried.filter(|(gain, _)| *gain > 0.0);
-            let Some((_, without)) = needless.max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
+            let tried = self.sessions.iter().filter(|b| !b.declared).map(|b| self.session_gain(b));
+            let needless = tried.filter(|(gain, _)| *gain < 0.0);
+            let Some((_, without)) = needless.min_by(|a, b| a.0.total_cmp(&b.0)) else { break };
             *self = without;
         }
         self.sessions.len() < before
     }
 
-    /// The model without the session boundary with index `index`, fitted again: the rows on both sides of it are one
-    /// session.
-    fn without_session(&self, index: usize) -> Self {
-        let gone = self.sessions[index].earlier.numbers();
-        let Some((_, after)) = self.labels(&self.sessions[index]) else {
+    /// What a session is worth beyond its price \[ln of the likelihood\], and the model without its boundary.
+    fn session_gain(&self, boundary: &Boundary) -> (f64, Self) {
+        let without = self.without_session(boundary);
+        let own = boundary.earlier;
+        let price = self.session_price(own.numbers().len(), self.kinds(true, true).len());
+        let rise = self.fitted.ln_likelihood - without.fitted.ln_likelihood;
+        (telling_part(&self.fitted, &self.numbers, &self.samples, own) * rise - price, without)
+    }
+
+    /// The model without the session boundary `boundary`, fitted again: the rows on both sides of it are one session.
+    fn without_session(&self, boundary: &Boundary) -> Self {
+        let gone = boundary.earlier.numbers();
+        let is_gone = |other: &Boundary| other.earlier == boundary.earlier;
+        let Some((_, after)) = self.labels(boundary) else {
             let mut out = self.clone();
-            out.sessions.remove(index);
+            out.sessions.retain(|other| !is_gone(other));
             return out;
         };
         let mut out = self.without_numbers(|number| gone.contains(number));
-        let boundary = out.sessions.remove(index);
+        out.sessions.retain(|other| !is_gone(other));
         let all = out.samples.len();
         boundary.earlier.relabel(&mut out.samples, all, after);
         let samples: Vec<&Sample> = out.samples.iter().collect();

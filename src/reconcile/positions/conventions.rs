@@ -1,24 +1,28 @@
-//! Tests whether positions that no calibration fits were written by another convention: in another unit, in a frame
-//! whose axes are swapped or left-handed, or with joint angles of another sign or zero.
+//! Tests whether positions that no calibration fits, or that only a geometry far from the arm file's fits, were written
+//! by another convention ([`Change`]).
 //!
 //! The search is greedy. It starts from the file as it is, read in the unit in which its positions spread as widely as
 //! those of the nominal arm. Every single change of convention, or every pair of changes, is tried by a quick fit of
-//! the placement alone. The best change is kept as long as the errors fall. The geometry is then calibrated in full
-//! with the convention that was found. The convention is reported if the errors that remain are several times smaller
-//! than with the file as it is. The file is used unchanged, because only the user knows which convention is right.
+//! the placement alone. The best change is kept as long as the errors fall. A quick fit has the errors of the nominal
+//! geometry, so that a change may help it by chance. The geometry is therefore calibrated in full after every step of the
+//! search. Of the sets of changes that then fit about equally well, the smallest is used, and every change without which
+//! the positions fit about as well is dropped.
+//!
+//! The convention is reported if the errors that remain are several times smaller than with the file as it is, or if
+//! no link or axis has to move further than its prior expects. The file is used unchanged, because only the user knows
+//! which convention is right.
 
 use super::align::nearest_motion;
 use super::analysis::{Positions, samples};
+use super::convention_changes::{Change, UNITS, changes, pairs};
 use super::fit::fit;
-use super::fitted::{Fitted, Sample};
-use super::kinematics::{Geometry, Number, Pose, number_groups};
+use super::fitted::{Fitted, Sample, readings};
+use super::kinematics::{Geometry, Number, number_groups};
 use super::points::points;
 use crate::reconcile::readings::campaign::{Campaign, PositionsSpec};
 use crate::report::number::significant;
 use nalgebra::Vector3;
 use rayon::prelude::*;
-use std::f64::consts::{FRAC_PI_2, PI};
-use std::sync::Arc;
 
 /// Other conventions are tested if the scale of the position errors after calibration exceeds the declared standard
 /// deviation by this factor.
@@ -26,6 +30,9 @@ const FAR: f64 = 5.0;
 /// A convention is reported if the errors after calibration with it are smaller than with the file as it is by at
 /// least this factor.
 const TELLING: f64 = 5.0;
+/// Where the file as it is needs a geometry that is far from nominal, a convention with which no link or axis moves
+/// far is reported if the errors, relative to the spread of the positions, are not larger by this factor.
+const AS_GOOD: f64 = 2.0;
 /// A change of convention is kept in the search if it lowers the errors of the quick fit to less than this fraction
 /// of those without it.
 const HELPS: f64 = 0.9;
@@ -42,114 +49,6 @@ const MOST_CHANGES: usize = 8;
 const QUICK: usize = 60;
 /// Scale of the position errors with which each fit starts \[m\]: about the errors that a wrong convention causes.
 const ROUGH_M: f64 = 0.3;
-/// Units other than the millimetre, each with its length \[mm\].
-const UNITS: [(&str, f64); 4] =
-    [("metres", 1e3), ("micrometres", 1e-3), ("centimetres", 10.0), ("inches", 25.4)];
-
-/// One way in which the convention of a file can differ.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Change {
-    /// Positions are in another unit, given by its index in [`UNITS`].
-    Unit(usize),
-    /// For each axis of the frame, the index of the coordinate of the file that lies along it, and whether its sign
-    /// is reversed.
-    Axes([(usize, bool); 3]),
-    /// One axis of the instrument's frame points the other way, so that the frame is left-handed.
-    LeftHanded,
-    /// The angles of the joint with this index have the other sign.
-    Sign(usize),
-    /// The zero of the joint with this index is elsewhere: this angle \[rad\] is added to the joint's angles.
-    Zero(usize, f64),
-}
-
-const COORDINATES: [&str; 3] = ["x_mm", "y_mm", "z_mm"];
-
-impl Change {
-    /// Whether this change and `other` concern the same unit, axes or joint, so that one replaces the other.
-    fn replaces(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Unit(_), Self::Unit(_)) | (Self::Axes(_), Self::Axes(_)) => true,
-            (Self::Zero(a, _), Self::Zero(b, _)) => a == b,
-            (a, b) => a == b,
-        }
-    }
-
-    /// The sample (a measured position), converted on the assumption that the file was written by this convention.
-    fn applied(&self, mut sample: Sample) -> Sample {
-        let turned = |sample: &mut Sample, j: usize, of: &dyn Fn(f64) -> f64| {
-            let mut angles_rad = sample.pose.angles_rad.clone();
-            angles_rad[j] = of(angles_rad[j]);
-            sample.pose = Arc::new(Pose::new(angles_rad));
-        };
-        match *self {
-            Self::Unit(unit) => sample.measured_m *= UNITS[unit].1,
-            Self::Axes(axes) => {
-                let sign = |(_, is_other): (usize, bool)| if is_other { -1.0 } else { 1.0 };
-                let (at_m, precision) = (sample.measured_m, sample.precision);
-                sample.measured_m = Vector3::from(axes.map(|axis| sign(axis) * at_m[axis.0]));
-                sample.precision = Vector3::from(axes.map(|axis| precision[axis.0]));
-            }
-            Self::LeftHanded => sample.measured_m.z *= -1.0,
-            Self::Sign(j) => turned(&mut sample, j, &|angle| -angle),
-            Self::Zero(j, by) => turned(&mut sample, j, &|angle| angle + by),
-        }
-        sample
-    }
-
-    fn words(&self, driven: &[String]) -> String {
-        match *self {
-            Self::Unit(unit) => format!("the positions are in {}", UNITS[unit].0),
-            Self::Axes(axes) => {
-                let axis = |(c, is_other): (usize, bool)| {
-                    format!("{}{}", if is_other { "-" } else { "" }, COORDINATES[c])
-                };
-                format!("the frame's x, y, z are {} of the file", axes.map(axis).join(", "))
-            }
-            Self::LeftHanded => {
-                "the instrument's frame is left-handed (two axes are swapped, or one has the other sign)"
-                    .into()
-            }
-            Self::Sign(j) => format!("the angles of {} have the other sign", driven[j]),
-            Self::Zero(j, by) => {
-                format!("{:.0} degrees are added to the angles of {}", by.to_degrees(), driven[j])
-            }
-        }
-    }
-}
-
-/// The changes of convention that are tried, for an arm with `joints` driven joints. If the base placement is free, the
-/// fit itself turns the frame, so only a left-handed frame is tried.
-fn changes(spec: &PositionsSpec, joints: usize) -> Vec<Change> {
-    let mut out: Vec<Change> = (0..UNITS.len()).map(Change::Unit).collect();
-    match spec.base_placement {
-        true => out.push(Change::LeftHanded),
-        false => out.extend(other_axes()),
-    }
-    out.extend((0..joints).map(Change::Sign));
-    out.extend((0..joints).flat_map(|j| [FRAC_PI_2, -FRAC_PI_2, PI].map(|by| Change::Zero(j, by))));
-    out
-}
-
-/// All pairs of the changes `all` that concern the angles of two different joints.
-fn pairs(all: &[Change]) -> Vec<Vec<Change>> {
-    let joint = |change: &Change| match change {
-        Change::Sign(j) | Change::Zero(j, _) => Some(*j),
-        Change::Unit(_) | Change::Axes(_) | Change::LeftHanded => None,
-    };
-    let of_two = |a: &Change, b: &Change| joint(a).zip(joint(b)).is_some_and(|(a, b)| a < b);
-    let with = |a: &Change| all.iter().filter(|b| of_two(a, b)).map(|b| vec![*a, *b]).collect::<Vec<_>>();
-    all.iter().flat_map(with).collect()
-}
-
-/// The 47 ways to permute and reverse the axes of a frame, other than leaving it as it is.
-fn other_axes() -> Vec<Change> {
-    const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
-    let signed = ORDERS.iter().flat_map(|order| {
-        (0..8).map(move |signs| Change::Axes([0, 1, 2].map(|c| (order[c], (signs >> c) & 1 == 1))))
-    });
-    signed.skip(1).collect()
-}
-
 /// Fits the positions of a file as if they had been written by another convention.
 struct Asked<'a> {
     spec: &'a PositionsSpec,
@@ -158,11 +57,31 @@ struct Asked<'a> {
     groups: Vec<Vec<Number>>,
 }
 
+/// A set of changes of convention with which the geometry was calibrated in full.
+#[derive(Clone)]
+struct Tried {
+    made: Vec<Change>,
+    /// Scale of the position errors \[m\].
+    scale_m: f64,
+    /// The number by which sets of changes are compared, without unit: the scale of the errors over the spread of the
+    /// positions, for an equally probable calibration whose geometry is nominal. It does not depend on the unit. It is
+    /// larger by [`AS_GOOD`] where the geometry is far from nominal.
+    judged: f64,
+    /// Whether a link or an axis moved further than its prior expects.
+    is_far: bool,
+}
+
+impl Tried {
+    /// Whether the positions fit about as well as with `best`, or better.
+    fn ties_with(&self, best: &Self) -> bool {
+        self.judged < TIE * best.judged
+    }
+}
+
 impl Asked<'_> {
-    /// Scale of the position errors after a fit with the `changes` of convention made \[m\]. The numbers of the
-    /// geometry in the first `groups` lists of `self.groups` are fitted, and about `most` samples (measured positions)
-    /// are used.
-    fn scale_m(&self, changes: &[Change], groups: usize, most: usize) -> f64 {
+    /// A fit of the positions with the `changes` of convention made, and the numbers of the geometry that were fitted:
+    /// those in the first `groups` lists of `self.groups`. About `most` samples (measured positions) are used.
+    fn fitted(&self, changes: &[Change], groups: usize, most: usize) -> (Fitted, Vec<Number>) {
         let step = self.samples.len().div_ceil(most).max(1);
         let written = self.samples.iter().step_by(step).cloned();
         let own: Vec<Sample> = written
@@ -179,21 +98,28 @@ impl Asked<'_> {
             numbers.extend(group.iter().cloned());
             fitted = fit(&own, &numbers, &[], &fitted);
         }
-        fitted.scale_m
+        (fitted, numbers)
     }
 
     fn quick_m(&self, changes: &[Change]) -> f64 {
-        self.scale_m(changes, 1, QUICK)
+        self.fitted(changes, 1, QUICK).0.scale_m
     }
 
-    fn full_m(&self, changes: &[Change]) -> f64 {
-        self.scale_m(changes, self.groups.len(), usize::MAX)
+    fn full(&self, made: Vec<Change>) -> Tried {
+        let (fitted, numbers) = self.fitted(&made, self.groups.len(), usize::MAX);
+        // the logarithm of the likelihood falls by that of the scale for every reading
+        let part = fitted.improbability(&numbers) / readings(&self.samples).max(1) as f64;
+        let is_far = fitted.is_far_from_nominal(&numbers);
+        let far = if is_far { AS_GOOD } else { 1.0 };
+        let judged = far * fitted.scale_m / self.spread_m(&made) * libm::exp(part);
+        Tried { made, scale_m: fitted.scale_m, judged, is_far }
     }
 
     /// Greedy search: adds to the changes `made` those of `all` that lower the errors of the quick fit, and returns
-    /// the set. If no single change helps and the fit is still far off, pairs are tried. Pairs are needed where two
-    /// parallel joints both turn the other way, because either change alone is no better.
-    fn search(&self, all: &[Change], mut made: Vec<Change>) -> Vec<Change> {
+    /// the set after every step. If no single change helps and the fit is still far off, pairs are tried. Pairs are
+    /// needed where two parallel joints both turn the other way, because either change alone is no better.
+    fn search(&self, all: &[Change], mut made: Vec<Change>) -> Vec<Vec<Change>> {
+        let mut steps = vec![made.clone()];
         let singles: Vec<Vec<Change>> = all.iter().map(|change| vec![*change]).collect();
         let pairs = pairs(all);
         let mut here_m = self.quick_m(&made);
@@ -204,8 +130,32 @@ impl Asked<'_> {
                 .or_else(|| (here_m > FAR_OFF * self.spread_m(&made)).then(|| better(&pairs)).flatten());
             let Some(found) = found else { break };
             (here_m, made) = found;
+            steps.push(made.clone());
         }
-        self.pruned(made)
+        steps.push(self.pruned(made));
+        steps
+    }
+
+    /// Of the sets of changes `found`, the smallest of those that fit about as well as the best, without the changes
+    /// that it does not need. `None` if `found` is empty.
+    fn simplest(&self, found: Vec<Vec<Change>>) -> Option<Tried> {
+        let tried: Vec<Tried> = found.into_par_iter().map(|made| self.full(made)).collect();
+        let best = tried.iter().min_by(|a, b| a.judged.total_cmp(&b.judged))?;
+        let equals = tried.iter().filter(|t| t.ties_with(best));
+        let mut out = equals.min_by_key(|t| t.made.len())?.clone();
+        loop {
+            let without = |at: usize| {
+                let mut rest = out.made.clone();
+                rest.remove(at);
+                self.full(rest)
+            };
+            let fewer: Vec<Tried> = (0..out.made.len()).into_par_iter().map(without).collect();
+            let needless = fewer.into_iter().filter(|t| t.ties_with(&out));
+            let Some(next) = needless.min_by(|a, b| a.judged.total_cmp(&b.judged)) else {
+                return Some(out);
+            };
+            out = next;
+        }
     }
 
     /// Joins `made` with each entry of `added` in turn, and returns the best set of changes with the scale of the
@@ -261,22 +211,26 @@ impl Asked<'_> {
         made
     }
 
-    /// Sets of changes in which one change of `made` is replaced by one of `all`, and with which the errors are about
-    /// as small as with `made`. `scale_m` is the scale of the errors with `made` \[m\].
-    fn equals(&self, all: &[Change], made: &[Change], scale_m: f64) -> Vec<Vec<Change>> {
-        let quick_m = self.quick_m(made);
-        let others = || all.iter().filter(|change| !made.iter().any(|m| m.replaces(change)));
+    /// `known`, and the sets in which one of its changes is replaced by one of `all` and with which the positions fit
+    /// about as well, in the order of their errors.
+    fn equals(&self, all: &[Change], known: Tried) -> Vec<Tried> {
+        let quick_m = self.quick_m(&known.made);
+        let others = || all.iter().filter(|change| !known.made.iter().any(|m| m.replaces(change)));
         let with = |at: usize| {
+            let made = &known.made;
             others().map(move |change| {
-                let mut out = made.to_vec();
+                let mut out = made.clone();
                 out[at] = *change;
                 out
             })
         };
-        let tried: Vec<Vec<Change>> = (0..made.len()).flat_map(with).collect();
+        let tried: Vec<Vec<Change>> = (0..known.made.len()).flat_map(with).collect();
         let is_near = |changes: &Vec<Change>| self.quick_m(changes) < 2.0 * quick_m;
-        let is_equal = |changes: &Vec<Change>| self.full_m(changes) < TIE * scale_m;
-        tried.into_par_iter().filter(is_near).filter(is_equal).collect()
+        let near = tried.into_par_iter().filter(is_near).map(|changes| self.full(changes));
+        let mut out: Vec<Tried> = near.filter(|t| t.ties_with(&known)).collect();
+        out.push(known);
+        out.sort_by(|a, b| a.judged.total_cmp(&b.judged));
+        out
     }
 }
 
@@ -289,14 +243,16 @@ fn spread_m(points_m: impl Iterator<Item = Vector3<f64>>) -> f64 {
 }
 
 impl Positions {
-    /// Sentence on a convention by which the positions of the file would fit far better. `None` if calibration fits
-    /// the positions well enough, if a mounting is unknown (too many combinations), or if no convention is found.
+    /// Sentence on a convention by which the positions of the file would fit far better, or with a geometry that is
+    /// near the arm file's. `None` if calibration fits the positions well enough, if a mounting is unknown (too many
+    /// combinations), or if no convention is found.
     pub(super) fn other_convention(&self, campaign: &Campaign) -> Option<String> {
         let spec = &campaign.statement.positions;
         let declared_mm: f64 = campaign.positions.iter().map(|row| row.sigma_mm()).sum();
         let declared_m = 1e-3 * declared_mm / campaign.positions.len().max(1) as f64;
+        let is_off = self.rigid.scale_m >= FAR * declared_m || self.has_far_geometry();
         // each attitude of an unknown mounting would have to be tried with each convention
-        if self.rigid.scale_m < FAR * declared_m || !spec.mounts.is_empty() {
+        if !is_off || !spec.mounts.is_empty() {
             return None;
         }
         let points = points(campaign);
@@ -304,40 +260,52 @@ impl Positions {
         let samples = samples(campaign, &self.tree, &nominal, &[], &points);
         let groups = number_groups(&self.tree, spec, points.len()).into_iter().map(|(_, group)| group);
         let asked = Asked { spec, samples, nominal, groups: groups.collect() };
-        let all = changes(spec, self.tree.driven.len());
+        let all = changes(spec, &self.tree);
         let is_far_off = self.rigid.scale_m > FAR_OFF * asked.spread_m(&[]);
         let by_size: Vec<Change> = asked.unit_by_size().into_iter().collect();
         let mut starts = vec![by_size.clone()];
         if spec.base_placement && is_far_off {
             starts.push([by_size, vec![Change::LeftHanded]].concat());
         }
-        let found = starts.into_iter().map(|start| asked.search(&all, start)).filter(|made| !made.is_empty());
-        let judged = found.map(|made| (asked.full_m(&made), made));
-        // if two cannot be told apart, the one with fewer changes is better
-        let is_better = |a: &(f64, Vec<Change>), b: &(f64, Vec<Change>)| {
-            a.0 < b.0 / TIE || (a.0 < TIE * b.0 && a.1.len() < b.1.len())
-        };
-        let (scale_m, made) =
-            judged.reduce(|best, next| if is_better(&next, &best) { next } else { best })?;
-        let ratio = self.rigid.scale_m / scale_m;
-        // a convention that is far off too is not the right one
-        if ratio < TELLING || scale_m > FAR_OFF * asked.spread_m(&made) {
+        let found =
+            asked.simplest(starts.into_iter().flat_map(|start| asked.search(&all, start)).collect())?;
+        if found.made.is_empty() {
             return None;
         }
-        let words = |changes: &[Change]| {
-            let each = changes.iter().map(|change| change.words(&self.tree.driven));
+        let equals = asked.equals(&all, found);
+        self.told(&asked, &equals)
+    }
+
+    /// The sentence on the conventions `equals`, which fit about equally well, the best first. `None` if the positions do
+    /// not fit far better with the best one, or are far off with it too.
+    fn told(&self, asked: &Asked, equals: &[Tried]) -> Option<String> {
+        let best = equals.first()?;
+        let ratio = self.rigid.scale_m / best.scale_m;
+        let spread_m = asked.spread_m(&best.made);
+        let as_good = best.scale_m / spread_m < AS_GOOD * self.rigid.scale_m / asked.spread_m(&[]);
+        let is_nearer = self.has_far_geometry() && !best.is_far && as_good;
+        // a convention that is far off too is not the right one
+        if !(ratio >= TELLING || is_nearer) || best.scale_m > FAR_OFF * spread_m {
+            return None;
+        }
+        let words = |tried: &Tried| {
+            let each = tried.made.iter().map(|change| change.words(&self.tree.driven));
             each.collect::<Vec<_>>().join(" and ")
         };
-        let mut told = words(&made);
-        for equal in asked.equals(&all, &made, scale_m).iter().take(MOST_EQUALS) {
-            told.push_str(&format!(", or just as well if {}", words(equal)));
-        }
-        Some(format!(
-            "the positions fit {} times better if {told} (calibration leaves errors of {} mm, and {} mm as the file is): \
-             correct the file if that is so; it was taken as it is",
-            significant(ratio, 2),
-            significant(1e3 * scale_m, 3),
-            significant(1e3 * self.rigid.scale_m, 3)
-        ))
+        let told: Vec<String> = equals.iter().take(1 + MOST_EQUALS).map(words).collect();
+        let told = told.join(", or just as well if ");
+        let [with_mm, without_mm] = [best.scale_m, self.rigid.scale_m].map(|m| significant(1e3 * m, 3));
+        let fits = match ratio >= TELLING {
+            true => format!(
+                "the positions fit {} times better if {told} (calibration leaves errors of {with_mm} mm, and {without_mm} mm \
+                 as the file is)",
+                significant(ratio, 2)
+            ),
+            false => format!(
+                "no link and no axis moves further than its prior expects if {told} (calibration then leaves errors of \
+                 {with_mm} mm)"
+            ),
+        };
+        Some(format!("{fits}: correct the file if that is so; it was taken as it is"))
     }
 }

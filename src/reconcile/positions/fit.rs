@@ -48,8 +48,12 @@ impl Fitted {
 
     /// Natural logarithm of the likelihood of the model times the prior probability of the geometry's `numbers`.
     fn merit(&self, numbers: &[Number]) -> f64 {
-        let prior = numbers.iter().zip(&self.moved).map(|(n, moved)| 0.5 * (moved / n.prior()).powi(2));
-        self.ln_likelihood - prior.sum::<f64>()
+        self.ln_likelihood - self.improbability(numbers)
+    }
+
+    /// By how much the prior probability of the geometry's `numbers` is lower than that of the nominal geometry \[ln\].
+    pub(super) fn improbability(&self, numbers: &[Number]) -> f64 {
+        numbers.iter().zip(&self.moved).map(|(n, moved)| 0.5 * (moved / n.prior()).powi(2)).sum()
     }
 }
 

@@ -10,7 +10,8 @@
 //!   `nominal` stiffnesses, moduli and masses other than stated (`dependence`), and `transmission` joints with a transmission error.
 //!   `second_order` is what the linear displacement lacks.
 //! - `setups` brings the positions of several campaigns into one frame.
-//! - `conventions` asks whether the file was written by another convention, `structure` tests the errors that are left,
+//! - `conventions` asks whether the file was written by another convention (`convention_changes`), `far_geometry` whether
+//!   calibration went further than its prior expects, `structure` tests the errors that are left,
 //!   `next_test` proposes what to measure, and [`outcome`] reaches the verdict.
 //! - [`predict`] predicts positions of several arms whose weights load each other's trunk.
 
@@ -19,8 +20,10 @@ pub(crate) mod align;
 pub(crate) mod analysis;
 mod angle_laws;
 pub(crate) mod boundary;
+pub(crate) mod convention_changes;
 pub(crate) mod conventions;
 pub(crate) mod dependence;
+pub(crate) mod far_geometry;
 pub(crate) mod fit;
 pub(crate) mod fitted;
 pub(crate) mod kinematics;

@@ -117,11 +117,12 @@ impl Positions {
     }
 
     /// Sentences on what was assumed or adjusted: sessions, factors beyond their tolerance (of those in `adjusted`), zeros
-    /// that moved far, joints that stood still, and another convention of the file.
+    /// and geometry that moved far, joints that stood still, and another convention of the file.
     fn remarks(&self, campaign: &Campaign, adjusted: &[Calibrated]) -> Vec<String> {
         let mut out = self.session_sentences(campaign);
         out.extend(caution::beyond_tolerance(self.tolerances(), adjusted));
         out.extend(self.moved_zeros());
+        out.extend(self.moved_geometry());
         out.extend(self.still_joints());
         out.extend(self.other_convention(campaign));
         out
@@ -158,6 +159,11 @@ impl Positions {
         }
         if let Some(text) = caution::impossible_calibration(campaign, self.tolerances(), adjusted) {
             return (Verdict::Unexplained, vec![text]);
+        }
+        if self.has_far_geometry() {
+            let text = "the positions fit only an arm that is far from the arm file: check the unit of the positions, and the \
+                        lengths and axes in the arm file";
+            return (Verdict::InsufficientData, vec![text.into()]);
         }
         if findings.is_empty() {
             let text = "noise and the calibration of everything that is free explain every position";

@@ -139,8 +139,8 @@ impl Positions {
     }
 
     /// Divides a session: fits the model in which those rows before `first` that have the label `moved` get a
-    /// placement of their own. The gain of the result is the rise of the logarithm of the likelihood, less the price
-    /// of the session.
+    /// placement of their own. The gain of the result is the [telling part](telling_part) of the rise of the logarithm of
+    /// the likelihood, less the price of the session.
     pub(super) fn split(&self, moved: Moved, first: usize, kinds: usize) -> Split {
         let mut start = self.fitted.clone();
         let geometry = &mut start.geometry;
@@ -161,7 +161,8 @@ impl Positions {
         let all: Vec<&Sample> = samples.iter().collect();
         let fitted = fit(&all, &numbers, &start.effects, &start);
         let price = self.session_price(new.numbers().len(), kinds);
-        let gain = fitted.ln_likelihood - self.fitted.ln_likelihood - price;
+        let rise = fitted.ln_likelihood - self.fitted.ln_likelihood;
+        let gain = telling_part(&fitted, &numbers, &samples, new) * rise - price;
         Split { samples, numbers, fitted, moved, new, first, gain }
     }
 
@@ -176,6 +177,27 @@ impl Positions {
         };
         self.sessions.push(Boundary { kind, earlier: split.new, first: split.first, declared });
     }
+}
+
+/// The part of a rise of the logarithm of the likelihood that tells something, if the session `new` of the model `fitted`
+/// caused the rise: `(n - p + k/2 - 1)/n` (Bartlett), at least 0. Here `n` is the number of readings, `p` how many
+/// numbers the readings determine, and `k` how many of them the session has.
+///
+/// The scale of the errors is fitted. Where few readings are left over, it falls with every further number that is free,
+/// and the likelihood rises by more than half of chi-squared.
+pub(super) fn telling_part(fitted: &Fitted, numbers: &[Number], samples: &[Sample], new: Moved) -> f64 {
+    let count = readings(samples) as f64;
+    let left = count - determined(fitted, numbers);
+    ((left + 0.5 * new.numbers().len() as f64 - 1.0) / count).max(0.0)
+}
+
+/// How many numbers of the model `fitted` the readings determine. A number whose prior determines it hardly counts.
+fn determined(fitted: &Fitted, numbers: &[Number]) -> f64 {
+    let free = numbers.iter().zip(&fitted.number_deviations).map(|(number, deviation)| {
+        let left = deviation / fitted.robust_factor / number.prior();
+        (1.0 - left * left).max(0.0)
+    });
+    free.sum::<f64>() + fitted.compliances.iter().map(Vec::len).sum::<usize>() as f64
 }
 
 /// Sums over the rows before some row. They give the gain if these rows had an offset (a placement) of their own.

@@ -157,9 +157,14 @@ impl Table {
 
     /// Reports columns that are separated by something other than commas, or named twice.
     fn check_header(&self) {
-        for word in other_separators(&self.columns, 2) {
-            let hint = "separate columns with commas and write decimals with a point";
+        let separators: Vec<&str> = other_separators(&self.columns, 2).collect();
+        for word in &separators {
+            let hint = "separate columns with commas, write decimals with a point, and name the columns in the first row";
             self.fault(Some(self.header_line), "", format!("its columns are separated by {word}"), hint);
+        }
+        // without columns there are no names to check
+        if !separators.is_empty() && !self.has_header() {
+            return;
         }
         for name in &self.columns {
             if let Some((problem, hint)) = unfit_name(name) {
