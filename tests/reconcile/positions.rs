@@ -229,6 +229,16 @@ fn a_base_that_is_stiffer_one_way_is_named_with_its_couplings() {
     assert!(predicted_median_mm(&campaign, &outcome) < 1.3 * 1.538 * made.sigma_mm);
 }
 
+/// An angle that is off in proportion to itself looks like an error once and twice a turn.
+#[test]
+fn a_sensor_with_a_wrong_scale_is_told_from_an_error_once_and_twice_a_turn() {
+    let folder = standard().write(&Made::misreading);
+    let outcome = reconcile(&read(folder.path()));
+    let text = outcome.to_text().split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(text.contains("an angle of q3 that is off in proportion to itself explains"), "{text}");
+    assert_eq!(outcome.verdict, Verdict::Unexplained, "{text}");
+}
+
 #[test]
 fn what_no_pose_separates_is_said_and_another_test_proposed() {
     let outcome = reconcile(&read(standard().write(&Made::tilting).path()));

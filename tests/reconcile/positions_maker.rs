@@ -35,6 +35,8 @@ struct Truths {
     sag: bool,
     lean_rad: f64,
     wobble_rad: f64,
+    /// The third joint turns by this part further than its sensor reads.
+    scale: f64,
     pulled_m: f64,
     moved_m: f64,
     /// The third joint turns by this much further, in the sense in which it is turned.
@@ -104,6 +106,11 @@ impl Made {
         self.truth(pose_rad, Truths { sag: true, wobble_rad: UNEVEN_RAD, ..Truths::default() })
     }
 
+    /// Joints yield, and the sensor of the third has a wrong scale.
+    pub fn misreading(&self, pose_rad: &[f64; 3], _row: usize) -> Truth {
+        self.truth(pose_rad, Truths { sag: true, scale: 1.5e-3, ..Truths::default() })
+    }
+
     /// Joints yield, and something pulls the point sideways as the third turns, twice a turn.
     pub fn pulled(&self, pose_rad: &[f64; 3], _row: usize) -> Truth {
         self.truth(pose_rad, Truths { sag: true, pulled_m: 1.5e-3, ..Truths::default() })
@@ -163,7 +170,9 @@ impl Made {
             places.push((rotation * axis.into_inner(), at));
             let wobble = if j == 2 { truths.wobble_rad * (2.0 * pose_rad[2]).sin() } else { 0.0 };
             let play = if j == 2 { truths.play_rad.copysign(pose_rad[2]) } else { 0.0 };
-            rotation *= Rotation3::from_axis_angle(&axis, pose_rad[j] + ZEROS_RAD[j] + wobble + play);
+            let scaled = if j == 2 { truths.scale * pose_rad[2] } else { 0.0 };
+            rotation *=
+                Rotation3::from_axis_angle(&axis, pose_rad[j] + ZEROS_RAD[j] + wobble + play + scaled);
             let link = rotation * Vector3::from(LINKS_M[j]);
             bodies.push((MASSES_KG[j], at + link / 2.0));
             at += link;

@@ -10,6 +10,7 @@ use super::springs::frame_matrix;
 use super::structure::{MATERIAL_VARIANCE, mean_median_length};
 use super::transmission;
 use crate::arm::Arm;
+use crate::arm::effect::catalogue::kind;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::entry::Effect;
 use crate::arm::effect::kind::ElasticRotation;
@@ -25,6 +26,7 @@ use crate::reconcile::verdict::judgement::{TOO_FAR_OFF, does_not_predict, too_ma
 use crate::reconcile::verdict::outcome::{Calibrated, Evidence, Located, Outcome, ReadingResidual, Verdict};
 use crate::reconcile::verdict::stage::Stage;
 use crate::reconcile::verdict::{caution, correct};
+use crate::report::number::significant;
 use serde_json::{Value, json};
 use std::collections::{HashMap, HashSet};
 
@@ -36,6 +38,9 @@ const UNSTABLE: f64 = 8.0;
 /// Effects that do not explain everything are still written into the corrected arm if they lower the median error at
 /// held-out poses to less than this fraction of the error with calibration alone.
 const HELPFUL: f64 = 0.8;
+/// If more than this fraction of the positions would be gross errors, they are a structure and no errors, as with other
+/// readings.
+const MOST_GROSS: f64 = 0.1;
 /// Word for a session in the list of alternatives of an effect.
 const SESSION: &str = "session";
 /// Number of poses that are listed, those with the largest errors first.
@@ -54,7 +59,9 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let next_tests = found.next_tests(campaign, verdict, &lack_of_fit, &competitors);
     // a model that predicts held-out poses far better is useful even if something else is missing
     let [before, after] = found.before_and_after();
-    let helps = verdict == Verdict::Unexplained && after.median_mm < HELPFUL * before.median_mm;
+    let helps = verdict == Verdict::Unexplained
+        && after.median_mm < HELPFUL * before.median_mm
+        && findings.iter().all(|finding| beyond_bounds(finding).is_none());
     if helps {
         reasons.push(format!(
             "{CORRECTED_FILE} has what predicts best, but not all that is missing: on poses held out of the fit the median error falls from {:.3} to {:.3} mm",
@@ -143,6 +150,16 @@ impl Positions {
         let excess = left.chi2_per_dof > MATERIAL_VARIANCE;
         if left.fails || (findings.is_empty() && excess) || left.chi2_per_dof.sqrt() > TOO_FAR_OFF {
             return (Verdict::Unexplained, self.left_over(left));
+        }
+        if self.gross.len() as f64 > MOST_GROSS * count as f64 {
+            let text = format!(
+                "{} of {count} positions would be gross errors: so many are a structure that the model lacks",
+                self.gross.len()
+            );
+            return (Verdict::Unexplained, vec![text]);
+        }
+        if let Some(text) = findings.iter().find_map(beyond_bounds) {
+            return (Verdict::Unexplained, vec![text]);
         }
         let angle_laws = self.angle_laws();
         if let Some(text) = angle_laws.iter().find_map(Competing::better) {
@@ -467,6 +484,26 @@ fn frame_parameters(compliances: &[f64], deviations: &[f64]) -> Vec<(String, Vec
         ("diagonal_rad_per_nm".into(), [(0, 0), (1, 1), (2, 2)].map(turning).to_vec()),
         ("coupling_rad_per_nm".into(), [(0, 1), (0, 2), (1, 2)].map(entry).to_vec()),
     ]
+}
+
+/// Why an effect cannot be real, as a sentence: a number of it is beyond what an arm file may state. `None` if all are
+/// possible.
+fn beyond_bounds(finding: &Finding) -> Option<String> {
+    let kind = kind(&finding.effect)?;
+    finding.parameters.iter().find_map(|(name, estimates)| {
+        let mut known = kind.places.iter().flat_map(|place| (kind.parameters)(*place));
+        let parameter = known.find(|parameter| parameter.name == name)?;
+        let is_beyond =
+            |e: &&Estimate| e.value.is_finite() && !(parameter.low..=parameter.high).contains(&e.value);
+        let value = estimates.iter().find(is_beyond)?.value;
+        Some(format!(
+            "{} would have {name} = {}, and only {} to {} is possible: something else is missing",
+            finding.label(),
+            significant(value, 3),
+            parameter.low,
+            parameter.high
+        ))
+    })
 }
 
 fn as_effect(campaign: &Campaign, finding: &Finding) -> Effect {

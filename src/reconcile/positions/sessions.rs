@@ -170,8 +170,12 @@ impl Positions {
         (self.samples, self.numbers, self.fitted) = (split.samples, split.numbers, split.fitted);
         let kind = match split.moved {
             Moved::Point(p) => {
-                self.points.push(Point { before_row: Some(split.first + 1), ..self.points[p].clone() });
-                Kind::Point(p)
+                let point = self.points[p].clone();
+                // the point in its last session, which the model without this boundary has too
+                let same = |other: &Point| (other.arm, &other.name) == (point.arm, &point.name);
+                let own = self.points.iter().position(same).unwrap_or(p);
+                self.points.push(Point { before_row: Some(split.first + 1), ..point });
+                Kind::Point(own)
             }
             Moved::Station(_) => Kind::Station,
         };
