@@ -139,7 +139,7 @@ fn is_zero_unseen(spec: &PositionsSpec, tree: &Tree, driven: usize) -> bool {
     let follows = |piece: &usize| matches!(angle(*piece), Some(JointAngle::Coupled(terms)) if terms.iter().any(|(j, _)| *j == driven));
     let joints = |arm: &Vec<usize>| arm.iter().copied().filter(|&p| angle(p).is_some()).collect::<Vec<_>>();
     let arms: Vec<Vec<usize>> = tree.arms.iter().map(joints).collect();
-    if arms.iter().flatten().any(|piece| follows(piece)) {
+    if arms.iter().flatten().any(follows) {
         return false;
     }
     let is_first = arms.iter().all(|arm| arm.first().is_some_and(is_own));

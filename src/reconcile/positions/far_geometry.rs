@@ -32,7 +32,7 @@ fn far_moves(numbers: &[Number], moved: &[f64]) -> Vec<Move> {
             _ => continue,
         };
         match all.iter_mut().find(|m| m.piece == piece) {
-            Some(known) => known.by = known.by.hypot(*by),
+            Some(known) => known.by = libm::hypot(known.by, *by),
             None => all.push(Move { piece, by: by.abs(), prior: number.prior(), is_link }),
         }
     }
