@@ -141,14 +141,15 @@ fn capacity(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], own: &[us
     Capacity::new(window(&space.sizing_cases, &loaded), table, remarks)
 }
 
-/// The sentence that duties which joints state in numbers are the same for every payload; `None` if no joint states one.
+/// The sentence that duties which joints state in numbers are the same for every payload and speed; `None` if no joint
+/// states one.
 fn duty_remark(space: &DesignSpace) -> Option<String> {
     let stated: Vec<&str> =
         space.joints().filter(|(_, j)| j.duty.is_some()).map(|(_, joint)| joint.name.as_str()).collect();
     (!stated.is_empty()).then(|| {
         format!(
-            "The duty of {} is stated in numbers and is taken for every payload: its mean torque, its gear's life and its motor's heat \
-             do not grow with the payload, and are not judged for more than the payload that the duty was made for.",
+            "The duty of {} is stated in numbers and is taken for every payload and speed: its mean torque, its gear's life and its motor's heat \
+             do not grow with them, and are not judged for more than the payload and the speed that the duty was made for.",
             stated.join(", ")
         )
     })

@@ -139,7 +139,10 @@ fn a_duty_in_numbers_is_said_not_to_grow_with_the_payload() {
     std::fs::write(dir.path().join("s.json"), study.to_string()).expect("written");
     let output = armwright(&["capacity", "s.json"], dir.path());
     let said = String::from_utf8_lossy(&output.stdout).split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(said.contains("The duty of j1 is stated in numbers and is taken for every payload"), "{said}");
+    assert!(
+        said.contains("The duty of j1 is stated in numbers and is taken for every payload and speed"),
+        "{said}"
+    );
 }
 
 #[test]

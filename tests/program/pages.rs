@@ -211,7 +211,7 @@ fn the_views_of_a_study_follow_pointer_brush_filters_and_keys() {
     });
     fewer("a brush along an axis of choices", &|| {
         let [left, top, _, height] = browser.place("#by-choice");
-        browser.drag((left + 74.0, top + height - 20.0), (left + 74.0, top + height * 0.6));
+        browser.drag((left + 122.0, top + height - 20.0), (left + 122.0, top + height * 0.6));
     });
     // the legend as a filter: what is left are the designs of other materials
     browser.click("#legend button:nth-child(2)");

@@ -121,6 +121,11 @@ pub struct Parameter {
 }
 
 impl Parameter {
+    /// Whether a file may give this value.
+    pub(crate) fn allows(&self, value: f64) -> bool {
+        (self.low..=self.high).contains(&value)
+    }
+
     /// A parameter with a single value that a file must give, between `low` and `high`. `typical` is a usual value,
     /// `scale` says how a fit varies it.
     pub const fn number(name: &'static str, low: f64, high: f64, typical: f64, scale: Scale) -> Self {

@@ -85,7 +85,7 @@ impl Effect {
                 (format!("= {} is below {name} = {least}", numbers[0]), format!("give at least {name}"))
             }
             Some((_, numbers)) => {
-                let outside = numbers.iter().find(|n| !(parameter.low..=parameter.high).contains(*n))?;
+                let outside = numbers.iter().find(|n| !parameter.allows(**n))?;
                 (
                     format!("= {outside} is out of bounds"),
                     format!("give {} to {}", parameter.low, parameter.high),

@@ -26,9 +26,9 @@ const GROSS: f64 = 5.5;
 /// deviations\]. The limit is high, because play or a break point can shift a single reading by ten standard
 /// deviations.
 const UNMISTAKABLE: f64 = 16.0;
-/// Largest fraction of a channel's rows that can be gross errors. If there are more, the cause is something that the
-/// model lacks.
-const FEW: f64 = 0.10;
+/// Largest fraction of a channel's rows, or of the positions, that can be gross errors. If there are more, the cause is
+/// something that the model lacks.
+pub(crate) const FEW: f64 = 0.10;
 /// Largest fraction of a channel's rows that can be gross errors before any effect is sought. It is smaller than
 /// [`FEW`], because an effect may change only a few frequencies, and these must not be left out.
 const FEW_UNSEEN: f64 = 0.05;

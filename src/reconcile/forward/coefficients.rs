@@ -19,7 +19,7 @@ use nalgebra::{Rotation3, Vector3};
 /// twist.
 const TILTS: usize = 2;
 /// Number of coordinates of a guide: its rotations about three axes. They stand before the joint's travel.
-const GUIDE_ROTATIONS: usize = 3;
+pub(crate) const GUIDE_ROTATIONS: usize = 3;
 
 /// Where the strain coordinates of a joint stand among all strain coordinates.
 #[derive(Debug, Clone)]
@@ -302,7 +302,7 @@ impl Coefficients {
             layout.joints.iter().zip(structure.joints()).zip(nominal.structure.joints())
         {
             let tilts = joint.lean_rad_per_nm.map(|lean| joint.tilt_rad_per_nm + lean);
-            linear[slot.twist - 2..slot.twist].copy_from_slice(&tilts);
+            linear[slot.twist - TILTS..slot.twist].copy_from_slice(&tilts);
             laws.push(joint.law);
             torques.push(joint.torque.beyond(&before.torque));
             masses.push(joint.mass_kg - before.mass_kg);
@@ -316,8 +316,9 @@ impl Coefficients {
         for ((first, joint), before) in
             layout.slides.iter().zip(structure.prismatics()).zip(nominal.structure.prismatics())
         {
-            linear[*first..first + 3].copy_from_slice(joint.guide_rad_per_nm.as_slice());
-            linear[first + 3] = joint.m_per_n;
+            let travel = first + GUIDE_ROTATIONS;
+            linear[*first..travel].copy_from_slice(joint.guide_rad_per_nm.as_slice());
+            linear[travel] = joint.m_per_n;
             masses.push(joint.mass_kg - before.mass_kg);
         }
         let mut weights = masses.clone();

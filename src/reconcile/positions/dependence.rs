@@ -50,7 +50,7 @@ impl Dependence {
     pub(super) fn is_possible(&self, x: f64) -> bool {
         match self {
             Self::Tolerance(..) => true,
-            Self::Effect(kind, _) => (parameter(kind).low..=parameter(kind).high).contains(&self.value(x)),
+            Self::Effect(kind, _) => parameter(kind).allows(self.value(x)),
         }
     }
 

@@ -15,7 +15,7 @@ use crate::arm::effect::channel::Channel;
 use crate::arm::effect::entry::Effect;
 use crate::arm::effect::kind::ElasticRotation;
 use crate::reconcile::fit::held_out::{HeldOut, rms};
-use crate::reconcile::fit::noise::Noise;
+use crate::reconcile::fit::noise::{FEW, Noise};
 use crate::reconcile::model::estimate::{Estimate, Finding, Z_95};
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::components::POSITION;
@@ -38,9 +38,6 @@ const UNSTABLE: f64 = 8.0;
 /// Effects that do not explain everything are still written into the corrected arm if they lower the median error at
 /// held-out poses to less than this fraction of the error with calibration alone.
 const HELPFUL: f64 = 0.8;
-/// If more than this fraction of the positions would be gross errors, they are a structure and no errors, as with other
-/// readings.
-const MOST_GROSS: f64 = 0.1;
 /// Word for a session in the list of alternatives of an effect.
 const SESSION: &str = "session";
 /// Number of poses that are listed, those with the largest errors first.
@@ -57,12 +54,9 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let (verdict, mut reasons) = found.verdict(campaign, &lack_of_fit, &findings, &adjusted);
     reasons.extend(found.remarks(campaign, &adjusted));
     let next_tests = found.next_tests(campaign, verdict, &lack_of_fit, &competitors);
-    // a model that predicts held-out poses far better is useful even if something else is missing
-    let [before, after] = found.before_and_after();
-    let helps = verdict == Verdict::Unexplained
-        && after.median_mm < HELPFUL * before.median_mm
-        && findings.iter().all(|finding| beyond_bounds(finding).is_none());
+    let helps = verdict == Verdict::Unexplained && found.helps(&findings);
     if helps {
+        let [before, after] = found.before_and_after();
         reasons.push(format!(
             "{CORRECTED_FILE} has what predicts best, but not all that is missing: on poses held out of the fit the median error falls from {:.3} to {:.3} mm",
             before.median_mm, after.median_mm
@@ -135,6 +129,14 @@ impl Positions {
         out
     }
 
+    /// Whether an arm with the effects `findings` is useful though something else is missing: it predicts held-out poses far
+    /// better, and every effect can be real.
+    fn helps(&self, findings: &[Finding]) -> bool {
+        let [before, after] = self.before_and_after();
+        let is_possible = |finding: &Finding| beyond_bounds(finding).is_none();
+        after.median_mm < HELPFUL * before.median_mm && findings.iter().all(is_possible)
+    }
+
     fn verdict(
         &self,
         campaign: &Campaign,
@@ -142,29 +144,65 @@ impl Positions {
         findings: &[Finding],
         adjusted: &[Calibrated],
     ) -> (Verdict, Vec<String>) {
-        let count = campaign.positions.len();
-        if count < FEWEST {
-            let text = format!("{count} positions are too few: give at least {FEWEST}");
-            return (Verdict::InsufficientData, vec![text]);
-        }
-        let excess = left.chi2_per_dof > MATERIAL_VARIANCE;
-        if left.fails || (findings.is_empty() && excess) || left.chi2_per_dof.sqrt() > TOO_FAR_OFF {
-            return (Verdict::Unexplained, self.left_over(left));
-        }
-        if self.gross.len() as f64 > MOST_GROSS * count as f64 {
-            let text = format!(
-                "{} of {count} positions would be gross errors: so many are a structure that the model lacks",
-                self.gross.len()
-            );
-            return (Verdict::Unexplained, vec![text]);
-        }
-        if let Some(text) = findings.iter().find_map(beyond_bounds) {
-            return (Verdict::Unexplained, vec![text]);
+        if let Some(said) = self.not_described(campaign, left, findings) {
+            return said;
         }
         let angle_laws = self.angle_laws();
         if let Some(text) = angle_laws.iter().find_map(Competing::better) {
             return (Verdict::Unexplained, vec![text]);
         }
+        if let Some(said) = self.not_calibrated(campaign, adjusted) {
+            return said;
+        }
+        if findings.is_empty() {
+            let text = "noise and the calibration of everything that is free explain every position";
+            return (Verdict::NoGap, vec![text.into()]);
+        }
+        if let Some(text) = self.undecided(findings) {
+            return (Verdict::InsufficientData, vec![text]);
+        }
+        let [before, after] = self.before_and_after();
+        let mut reasons = vec![format!(
+            "on poses held out of the fit the median error falls from {:.3} to {:.3} mm",
+            before.median_mm, after.median_mm
+        )];
+        if left.chi2_per_dof > MATERIAL_VARIANCE {
+            reasons.extend(self.left_over(left));
+        }
+        reasons.extend(angle_laws.iter().filter_map(Competing::as_good));
+        (Verdict::Explained, reasons)
+    }
+
+    /// Verdict and reasons if the model does not describe the positions: there are too few, or too much is left, or too many
+    /// are gross errors, or an effect cannot be real. Otherwise `None`.
+    fn not_described(
+        &self,
+        campaign: &Campaign,
+        left: &LackOfFit,
+        findings: &[Finding],
+    ) -> Option<(Verdict, Vec<String>)> {
+        let count = campaign.positions.len();
+        if count < FEWEST {
+            let text = format!("{count} positions are too few: give at least {FEWEST}");
+            return Some((Verdict::InsufficientData, vec![text]));
+        }
+        let excess = left.chi2_per_dof > MATERIAL_VARIANCE;
+        if left.fails || (findings.is_empty() && excess) || left.chi2_per_dof.sqrt() > TOO_FAR_OFF {
+            return Some((Verdict::Unexplained, self.left_over(left)));
+        }
+        if self.gross.len() as f64 > FEW * count as f64 {
+            let text = format!(
+                "{} of {count} positions would be gross errors: so many are a structure that the model lacks",
+                self.gross.len()
+            );
+            return Some((Verdict::Unexplained, vec![text]));
+        }
+        findings.iter().find_map(beyond_bounds).map(|text| (Verdict::Unexplained, vec![text]))
+    }
+
+    /// Verdict and reasons if the calibration cannot be right: the poses do not determine it, a factor is beyond what is
+    /// possible, or the geometry is far from the arm file. Otherwise `None`.
+    fn not_calibrated(&self, campaign: &Campaign, adjusted: &[Calibrated]) -> Option<(Verdict, Vec<String>)> {
         let last = &self.stages[self.stages.len() - 1];
         if last.median_mm > UNSTABLE * last.fitted_median_mm.max(campaign.positions[0].sigma_mm()) {
             let text = format!(
@@ -172,57 +210,43 @@ impl Positions {
                  similar to calibrate everything that is free; turn every joint through more of its range, or free less",
                 last.median_mm, last.fitted_median_mm
             );
-            return (Verdict::InsufficientData, vec![text]);
+            return Some((Verdict::InsufficientData, vec![text]));
         }
         if let Some(text) = caution::impossible_calibration(campaign, self.tolerances(), adjusted) {
-            return (Verdict::Unexplained, vec![text]);
+            return Some((Verdict::Unexplained, vec![text]));
         }
-        if self.has_far_geometry() {
-            let text = "the positions fit only an arm that is far from the arm file: check the unit of the positions, and the \
-                        lengths and axes in the arm file";
-            return (Verdict::InsufficientData, vec![text.into()]);
-        }
-        if findings.is_empty() {
-            let text = "noise and the calibration of everything that is free explain every position";
-            return (Verdict::NoGap, vec![text.into()]);
-        }
+        let text = "the positions fit only an arm that is far from the arm file: check the unit of the positions, and the \
+                    lengths and axes in the arm file";
+        self.has_far_geometry().then(|| (Verdict::InsufficientData, vec![text.into()]))
+    }
+
+    /// Why the positions do not decide for the effects `findings`, as a sentence; `None` if they do.
+    fn undecided(&self, findings: &[Finding]) -> Option<String> {
         let crowded = |f: &Finding| too_many_alternatives(&f.label(), f.indistinguishable_from.len());
         if let Some(text) = findings.iter().find_map(crowded) {
-            return (Verdict::InsufficientData, vec![text]);
+            return Some(text);
         }
         if let Some(finding) = findings.iter().find(|finding| finding.is_within_its_deviation()) {
-            let text = format!(
+            return Some(format!(
                 "{} is smaller than its own standard deviation: it is a suspect and no finding",
                 finding.label()
-            );
-            return (Verdict::InsufficientData, vec![text]);
+            ));
         }
         let [before, after] = self.before_and_after();
         if after.median_mm > before.median_mm {
             let labels: Vec<String> = findings.iter().map(Finding::label).collect();
             let [after, before] =
                 [after, before].map(|stage| format!("a median error of {:.3} mm", stage.median_mm));
-            let text = does_not_predict(&labels.join(" + "), &after, &before);
-            return (Verdict::InsufficientData, vec![text]);
+            return Some(does_not_predict(&labels.join(" + "), &after, &before));
         }
         let jumps = self.large_jumps();
-        if !jumps.is_empty() {
-            let text = format!(
+        (!jumps.is_empty()).then(|| {
+            format!(
                 "the measured points jump by {} and nobody declared it: state positions.sessions in campaign.json if \
                  something was moved there; if not, something that this model lacks changes at that row",
                 jumps.join(", ")
-            );
-            return (Verdict::InsufficientData, vec![text]);
-        }
-        let mut reasons = vec![format!(
-            "on poses held out of the fit the median error falls from {:.3} to {:.3} mm",
-            before.median_mm, after.median_mm
-        )];
-        if excess {
-            reasons.extend(self.left_over(left));
-        }
-        reasons.extend(angle_laws.iter().filter_map(Competing::as_good));
-        (Verdict::Explained, reasons)
+            )
+        })
     }
 
     /// Adds to the alternatives of the finding `finding` (effect number `i` of the model) the session that would
@@ -493,8 +517,7 @@ fn beyond_bounds(finding: &Finding) -> Option<String> {
     finding.parameters.iter().find_map(|(name, estimates)| {
         let mut known = kind.places.iter().flat_map(|place| (kind.parameters)(*place));
         let parameter = known.find(|parameter| parameter.name == name)?;
-        let is_beyond =
-            |e: &&Estimate| e.value.is_finite() && !(parameter.low..=parameter.high).contains(&e.value);
+        let is_beyond = |e: &&Estimate| e.value.is_finite() && !parameter.allows(e.value);
         let value = estimates.iter().find(is_beyond)?.value;
         Some(format!(
             "{} would have {name} = {}, and only {} to {} is possible: something else is missing",

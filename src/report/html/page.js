@@ -238,7 +238,7 @@ function views(f) {
     g.font = FONT;
   }
 
-  const px = (a) => { const l = 74, r = parallel.w - 58; return axes.length > 1 ? l + (a * (r - l)) / (axes.length - 1) : l; };
+  const px = (a) => { const l = 122, r = parallel.w - 58; return axes.length > 1 ? l + (a * (r - l)) / (axes.length - 1) : l; };
   const py = (p) => parallel.h - 16 - p * (parallel.h - 16 - 62);
   function line(g, i) {
     let joined = false;
@@ -279,7 +279,7 @@ function views(f) {
       for (const [p, label] of axis.ticks) {
         if (below - py(p) < 11) continue;
         below = py(p);
-        const words = clip(g, label, Math.min(gap - 12, 92));
+        const words = clip(g, label, a ? Math.min(gap - 12, 92) : x - 8);
         g.strokeText(words, x - 5, py(p) + 3.5); g.fillText(words, x - 5, py(p) + 3.5);
       }
       const limit = state.limits[a];

@@ -1,10 +1,7 @@
 //! Laws of prismatic joints whose guide or drive is more compliant in one part of the travel than in another.
 
 use super::{Builder, Law, one_or_both};
-
-/// Strain coordinates of a prismatic joint: three rotations of its guide, then its travel.
-const GUIDE: std::ops::Range<usize> = 0..3;
-const DRIVE: std::ops::Range<usize> = 3..4;
+use crate::reconcile::forward::coefficients::GUIDE_ROTATIONS;
 
 impl Builder<'_> {
     /// For each prismatic joint, the laws that the compliance of its guide, and that of its drive, changes with the
@@ -14,12 +11,12 @@ impl Builder<'_> {
         let joints = layout.slides.iter().zip(self.forward.nominal.structure.prismatics());
         let laws = joints.flat_map(|(first, joint)| {
             let of = |part: &str, own: std::ops::Range<usize>| {
-                let column =
-                    |power| self.travel_column(&joint.name, own.start + first..own.end + first, power);
+                let column = |power| self.travel_column(&joint.name, own.clone(), power);
                 let what = format!("a {part} of {} whose stiffness changes with its position", joint.name);
                 one_or_both(&what, [column(1), column(2)])
             };
-            of("guide", GUIDE).into_iter().chain(of("drive", DRIVE))
+            let travel = first + GUIDE_ROTATIONS;
+            of("guide", *first..travel).into_iter().chain(of("drive", travel..travel + 1))
         });
         laws.collect()
     }
