@@ -338,28 +338,36 @@ pub(crate) const SPRINGS: Kind =
 /// A list of counterweights, of an arm or a study.
 pub(crate) const COUNTERWEIGHTS: Kind = Kind::List(&Kind::Object(&COUNTERWEIGHT));
 
+/// A number of a spring or a counterweight. In a study it may be a list of values to choose from.
+const NUMBER_OR_CHOICES: Kind = Kind::Either(&[Kind::Number, Kind::NonEmpty(&Kind::Number)]);
+/// The same for a number that is not negative.
+const NON_NEGATIVE_OR_CHOICES: Kind =
+    Kind::Either(&[Kind::NonNegative, Kind::NonEmpty(&Kind::NonNegative)]);
+/// The same for a number greater than zero.
+const POSITIVE_OR_CHOICES: Kind = Kind::Either(&[Kind::Positive, Kind::NonEmpty(&Kind::Positive)]);
+
 const SPRING_NAME: Key =
     optional("name", Kind::Name, "-", "spring 1, ...", "Name, unique among the springs.");
 
 /// The keys of a spring between two points.
 pub(crate) static SPRING: Shape = Shape::new(
     "spring",
-    "A spring between two points: its force is force_n + stiffness (length - free length).",
+    "A spring between two points: its force is force_n + stiffness (length - free length). In a study, a list of numbers leaves a choice.",
     &[
         SPRING_NAME,
         required("from", Kind::Object(&SPRING_END), "-", "One end."),
         required("to", Kind::Object(&SPRING_END), "-", "The other end, on another part of the arm."),
-        optional("stiffness_n_per_m", Kind::NonNegative, "N/m", "none", "Stiffness, with free_length_m."),
+        optional("stiffness_n_per_m", NON_NEGATIVE_OR_CHOICES, "N/m", "none", "Stiffness, with free_length_m."),
         optional(
             "free_length_m",
-            Kind::NonNegative,
+            NON_NEGATIVE_OR_CHOICES,
             "m",
             "none",
             "Length at which the stiffness has no part in the force, with stiffness_n_per_m; 0 is allowed.",
         ),
         optional(
             "force_n",
-            Kind::Number,
+            NUMBER_OR_CHOICES,
             "N",
             "0",
             "Constant part of the force; negative pushes the ends apart.",
@@ -392,12 +400,12 @@ pub(crate) static SPRING_END: Shape = Shape::new(
 /// The keys of a spring about a joint.
 pub(crate) static TORSION_SPRING: Shape = Shape::new(
     "torsion spring",
-    "A spring that turns a joint.",
+    "A spring that turns a joint. In a study, a list of numbers leaves a choice.",
     &[
         SPRING_NAME,
         required("joint", Kind::Text, "-", "The joint."),
-        required("stiffness_nm_per_rad", Kind::Positive, "N m/rad", "Stiffness."),
-        required("free_deg", Kind::Number, "deg", "Angle of the joint at which it has no torque."),
+        required("stiffness_nm_per_rad", POSITIVE_OR_CHOICES, "N m/rad", "Stiffness."),
+        required("free_deg", NUMBER_OR_CHOICES, "deg", "Angle of the joint at which it has no torque."),
     ],
     &[],
 );
@@ -405,7 +413,7 @@ pub(crate) static TORSION_SPRING: Shape = Shape::new(
 /// The keys of a counterweight.
 pub(crate) static COUNTERWEIGHT: Shape = Shape::new(
     "counterweight",
-    "A point mass that balances the arm.",
+    "A point mass that balances the arm. In a study, a list of masses leaves a choice.",
     &[
         optional("name", Kind::Text, "-", "none", "Name, for people."),
         required("at", Kind::Text, "-", "The joint or link that carries it; of a joint the side that turns."),
@@ -415,7 +423,7 @@ pub(crate) static COUNTERWEIGHT: Shape = Shape::new(
             "m",
             "Where it is, from the start of the element in the frame that it carries.",
         ),
-        BODY_MASS,
+        required("mass_kg", NON_NEGATIVE_OR_CHOICES, "kg", "Mass."),
     ],
     &[],
 );
