@@ -341,8 +341,7 @@ pub(crate) const COUNTERWEIGHTS: Kind = Kind::List(&Kind::Object(&COUNTERWEIGHT)
 /// A number of a spring or a counterweight. In a study it may be a list of values to choose from.
 const NUMBER_OR_CHOICES: Kind = Kind::Either(&[Kind::Number, Kind::NonEmpty(&Kind::Number)]);
 /// The same for a number that is not negative.
-const NON_NEGATIVE_OR_CHOICES: Kind =
-    Kind::Either(&[Kind::NonNegative, Kind::NonEmpty(&Kind::NonNegative)]);
+const NON_NEGATIVE_OR_CHOICES: Kind = Kind::Either(&[Kind::NonNegative, Kind::NonEmpty(&Kind::NonNegative)]);
 /// The same for a number greater than zero.
 const POSITIVE_OR_CHOICES: Kind = Kind::Either(&[Kind::Positive, Kind::NonEmpty(&Kind::Positive)]);
 
@@ -357,7 +356,13 @@ pub(crate) static SPRING: Shape = Shape::new(
         SPRING_NAME,
         required("from", Kind::Object(&SPRING_END), "-", "One end."),
         required("to", Kind::Object(&SPRING_END), "-", "The other end, on another part of the arm."),
-        optional("stiffness_n_per_m", NON_NEGATIVE_OR_CHOICES, "N/m", "none", "Stiffness, with free_length_m."),
+        optional(
+            "stiffness_n_per_m",
+            NON_NEGATIVE_OR_CHOICES,
+            "N/m",
+            "none",
+            "Stiffness, with free_length_m.",
+        ),
         optional(
             "free_length_m",
             NON_NEGATIVE_OR_CHOICES,

@@ -103,7 +103,12 @@ fn fronts_of_all(
         ended.push(search_choice(each, &how, choice, &dir.join(folder_of_choice(at, choice)), catalogs)?);
         unfinished.keep(&serde_json::to_vec(&ended).unwrap_or_default());
     }
-    choices.iter().zip(ended).enumerate().map(|(at, (choice, ended))| front_of(dir, at, choice, ended)).collect()
+    choices
+        .iter()
+        .zip(ended)
+        .enumerate()
+        .map(|(at, (choice, ended))| front_of(dir, at, choice, ended))
+        .collect()
 }
 
 /// The time for the next search, of the time that is left until `deadline` for `searches` searches.
@@ -194,7 +199,8 @@ fn publish(
     ];
     files.extend(pictures(&comparison, &contenders));
     folder.publish(&files)?;
-    let lines: String = words_of(dir, fronts, &joint).iter().map(|sentence| wrap(sentence, TERMINAL, "")).collect();
+    let lines: String =
+        words_of(dir, fronts, &joint).iter().map(|sentence| wrap(sentence, TERMINAL, "")).collect();
     let text = format!(
         "{}\n{lines}\nwritten to {}: {}\n",
         choices_table(fronts, &joint).to_text(),
@@ -221,7 +227,8 @@ fn pictures(comparison: &Comparison, contenders: &[Contender]) -> Vec<(String, V
 fn words_of(dir: &Path, fronts: &[ChoiceFront], joint: &FrontTable) -> Vec<String> {
     let picks = picks_of_joint(fronts, joint).into_iter().map(|(pick, of)| {
         let [mass, tip, mode] =
-            [pick.design.mass_kg, pick.design.tip_deflection_mm, pick.design.lowest_mode_hz].map(|x| significant(x, 4));
+            [pick.design.mass_kg, pick.design.tip_deflection_mm, pick.design.lowest_mode_hz]
+                .map(|x| significant(x, 4));
         format!(
             "{}: {} with {}, {mass} kg, {tip} mm, {mode} Hz; `armwright design {} {}` writes it.",
             pick.names.join(", "),
@@ -253,13 +260,9 @@ fn proof_words(fronts: &[ChoiceFront]) -> String {
 }
 
 /// The summary of all choices as Markdown. Its commands are typed in the folder of all choices.
-fn summary(
-    asked: &Asked,
-    fronts: &[ChoiceFront],
-    joint: &FrontTable,
-    comparison: &Comparison,
-) -> String {
-    let listed: String = words_of(Path::new(""), fronts, joint).iter().map(|sentence| format!("- {sentence}\n")).collect();
+fn summary(asked: &Asked, fronts: &[ChoiceFront], joint: &FrontTable, comparison: &Comparison) -> String {
+    let listed: String =
+        words_of(Path::new(""), fronts, joint).iter().map(|sentence| format!("- {sentence}\n")).collect();
     format!(
         "# {}\n\n{}\n\nThe study leaves springs or counterweights open. Each choice was searched by itself; its folder has its \
          result. Commands are for this folder.\n\n{}\n{listed}\n{}",

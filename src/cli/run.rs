@@ -93,12 +93,7 @@ impl RunArgs {
     }
 
     /// The study with the effects that the user gives.
-    fn with_corrections(
-        &self,
-        study: Study,
-        text: String,
-        catalogs: &Catalogs,
-    ) -> Result<Asked, Failure> {
+    fn with_corrections(&self, study: Study, text: String, catalogs: &Catalogs) -> Result<Asked, Failure> {
         match &self.effects {
             None => Ok(Asked { corrections: left_out(&study), study, text }),
             Some(path) => corrections::from_arm_file(path, &study, &text, catalogs),
@@ -369,6 +364,7 @@ fn header_words(column: &str) -> String {
 /// The page, for a browser, of one of the paper's studies, with the pictures and tables of the study.
 fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> DocumentPage {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let [facts, timing] = facts_of(run);
     let ending = |end: &'static str| files.iter().filter_map(move |(n, b)| Some((n.strip_suffix(end)?, b)));
     DocumentPage {
         title: study.to_string(),
@@ -385,7 +381,8 @@ fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> Document
                 (caption, table.rounded(PAGE_DIGITS))
             })
             .collect(),
-        facts: facts_of(run),
+        facts,
+        timing,
     }
 }
 

@@ -31,14 +31,10 @@ impl Posed<'_> {
     /// of each element, base to tip; `pose_rad` is the pose in which the arm is. A joint has one point; a link and
     /// the travel of a prismatic joint have several.
     pub fn centre_line(&self, pose_rad: &[f64], coordinates: &[Vec<f64>]) -> Vec<Station> {
-        let mut elements = self.elements().zip(coordinates).peekable();
+        let mut elements = self.elements().zip(coordinates);
         let mut walk = Walk::default();
         let mut out = Vec::new();
-        if elements.peek().is_some_and(|(e, _)| e.name == "base") {
-            walk.deflects(elements.next());
-        }
-        let is_frame = |e: &ElasticElement| e.name.ends_with(".frame_compliance");
-        if elements.peek().is_some_and(|(e, _)| is_frame(e)) {
+        for _ in 0..self.chain.elements_of_base() {
             walk.deflects(elements.next());
         }
         for piece in &self.chain.pieces {
@@ -67,7 +63,7 @@ impl Posed<'_> {
                     out.push(walk.station(&joint.name, walk.at_m, None));
                 }
                 Prepared::Link(link, beam) => {
-                    if elements.peek().is_some_and(|(e, _)| is_frame(e)) {
+                    if !link.root_frame.springs().is_empty() {
                         walk.deflects(elements.next());
                     }
                     let element = if beam.is_some() { elements.next() } else { None };
@@ -130,6 +126,7 @@ impl Walk {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arm::effect::subject::Subject;
     use crate::arm::file::read_arm_document;
     use crate::arm::load::Payload;
     use crate::arm::{JointModel, LinkModel};
@@ -160,6 +157,40 @@ mod tests {
         assert!((last.at_m - posed.tip_m).norm() < 1e-12);
         assert!((last.moved_m - tip).norm() < 1e-12 * tip.norm().max(1.0), "{} {tip}", last.moved_m);
         assert_eq!(line[0].moved_m, Vector3::zeros());
+    }
+
+    /// Stations of the arm in a pose with these effects, where the first joint has the name `first`, and the
+    /// displacement of the tip.
+    fn stations(first: &str, effects: &str) -> (Vec<Station>, Vector3<f64>) {
+        let text = ARM.replace("\"j1\"", &format!("\"{first}\""));
+        let text = text.replacen("\"name\": \"a\"", &format!("\"name\": \"a\", \"effects\": [{effects}]"), 1);
+        let arm = read_arm_document(Document::parse("a.json", &text).expect("JSON"), &Catalogs::default());
+        let arm = arm.expect("an arm");
+        let mut subject = Subject::new(arm.structure(JointModel::ThreeSegment));
+        arm.effects.iter().for_each(|effect| subject.apply(effect));
+        let chain = Chain::new(&subject.structure, LinkModel::Full);
+        let pose = [0.3, -0.4];
+        let payload = Payload { mass_kg: 4.0, ..Payload::default() };
+        let posed = chain.pose_rad(&pose, &payload, Vector3::new(0.0, 30.0, 0.0));
+        let statics = posed.statics();
+        (posed.centre_line(&pose, &statics.deformations), statics.tip_displacement_m)
+    }
+
+    #[test]
+    fn the_centre_line_follows_every_compliance_of_the_base_and_no_name() {
+        let lift = r#"{"effect": "base_lift", "at": "base", "parameters": {"stiffness_nm_per_rad": 2e5, "preload_nm": 5}}"#;
+        let tilt =
+            r#"{"effect": "base_compliance", "at": "base", "parameters": {"stiffness_nm_per_rad": 3e5}}"#;
+        let both = format!("{lift}, {tilt}");
+        for effects in ["", lift, tilt, both.as_str()] {
+            let (line, tip) = stations("j1", effects);
+            let last = line.last().expect("stations");
+            assert!((last.moved_m - tip).norm() < 1e-12, "{effects}: {} {tip}", last.moved_m);
+            let (named, _) = stations("base", effects);
+            for (one, other) in line.iter().zip(&named) {
+                assert_eq!(one.moved_m, other.moved_m, "{effects}: {}", one.piece);
+            }
+        }
     }
 
     #[test]

@@ -238,6 +238,17 @@ impl Chain {
         }
     }
 
+    /// Number of elastic elements of the base, which a walk adds before those of the first piece: its tilt, its feet and
+    /// its frame.
+    pub(super) fn elements_of_base(&self) -> usize {
+        let parts = [
+            self.base_tilt_rad_per_nm > 0.0,
+            self.base_lift.is_some(),
+            !self.base_frame.springs().is_empty(),
+        ];
+        parts.into_iter().filter(|is_there| *is_there).count()
+    }
+
     /// Walks from base to tip and collects the elements and bodies. `springs` are the forces of the springs, which are
     /// inserted on the way, and `deflections` those of the elements.
     fn walk(&self, pose_rad: &[f64], springs: Vec<EndLoad>, deflections: Deflections) -> Walk {

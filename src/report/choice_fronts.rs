@@ -30,8 +30,10 @@ pub(crate) struct ChoiceFront {
 /// Those designs of all choices that no design of any choice dominates, as one front. Its columns are the choice, the
 /// numbers that are chosen, and the columns of the fronts; a cell is blank where a front does not have the column.
 pub(crate) fn joint_front(choices: &[ChoiceFront]) -> FrontTable {
-    let listed: Vec<(&ChoiceFront, Design)> =
-        choices.iter().flat_map(|of| designs(&of.front).into_iter().map(move |design| (of, design))).collect();
+    let listed: Vec<(&ChoiceFront, Design)> = choices
+        .iter()
+        .flat_map(|of| designs(&of.front).into_iter().map(move |design| (of, design)))
+        .collect();
     let points: Vec<[f64; 3]> = listed
         .iter()
         .map(|(_, design)| [design.tip_deflection_mm, design.mass_kg, -design.lowest_mode_hz])
@@ -94,7 +96,10 @@ pub(crate) fn choices_table(choices: &[ChoiceFront], joint: &FrontTable) -> Tabl
 }
 
 /// The picks of the joint front, each with the choice to which it belongs.
-pub(crate) fn picks_of_joint<'c>(choices: &'c [ChoiceFront], joint: &FrontTable) -> Vec<(Pick, &'c ChoiceFront)> {
+pub(crate) fn picks_of_joint<'c>(
+    choices: &'c [ChoiceFront],
+    joint: &FrontTable,
+) -> Vec<(Pick, &'c ChoiceFront)> {
     let of_row: Vec<&str> = folders(joint).collect();
     let with_choice = |pick: Pick| {
         let of = choices.iter().find(|of| of.folder == of_row[pick.design.row])?;

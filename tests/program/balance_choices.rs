@@ -123,7 +123,8 @@ fn a_run_of_choices_that_failed_goes_on_with_the_choices_that_are_left() {
     let text = study(&json!(FORCES_N), &json!(2));
     run(here, &text, &["--out", "whole"]);
     let choices: Value =
-        serde_json::from_slice(&std::fs::read(here.join("whole/choices.json")).expect("a file")).expect("JSON");
+        serde_json::from_slice(&std::fs::read(here.join("whole/choices.json")).expect("a file"))
+            .expect("JSON");
     let second = choices["choices"][1]["folder"].as_str().expect("a folder");
     // a file of the user's stands in the way of the second choice
     let foreign = here.join("out").join(second).join("front.csv");
@@ -149,11 +150,17 @@ fn choices_without_a_design_are_said_and_a_study_without_any_is_infeasible() {
     // the hard spring overloads every drive of the empty arm
     run(here.path(), &study(&json!([0, -40_000_000]), &json!(2)), &["--out", "out"]);
     let choices: Value =
-        serde_json::from_slice(&std::fs::read(here.path().join("out/choices.json")).expect("a file")).expect("JSON");
-    let ended: Vec<&str> =
-        choices["choices"].as_array().expect("a list").iter().filter_map(|of| of["status"].as_str()).collect();
+        serde_json::from_slice(&std::fs::read(here.path().join("out/choices.json")).expect("a file"))
+            .expect("JSON");
+    let ended: Vec<&str> = choices["choices"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .filter_map(|of| of["status"].as_str())
+        .collect();
     assert_eq!(ended, ["complete", "infeasible"]);
-    std::fs::write(here.path().join("none.json"), study(&json!([-40_000_000, -50_000_000]), &json!(2))).expect("written");
+    std::fs::write(here.path().join("none.json"), study(&json!([-40_000_000, -50_000_000]), &json!(2)))
+        .expect("written");
     let (code, said) = armwright(here.path(), &["run", "none.json", "--out", "none"]);
     assert!(code == 6 && said.contains("no choice"), "{said}");
 }

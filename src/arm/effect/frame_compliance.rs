@@ -30,13 +30,12 @@ pub(crate) const KIND: Kind = Kind {
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
     let added = matrix(numbers);
-    match subject.structure.link_mut(at) {
-        Some(link) => link.root_frame = FrameCompliance(link.root_frame.0 + added),
-        None if at == "base" => {
-            subject.structure.base_frame = FrameCompliance(subject.structure.base_frame.0 + added);
-        }
+    // where a link has the name of the base, the base is meant, as for every effect
+    if at == "base" {
+        subject.structure.base_frame = FrameCompliance(subject.structure.base_frame.0 + added);
+    } else if let Some(link) = subject.structure.link_mut(at) {
         // a structure may be only a part of the arm and lack this link; then nothing changes
-        None => {}
+        link.root_frame = FrameCompliance(link.root_frame.0 + added);
     }
 }
 
