@@ -186,8 +186,8 @@ fn unknown_sizes(asking: &[&SpaceJoint], catalogs: &Catalogs) -> Option<String> 
     });
     let (gears, motors) = (gears.count(), motors.count());
     let counts = format!(
-        "A size that the catalogs do not give is not checked: that is so of {gears} gears and {motors} motors that these joints \
-         may have."
+        "{gears} gears and {motors} motors that these joints may have lack a size in the catalogs, and that size is not \
+         checked."
     );
     (gears + motors > 0).then_some(counts)
 }
