@@ -162,9 +162,8 @@ impl SearchArgs {
 pub(super) fn part_or_none(text: &str) -> Result<f64, String> {
     match text.trim_end_matches('%').trim_end().parse::<f64>() {
         Ok(0.0) => Ok(0.0),
-        _ => {
-            part(text).map_err(|_| format!("\"{text}\" is no percentage from 0 % to below 100 %, such as 2%"))
-        }
+        _ => part(text)
+            .map_err(|_| format!("\"{text}\" is not a percentage from 0 % to below 100 %, such as 2%")),
     }
 }
 

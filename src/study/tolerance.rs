@@ -92,7 +92,7 @@ pub fn part(text: &str) -> Result<f64, String> {
     let (number, scale) = text.strip_suffix('%').map_or((text, 1.0), |n| (n.trim_end(), 0.01));
     match number.parse::<f64>() {
         Ok(x) if x > 0.0 && x * scale < 1.0 => Ok(x * scale),
-        _ => Err(format!("\"{text}\" is no percentage above 0 % and below 100 %, such as 20%")),
+        _ => Err(format!("\"{text}\" is not a percentage above 0 % and below 100 %, such as 20%")),
     }
 }
 
