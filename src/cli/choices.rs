@@ -2,6 +2,7 @@
 //! folder of its own, and joins their fronts.
 
 use super::asked::Asked;
+use super::beside::{another_stands, say_missing};
 use super::compare::files_of_comparison;
 use super::compare_remarks::{remarks, said_by};
 use super::exit::{Answer, Exit};
@@ -49,14 +50,17 @@ enum Ended {
     NothingFound,
 }
 
+/// Searches a study, with its text, in a given way and writes its result to a folder.
+type SearchInto<'a> = dyn Fn(&SearchArgs, &Path, Study, String) -> Result<Written, Failure> + 'a;
+
 /// How each choice is searched.
 pub(super) struct Each<'a> {
     /// The search options that the user gives. The time limit is for all choices together.
     pub how: &'a SearchArgs,
     /// The other options, as text by which an unfinished run is recognized.
     pub further: String,
-    /// Searches a study, with its text, in a given way and writes its result to a folder.
-    pub search: &'a dyn Fn(&SearchArgs, &Path, Study, String) -> Result<Written, Failure>,
+    /// Searches one choice.
+    pub search: &'a SearchInto<'a>,
 }
 
 /// Runs every choice of a study and writes the joint result to the folder `dir`.
@@ -72,7 +76,7 @@ pub(super) fn run_choices(
 ) -> Result<Answer, Failure> {
     let folder = ResultFolder::open(dir, CHOICES, &FILES)?;
     let answer = fronts_of_all(asked, dir, each, catalogs, log)
-        .and_then(|fronts| publish(asked, &fronts, (dir, &folder), catalogs));
+        .and_then(|fronts| publish(asked, &fronts, (dir, &folder), catalogs, log));
     folder.settle(answer.as_ref().map(|answer| answer.exit))?;
     answer
 }
@@ -174,6 +178,7 @@ fn publish(
     fronts: &[ChoiceFront],
     (dir, folder): (&Path, &ResultFolder),
     catalogs: &Catalogs,
+    log: Log,
 ) -> Result<Answer, Failure> {
     let with_designs: Vec<&ChoiceFront> = fronts.iter().filter(|of| !of.front.rows.is_empty()).collect();
     if with_designs.is_empty() {
@@ -198,7 +203,8 @@ fn publish(
         (CHOICES.to_string(), manifest),
     ];
     files.extend(pictures(&comparison, &contenders));
-    folder.publish(&files)?;
+    let left_out = folder.publish(&files)?;
+    say_missing(&left_out.iter().map(|name| another_stands(name)).collect::<Vec<_>>(), log);
     let lines: String =
         words_of(dir, fronts, &joint).iter().map(|sentence| wrap(sentence, TERMINAL, "")).collect();
     let text = format!(

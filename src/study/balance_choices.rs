@@ -9,21 +9,29 @@ use serde_json::{Map, Value};
 /// The largest number of choices of a study, because each is searched by itself.
 pub(super) const MOST_CHOICES: usize = 200;
 
-/// The numbers of springs and counterweights that may be lists of values: the key in the study, the name of an item
-/// without a name of its own, and for each number its key, its name and its unit.
-const OPEN: [(&str, &str, &[(&str, &str, &str)]); 2] = [
-    (
-        "springs",
-        "spring",
-        &[
-            ("force_n", "force", "N"),
-            ("stiffness_n_per_m", "stiffness", "N/m"),
-            ("free_length_m", "free length", "m"),
-            ("stiffness_nm_per_rad", "stiffness", "N m/rad"),
-            ("free_deg", "free angle", "deg"),
+/// The springs or the counterweights of a study, with those of their numbers that may be lists of values.
+struct Balanced {
+    /// Key of the list in the study.
+    list: &'static str,
+    /// What an item without a name of its own is called, with its number.
+    unnamed: &'static str,
+    /// Key, name and unit of each number.
+    numbers: &'static [[&'static str; 3]],
+}
+
+const BALANCED: [Balanced; 2] = [
+    Balanced {
+        list: "springs",
+        unnamed: "spring",
+        numbers: &[
+            ["force_n", "force", "N"],
+            ["stiffness_n_per_m", "stiffness", "N/m"],
+            ["free_length_m", "free length", "m"],
+            ["stiffness_nm_per_rad", "stiffness", "N m/rad"],
+            ["free_deg", "free angle", "deg"],
         ],
-    ),
-    ("counterweights", "counterweight", &[("mass_kg", "mass", "kg")]),
+    },
+    Balanced { list: "counterweights", unnamed: "counterweight", numbers: &[["mass_kg", "mass", "kg"]] },
 ];
 
 /// A number of a spring or a counterweight that has several values to choose from.
@@ -89,11 +97,11 @@ pub(super) fn number_of_choices(study: &Map<String, Value>) -> usize {
 /// The numbers of a study's springs and counterweights that are lists of values, in the order of the file.
 fn open_numbers(study: &Map<String, Value>) -> Vec<OpenNumber> {
     let mut out = Vec::new();
-    for (list, kind, numbers) in OPEN {
+    for Balanced { list, unnamed, numbers } in BALANCED {
         for (index, item) in study.get(list).and_then(Value::as_array).into_iter().flatten().enumerate() {
-            let unnamed = || format!("{kind} {}", index + 1);
+            let unnamed = || format!("{unnamed} {}", index + 1);
             let of = item["name"].as_str().filter(|n| !n.is_empty()).map_or_else(unnamed, String::from);
-            for &(key, name, unit) in numbers {
+            for &[key, name, unit] in numbers {
                 let Some(values) = item[key].as_array() else { continue };
                 let values = values.iter().filter_map(Value::as_f64).collect();
                 out.push(OpenNumber { list, index, key, of: of.clone(), words: [name, unit], values });

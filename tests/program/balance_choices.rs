@@ -170,7 +170,11 @@ fn verbs_that_take_one_arm_refuse_open_choices_and_faulty_lists_are_named() {
     let here = tempfile::tempdir().expect("a folder");
     let here = here.path();
     let text = study(&json!(FORCES_N), &json!(2));
-    run(here, &text, &["--out", "out"]);
+    // a picture of the user's is not replaced, and the program says so
+    std::fs::create_dir_all(here.join("out/plots")).expect("made");
+    std::fs::write(here.join("out/plots/fronts.svg"), "mine").expect("written");
+    let said = run(here, &text, &["--out", "out"]);
+    assert!(said.contains("not written: plots/fronts.svg"), "{said}");
     let refused = |words: &[&str], part: &str| {
         let (code, said) = armwright(here, words);
         assert!(code != 0 && said.contains(part), "{words:?}: {code} {said}");
