@@ -5,6 +5,7 @@ use super::asked::Asked;
 use super::beside::{another_stands, say_missing};
 use super::compare::files_of_comparison;
 use super::compare_remarks::{remarks, said_by};
+use super::corrections;
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
 use super::finished::{Written, catalogs_hash, pretty};
@@ -189,32 +190,43 @@ fn publish(
         )));
     }
     let joint = joint_front(fronts);
-    let paths: Vec<PathBuf> = with_designs.iter().map(|of| dir.join(&of.folder)).collect();
-    let labels: Vec<String> = with_designs.iter().map(|of| of.words.clone()).collect();
-    let contenders: Vec<Contender> =
-        with_designs.iter().map(|of| Contender::new(&of.words, of.front.clone())).collect();
-    let mut comparison = compare(&contenders, &Thresholds::default());
-    comparison.remarks = remarks(&said_by(&paths, labels)?);
-    let manifest = pretty(&manifest(asked, fronts, &joint, catalogs));
+    let (comparison, contenders) = compared(dir, &with_designs)?;
     let mut files = vec![
         ("front.csv".to_string(), joint.to_csv()),
         ("study.json".to_string(), asked.text.as_bytes().to_vec()),
         ("summary.md".to_string(), summary(asked, fronts, &joint, &comparison).into_bytes()),
-        (CHOICES.to_string(), manifest),
+        (CHOICES.to_string(), pretty(&manifest(asked, fronts, &joint, catalogs))),
     ];
     files.extend(pictures(&comparison, &contenders));
     let left_out = folder.publish(&files)?;
     say_missing(&left_out.iter().map(|name| another_stands(name)).collect::<Vec<_>>(), log);
-    let lines: String =
-        words_of(dir, fronts, &joint).iter().map(|sentence| wrap(sentence, TERMINAL, "")).collect();
+    let sentences = words_of(dir, fronts, &joint);
+    let lines = |words: &[String]| words.iter().map(|w| wrap(w, TERMINAL, "")).collect::<String>();
     let text = format!(
-        "{}\n{lines}\nwritten to {}: {}\n",
+        "{}\n{}\n{}{}\nwritten to {}: {}\n",
         choices_table(fronts, &joint).to_text(),
+        lines(&sentences),
+        lines(&comparison.remarks),
+        corrections::to_text(&asked.corrections),
         dir.display(),
         FILES.join(", ")
     );
     let is_partial = fronts.iter().any(|of| of.status == Status::Partial.word());
     Ok(Answer { text, exit: if is_partial { Exit::Partial } else { Exit::Done } })
+}
+
+/// The fronts of the choices `fronts` side by side, with the remarks of their results.
+///
+/// # Errors
+/// A result is not complete.
+fn compared(dir: &Path, fronts: &[&ChoiceFront]) -> Result<(Comparison, Vec<Contender>), Failure> {
+    let paths: Vec<PathBuf> = fronts.iter().map(|of| dir.join(&of.folder)).collect();
+    let labels: Vec<String> = fronts.iter().map(|of| of.words.clone()).collect();
+    let contenders: Vec<Contender> =
+        fronts.iter().map(|of| Contender::new(&of.words, of.front.clone())).collect();
+    let mut comparison = compare(&contenders, &Thresholds::default());
+    comparison.remarks = remarks(&said_by(&paths, labels)?);
+    Ok((comparison, contenders))
 }
 
 /// The picture and the page of the fronts of all choices.

@@ -50,7 +50,8 @@ use std::time::Instant;
 pub(crate) struct RunArgs {
     /// A built-in study (see `armwright studies`) or a study file
     study: String,
-    /// Folder for the results; default results/<study>, or results/<study>-with-effects
+    /// Folder for the results; default results/<study>, or results/<study>-with-effects, and with -choices at the end if
+    /// the study leaves springs or counterweights open
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Arm file, such as the arm.corrected.json of `reconcile`: its effects are applied to the study's joints
@@ -89,11 +90,6 @@ impl RunArgs {
             Some(most_kg) => up_to_mass(most_kg, study, text, catalogs)?,
             None => (study, text),
         };
-        self.with_corrections(study, text, catalogs)
-    }
-
-    /// The study with the effects that the user gives.
-    fn with_corrections(&self, study: Study, text: String, catalogs: &Catalogs) -> Result<Asked, Failure> {
         match &self.effects {
             None => Ok(Asked { corrections: left_out(&study), study, text }),
             Some(path) => corrections::from_arm_file(path, &study, &text, catalogs),
@@ -253,8 +249,9 @@ fn run_each_choice(
     }
     let name = format!("{}-choices", args.folder(&asked.study));
     let dir = args.out.clone().unwrap_or_else(|| in_results(&name));
+    // the text of each choice comes from the text of the study, which has the effects that the user gives
     let search = |how: &SearchArgs, dir: &Path, study: Study, text: String| {
-        let asked = args.with_corrections(study, text, catalogs)?;
+        let asked = Asked { study, text, corrections: asked.corrections.clone() };
         search_into(args, how, (dir, &asked), (catalogs, overlay), log)
     };
     let further = format!("{:?} {:?}", args.supplements, args.effects);

@@ -201,3 +201,23 @@ fn verbs_that_take_one_arm_refuse_open_choices_and_faulty_lists_are_named() {
     std::fs::write(here.join("arm.json"), arm.to_string()).expect("written");
     refused(&["analyze", "arm.json"], "not a number");
 }
+
+#[test]
+fn the_effects_of_a_measured_arm_count_once_in_every_choice() {
+    let here = tempfile::tempdir().expect("a folder");
+    let here = here.path();
+    let soft = json!({"effect": "connection_compliance", "at": "shoulder", "parameters": {"stiffness_nm_per_rad": 20_000}});
+    let arm = json!({"chain": [{"type": "joint", "name": "shoulder", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e5},
+                              {"type": "link", "name": "upper", "vector_m": [0.5, 0, 0], "mass_kg": 1}],
+                     "effects": [soft]});
+    std::fs::write(here.join("arm.json"), arm.to_string()).expect("written");
+    run(here, &study(&json!(0), &json!(2)), &["--effects", "arm.json", "--out", "one"]);
+    let said = run(here, &study(&json!([0, -300]), &json!(2)), &["--effects", "arm.json", "--out", "two"]);
+    assert!(said.contains("connection_compliance at shoulder"), "{said}");
+    assert!(said.contains("Left out of every number"), "{said}");
+    let choices: Value =
+        serde_json::from_slice(&std::fs::read(here.join("two/choices.json")).expect("a file")).expect("JSON");
+    let first = choices["choices"][0]["folder"].as_str().expect("a folder");
+    let of = |front: &Path| rows(front, &["design_id"]);
+    assert_eq!(of(&here.join("two").join(first).join("front.csv")), of(&here.join("one/front.csv")));
+}

@@ -7,7 +7,7 @@
 use super::kinematics::{EVEN, Geometry, Number, Placer, Placing, rate};
 use crate::arm::effect::waves::{transmission_rad, transmission_waves};
 use crate::arm::structure::JointAngle;
-use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, in_lanes, splat_all};
+use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, in_lanes, load_all, splat_all, store_all};
 use nalgebra::{Rotation3, Vector3};
 
 /// The three components of a vector, each in eight lanes.
@@ -356,24 +356,6 @@ impl LaneWork for Slopes<'_> {
 }
 
 #[inline(always)]
-fn load_all<V: Lanes, const K: usize>(from: &[Eight; K]) -> [V; K] {
-    let mut out = [V::zero(); K];
-    for k in 0..K {
-        out[k] = V::load(&from[k]);
-    }
-    out
-}
-
-#[inline(always)]
-fn store_all<V: Lanes, const K: usize>(from: [V; K]) -> [Eight; K] {
-    let mut out = [[0.0; LANES]; K];
-    for k in 0..K {
-        out[k] = from[k].store();
-    }
-    out
-}
-
-#[inline(always)]
 fn sum<V: Lanes>(a: &[V; 3], b: &[V; 3]) -> [V; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
@@ -452,18 +434,9 @@ mod tests {
     use crate::arm::file::read_arm_document;
     use crate::catalog::Catalogs;
     use crate::input::json::Document;
-    use crate::reconcile::positions::kinematics::{Pose, number_groups};
+    use crate::reconcile::positions::kinematics::{Pose, number_groups, testing::ARM};
     use crate::reconcile::positions::tree::Tree;
     use crate::reconcile::readings::campaign::{Campaign, read_statement};
-
-    const ARM: &str = r#"{"name": "a", "chain": [
-        {"type": "joint", "name": "j1", "axis": [0, 0, 1], "stiffness_nm_per_rad": null},
-        {"type": "link", "name": "l1", "vector_m": [0.1, 0, 0.4]},
-        {"type": "joint", "name": "j2", "axis": [0, 1, 0], "stiffness_nm_per_rad": null},
-        {"type": "link", "name": "l2", "vector_m": [0.6, 0, 0]},
-        {"type": "joint", "name": "j3", "axis": [0, 1, 0], "stiffness_nm_per_rad": null,
-         "coupled": {"j2": -1, "j1": 0.2}},
-        {"type": "link", "name": "l3", "vector_m": [0.2, 0.1, 0]}]}"#;
 
     #[test]
     fn eight_places_and_their_slopes_have_the_bits_of_each_alone() {

@@ -169,8 +169,9 @@ pub(crate) fn ln_likelihood(misses: &[Miss], scale_m: f64) -> f64 {
     misses.iter().map(one).sum()
 }
 
-/// Takes one weighted Gauss-Newton step from the model `here`, with which the samples have the errors `misses`. Sets its compliances to the best values that are
-/// physically possible, and returns the step of all numbers and compliances; `None` if the equations are singular.
+/// Takes one weighted Gauss-Newton step from the model `here`, with which the samples have the errors `misses`. Sets its
+/// compliances to the best values that are physically possible, and returns the step of all numbers and compliances;
+/// `None` if the equations are singular.
 fn step(samples: &[&Sample], misses: &[Miss], numbers: &[Number], here: &mut Fitted) -> Option<Best> {
     let normal = normal_of_fit(samples, misses, numbers, here);
     let best = best_springs(&normal, numbers.len(), &here.compliances)?;

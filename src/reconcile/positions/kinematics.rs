@@ -70,6 +70,11 @@ impl Number {
         }
     }
 
+    /// Whether the number moves a point through the deflection of the arm and not through its geometry.
+    pub(crate) fn acts_through_deflection(&self) -> bool {
+        matches!(self, Number::Gravity(_) | Number::Tolerance(_) | Number::Effect(_))
+    }
+
     /// Whether the number is a rotation that may be large, as for a placement. The fit shortens a step in which such a
     /// rotation is too large.
     pub(crate) fn turns(&self) -> bool {
@@ -534,15 +539,9 @@ fn across(axis: &Unit<Vector3<f64>>) -> [Unit<Vector3<f64>>; 2] {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::arm::file::read_arm_document;
-    use crate::catalog::Catalogs;
-    use crate::input::json::Document;
-    use crate::reconcile::readings::campaign::Campaign;
-    use crate::reconcile::readings::campaign::read_statement;
-
-    const ARM: &str = r#"{"name": "a", "chain": [
+pub(crate) mod testing {
+    /// An arm with two driven joints and a passive one that both turn.
+    pub(crate) const ARM: &str = r#"{"name": "a", "chain": [
         {"type": "joint", "name": "j1", "axis": [0, 0, 1], "stiffness_nm_per_rad": null},
         {"type": "link", "name": "l1", "vector_m": [0.1, 0, 0.4]},
         {"type": "joint", "name": "j2", "axis": [0, 1, 0], "stiffness_nm_per_rad": null},
@@ -550,6 +549,17 @@ mod tests {
         {"type": "joint", "name": "j3", "axis": [0, 1, 0], "stiffness_nm_per_rad": null,
          "coupled": {"j2": -1, "j1": 0.2}},
         {"type": "link", "name": "l3", "vector_m": [0.2, 0.1, 0]}]}"#;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::testing::ARM;
+    use super::*;
+    use crate::arm::file::read_arm_document;
+    use crate::catalog::Catalogs;
+    use crate::input::json::Document;
+    use crate::reconcile::readings::campaign::Campaign;
+    use crate::reconcile::readings::campaign::read_statement;
 
     #[test]
     fn slopes_are_differences_of_places_passive_and_uneven_joints_included() {

@@ -81,13 +81,15 @@ fn deflection_slope(
     sample: &Sample,
     number: &Number,
 ) -> Option<Vector3<f64>> {
-    match *number {
+    let by = match *number {
         Number::Gravity(c) => {
             Some(from_level * (here.leaning(sample, c) + sample.deflection.known_slopes_m[c]))
         }
         Number::Tolerance(k) | Number::Effect(k) => Some(from_level * sample.nominal_m[k]),
         _ => None,
-    }
+    };
+    debug_assert_eq!(by.is_some(), number.acts_through_deflection(), "{number:?}");
+    by
 }
 
 /// Builds the normal equations of all samples, linearized about the model `here`. `further` adds columns that belong
@@ -145,15 +147,13 @@ struct EightRows<'a> {
 impl<'a> EightRows<'a> {
     fn new(here: &'a Fitted, numbers: &'a [Number]) -> Self {
         let placer = EightPlacer::new(&here.geometry);
-        let acts =
-            |j: &usize| matches!(numbers[*j], Number::Gravity(_) | Number::Tolerance(_) | Number::Effect(_));
         Self {
             here,
             numbers,
             from_level: here.geometry.level_to_instrument(),
             slopes: (0..here.geometry.arms()).map(|arm| placer.prepare(arm, numbers)).collect(),
             placer,
-            deflecting: (0..numbers.len()).filter(acts).collect(),
+            deflecting: (0..numbers.len()).filter(|&j| numbers[j].acts_through_deflection()).collect(),
         }
     }
 
