@@ -5,7 +5,7 @@
 //! the displacement fields of its beam are added. The elements come in the same order as in
 //! [`Chain::pose_rad`](super::chain::Chain::pose_rad).
 
-use super::chain::{ElasticElement, Posed, Prepared};
+use super::chain::{ElasticElement, Owner, Posed, Prepared};
 use super::{Twist, displacement_at};
 use crate::arm::prismatic::Moves;
 use nalgebra::{DVector, Rotation3, Vector3};
@@ -34,22 +34,18 @@ impl Posed<'_> {
         let mut elements = self.elements().zip(coordinates).peekable();
         let mut walk = Walk::default();
         let mut out = Vec::new();
-        if elements.peek().is_some_and(|(e, _)| e.name == "base") {
-            walk.deflects(elements.next());
+        while let Some(element) = elements.next_if(|(e, _)| e.owner == Owner::Base) {
+            walk.deflects(Some(element));
         }
-        let is_frame = |e: &ElasticElement| e.name.ends_with(".frame_compliance");
-        if elements.peek().is_some_and(|(e, _)| is_frame(e)) {
-            walk.deflects(elements.next());
-        }
-        for piece in &self.chain.pieces {
+        for (index, piece) in self.chain.pieces.iter().enumerate() {
+            let is_own = |e: &ElasticElement| e.owner == Owner::Piece(index);
             match piece {
                 Prepared::Joint(joint) => {
                     let axis = walk.rotation * joint.axis.into_inner();
                     out.push(walk.station(&joint.name, walk.at_m, Some(axis)));
-                    if joint.tilts() {
-                        walk.deflects(elements.next());
+                    while let Some(element) = elements.next_if(|(e, _)| is_own(e)) {
+                        walk.deflects(Some(element));
                     }
-                    walk.deflects(elements.next());
                     walk.rotation *= Rotation3::from_axis_angle(&joint.axis, joint.angle.of(pose_rad));
                 }
                 Prepared::Prismatic(joint) => {
@@ -59,18 +55,18 @@ impl Posed<'_> {
                     if joint.moves == Moves::Carriage {
                         out.push(walk.station(&joint.name, walk.at_m + travel, None));
                     }
-                    if !joint.guide_is_rigid() {
-                        walk.deflects(elements.next());
+                    while let Some(element) = elements.next_if(|(e, _)| is_own(e)) {
+                        walk.deflects(Some(element));
                     }
-                    walk.deflects(elements.next());
                     walk.at_m += travel;
                     out.push(walk.station(&joint.name, walk.at_m, None));
                 }
                 Prepared::Link(link, beam) => {
-                    if elements.peek().is_some_and(|(e, _)| is_frame(e)) {
-                        walk.deflects(elements.next());
+                    let is_frame = |e: &ElasticElement| is_own(e) && e.own.is_none();
+                    while let Some(element) = elements.next_if(|(e, _)| is_frame(e)) {
+                        walk.deflects(Some(element));
                     }
-                    let element = if beam.is_some() { elements.next() } else { None };
+                    let element = elements.next_if(|(e, _)| is_own(e));
                     let vector = walk.rotation * link.vector_m;
                     for point in 0..POINTS {
                         let xi = point as f64 / (POINTS - 1) as f64;
@@ -168,6 +164,52 @@ mod tests {
             let statics = posed.statics();
             (statics.deformations, statics.tip_displacement_m)
         });
+    }
+
+    /// The centre line of an arm under a payload, with its first joint named `first`, and the tip's displacement.
+    fn line(first: &str, effect: &str, numbers: &str) -> (Vec<Station>, Vector3<f64>) {
+        let effects = format!(
+            r#""effects": [{{"effect": "{effect}", "at": "base", "parameters": {numbers}}}], "chain""#
+        );
+        let text = ARM.replace("\"chain\"", &effects).replace("\"j1\"", &format!("\"{first}\""));
+        let document = Document::parse("a.json", &text).expect("JSON");
+        let arm = read_arm_document(document, &Catalogs::default()).expect("an arm");
+        let chain = Chain::new(&arm.structure(JointModel::ThreeSegment), LinkModel::Full);
+        let pose = [0.3, -0.4];
+        let posed = chain.pose_rad(
+            &pose,
+            &Payload { mass_kg: 4.0, ..Payload::default() },
+            Vector3::new(0.0, 30.0, 0.0),
+        );
+        let statics = posed.statics();
+        (posed.centre_line(&pose, &statics.deformations), statics.tip_displacement_m)
+    }
+
+    #[test]
+    fn the_centre_line_of_a_compliant_base_ends_at_the_tip_whatever_the_name_of_the_first_joint() {
+        let parameters = [
+            ("base_lift", r#"{"stiffness_nm_per_rad": 1e4, "preload_nm": 1}"#),
+            ("base_compliance", r#"{"stiffness_nm_per_rad": 1e4}"#),
+            (
+                "frame_compliance",
+                r#"{"diagonal_rad_per_nm": [1e-5, 2e-5, 0], "coupling_rad_per_nm": [0, 0, 0]}"#,
+            ),
+        ];
+        for (effect, numbers) in parameters {
+            let (stations, tip_m) = line("j1", effect, numbers);
+            let (renamed, _) = line("base", effect, numbers);
+            let end_m = stations.last().expect("stations").moved_m;
+            assert!((end_m - tip_m).norm() < 1e-12, "{effect}: {end_m} {tip_m}");
+            let moved = |line: &[Station]| line.iter().map(|s| s.moved_m).collect::<Vec<_>>();
+            assert_eq!(moved(&stations), moved(&renamed), "{effect}");
+        }
+    }
+
+    #[test]
+    fn a_joint_named_base_that_turns_without_compliance_of_the_base_leaves_the_line_unmoved_before_it() {
+        let at_start =
+            |first: &str| line(first, "bearing_tilt", r#"{"stiffness_nm_per_rad": 1e4}"#).0[0].moved_m;
+        assert_eq!(at_start("base"), Vector3::zeros());
     }
 
     #[test]

@@ -7,7 +7,7 @@
 //! matrix becomes `Tᵀ M T`. `T` is the unit matrix, with the factor in the row of the passive joint and the column of
 //! the driver.
 
-use super::chain::{Item, Posed};
+use super::chain::{Compliance, ElasticElement, Item, Posed};
 use super::{Twist, Wrench};
 use crate::arm::linkage::Linkage;
 use nalgebra::{DMatrix, DVector};
@@ -57,6 +57,13 @@ impl LinkedCoordinates {
     }
 }
 
+impl ElasticElement {
+    /// Whether the element is the torsion spring of the revolute joint `name`. A base has a name that joints may have.
+    fn is_joint(&self, name: &str) -> bool {
+        matches!(self.compliance, Compliance::Joint(_)) && self.name == name
+    }
+}
+
 impl Posed<'_> {
     /// For each linkage, the motion and the torque that it transfers to the driving joint under weight and tip force.
     pub fn transferred(&self) -> Vec<Transferred> {
@@ -71,7 +78,7 @@ impl Posed<'_> {
                 Item::Body(body) => wrench += body.weight(),
                 Item::Load(load) => wrench += load,
                 Item::Elastic(element) => {
-                    out.extend(linkages.iter().filter(|l| l.passive == element.name).map(|l| {
+                    out.extend(linkages.iter().filter(|l| element.is_joint(&l.passive)).map(|l| {
                         let twist = element.twists[0] * l.factor;
                         let torque_nm = twist.dot(&wrench) + element.torque_nm * l.factor;
                         Transferred { driver: l.driver.clone(), twist, torque_nm }
@@ -117,7 +124,7 @@ impl Posed<'_> {
     /// The coupled strain coordinates of each linkage.
     pub(super) fn linked_coordinates(&self) -> Vec<LinkedCoordinates> {
         let coordinate = |name: &str| {
-            let before = self.elements().take_while(|e| e.name != name);
+            let before = self.elements().take_while(|e| !e.is_joint(name));
             before.map(|e| e.twists.len()).sum::<usize>()
         };
         let of = |l: &Linkage| LinkedCoordinates {

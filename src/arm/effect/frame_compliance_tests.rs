@@ -58,3 +58,12 @@ fn alike_about_x_and_y_it_is_the_base_compliance() {
     let base = statics.shares_m.iter().find(|(n, _)| *n == "base").expect("share").1;
     assert!((frame - base).norm() < 1e-15);
 }
+
+#[test]
+fn at_base_it_is_the_base_even_if_a_link_has_this_name() {
+    let mut subject = two_link_subject();
+    subject.structure.link_mut("forearm").expect("a link").name = "base".into();
+    apply(&[3e-6, 5e-6, 4e-6], "base", &mut subject);
+    assert_ne!(subject.structure.base_frame, FrameCompliance::default());
+    assert_eq!(subject.structure.link_mut("base").expect("a link").root_frame, FrameCompliance::default());
+}
