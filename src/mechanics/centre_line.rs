@@ -126,6 +126,7 @@ impl Walk {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arm::effect::subject::Subject;
     use crate::arm::file::read_arm_document;
     use crate::arm::load::Payload;
     use crate::arm::{JointModel, LinkModel};
@@ -158,53 +159,48 @@ mod tests {
         assert_eq!(line[0].moved_m, Vector3::zeros());
     }
 
+    /// Stations of the arm in a pose with these effects, where the first joint has the name `first`, and the
+    /// displacement of the tip.
+    fn stations(first: &str, effects: &str) -> (Vec<Station>, Vector3<f64>) {
+        let text = ARM.replace("\"j1\"", &format!("\"{first}\""));
+        let text = text.replacen("\"name\": \"a\"", &format!("\"name\": \"a\", \"effects\": [{effects}]"), 1);
+        let arm = read_arm_document(Document::parse("a.json", &text).expect("JSON"), &Catalogs::default());
+        let arm = arm.expect("an arm");
+        let mut subject = Subject::new(arm.structure(JointModel::ThreeSegment));
+        arm.effects.iter().for_each(|effect| subject.apply(effect));
+        let chain = Chain::new(&subject.structure, LinkModel::Full);
+        let pose = [0.3, -0.4];
+        let payload = Payload { mass_kg: 4.0, ..Payload::default() };
+        let posed = chain.pose_rad(&pose, &payload, Vector3::new(0.0, 30.0, 0.0));
+        let statics = posed.statics();
+        (posed.centre_line(&pose, &statics.deformations), statics.tip_displacement_m)
+    }
+
+    #[test]
+    fn the_centre_line_follows_every_compliance_of_the_base_and_no_name() {
+        let lift = r#"{"effect": "base_lift", "at": "base", "parameters": {"stiffness_nm_per_rad": 2e5, "preload_nm": 5}}"#;
+        let tilt =
+            r#"{"effect": "base_compliance", "at": "base", "parameters": {"stiffness_nm_per_rad": 3e5}}"#;
+        let frame = r#"{"effect": "frame_compliance", "at": "base",
+            "parameters": {"diagonal_rad_per_nm": [1e-5, 2e-5, 0], "coupling_rad_per_nm": [0, 0, 0]}}"#;
+        let all = format!("{lift}, {tilt}, {frame}");
+        for effects in ["", lift, tilt, frame, all.as_str()] {
+            let (line, tip) = stations("j1", effects);
+            let last = line.last().expect("stations");
+            assert!((last.moved_m - tip).norm() < 1e-12, "{effects}: {} {tip}", last.moved_m);
+            let (named, _) = stations("base", effects);
+            for (one, other) in line.iter().zip(&named) {
+                assert_eq!(one.moved_m, other.moved_m, "{effects}: {}", one.piece);
+            }
+        }
+    }
+
     #[test]
     fn the_end_of_the_centre_line_moves_like_the_tip_in_statics() {
         check(|posed| {
             let statics = posed.statics();
             (statics.deformations, statics.tip_displacement_m)
         });
-    }
-
-    /// The centre line of an arm under a payload, and the displacement of the tip. The first joint is named `first`, and
-    /// the arm has the effect `effect` at its base with the parameters `numbers`, or none.
-    fn line(first: &str, effect: Option<(&str, &str)>) -> (Vec<Station>, Vector3<f64>) {
-        let of =
-            |(effect, numbers)| format!(r#"{{"effect": "{effect}", "at": "base", "parameters": {numbers}}}"#);
-        let effects = format!(r#""effects": [{}], "chain""#, effect.map(of).unwrap_or_default());
-        let text = ARM.replace(r#""chain""#, &effects).replace(r#""j1""#, &format!(r#""{first}""#));
-        let document = Document::parse("a.json", &text).expect("JSON");
-        let arm = read_arm_document(document, &Catalogs::default()).expect("an arm");
-        let chain = Chain::new(&arm.structure(JointModel::ThreeSegment), LinkModel::Full);
-        let pose = [0.3, -0.4];
-        let posed = chain.pose_rad(
-            &pose,
-            &Payload { mass_kg: 4.0, ..Payload::default() },
-            Vector3::new(0.0, 30.0, 0.0),
-        );
-        let statics = posed.statics();
-        (posed.centre_line(&pose, &statics.deformations), statics.tip_displacement_m)
-    }
-
-    #[test]
-    fn the_centre_line_ends_at_the_tip_whatever_the_name_of_the_first_joint() {
-        let effects = [
-            None,
-            Some(("base_lift", r#"{"stiffness_nm_per_rad": 1e4, "preload_nm": 1}"#)),
-            Some(("base_compliance", r#"{"stiffness_nm_per_rad": 1e4}"#)),
-            Some((
-                "frame_compliance",
-                r#"{"diagonal_rad_per_nm": [1e-5, 2e-5, 0], "coupling_rad_per_nm": [0, 0, 0]}"#,
-            )),
-        ];
-        for effect in effects {
-            let (stations, tip_m) = line("j1", effect);
-            let (renamed, _) = line("base", effect);
-            let end_m = stations.last().expect("stations").moved_m;
-            assert!((end_m - tip_m).norm() < 1e-12, "{effect:?}: {end_m} {tip_m}");
-            let moved = |line: &[Station]| line.iter().map(|s| s.moved_m).collect::<Vec<_>>();
-            assert_eq!(moved(&stations), moved(&renamed), "{effect:?}");
-        }
     }
 
     #[test]

@@ -176,4 +176,27 @@ mod tests {
         assert!((frequency_hz / by_hand - 1.0).abs() < 1e-9, "{frequency_hz} {by_hand}");
         assert!(posed.modes(&statics, 1)[0].tip_shape_m.z.abs() > 0.0);
     }
+
+    /// A lever whose second joint turns against the first, which has the name `first`, on a base that tilts.
+    fn lowest_hz_on_a_compliant_base(first: &str) -> f64 {
+        let text = format!(
+            r#"{{"name": "a", "effects": [
+                {{"effect": "base_compliance", "at": "base", "parameters": {{"stiffness_nm_per_rad": 2e4}}}}], "chain": [
+                {{"type": "joint", "name": "{first}", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e4, "mass_kg": 1}},
+                {{"type": "link", "name": "upper", "vector_m": [0.5, 0, 0], "mass_kg": 2}},
+                {{"type": "joint", "name": "j2", "axis": [0, 1, 0], "stiffness_nm_per_rad": 2e4, "mass_kg": 1,
+                  "coupled": {{"{first}": -1}}}},
+                {{"type": "link", "name": "lower", "vector_m": [0.3, 0, 0], "mass_kg": 2}}]}}"#
+        );
+        let document = Document::parse("a.json", &text).expect("JSON");
+        let arm = read_arm_document(document, &Catalogs::default()).expect("an arm");
+        let chain = Chain::new(&arm.structure(JointModel::ThreeSegment), LinkModel::Full);
+        let posed = chain.pose_rad(&[0.35], &Payload::default(), Vector3::zeros());
+        posed.modes(&posed.statics(), 1)[0].frequency_hz
+    }
+
+    #[test]
+    fn a_linkage_turns_its_driving_joint_and_not_a_base_of_the_same_name() {
+        assert_eq!(lowest_hz_on_a_compliant_base("base"), lowest_hz_on_a_compliant_base("j1"));
+    }
 }

@@ -60,10 +60,12 @@ fn alike_about_x_and_y_it_is_the_base_compliance() {
 }
 
 #[test]
-fn at_base_it_is_the_base_even_if_a_link_has_this_name() {
+fn the_base_is_meant_where_a_link_has_its_name_too() {
+    let numbers = [3e-6, 5e-6, 4e-6, 0.0, 0.0, 0.0];
     let mut subject = two_link_subject();
-    subject.structure.link_mut("forearm").expect("a link").name = "base".into();
-    apply(&[3e-6, 5e-6, 4e-6], "base", &mut subject);
-    assert_ne!(subject.structure.base_frame, FrameCompliance::default());
-    assert_eq!(subject.structure.link_mut("base").expect("a link").root_frame, FrameCompliance::default());
+    let link = subject.structure.links().next().expect("a link").name.clone();
+    subject.structure.link_mut(&link).expect("a link").name = "base".into();
+    apply(&numbers, "base", &mut subject);
+    assert_eq!(subject.structure.base_frame.0, matrix(&numbers));
+    assert_eq!(subject.structure.links().next().expect("a link").root_frame.0, Matrix3::zeros());
 }
