@@ -1,5 +1,6 @@
 //! Reads springs and counterweights, of arm files and of studies.
 
+use super::BASE;
 use super::body::{JointBodies, RigidBody};
 use super::keys::{COUNTERWEIGHT, SPRING, SPRING_END, TORSION_SPRING};
 use super::load::vector;
@@ -131,12 +132,13 @@ fn read_end(node: &Node, elements: &[Named]) -> Option<SpringEnd> {
     Some(SpringEnd { on: on?, point_m: point_m? })
 }
 
-/// Reads what an end of a spring is fixed to. If an element is named `base` or `world`, the element is meant.
+/// Reads what an end of a spring is fixed to. `base` and `world` mean base and world, even if an element
+/// has this name.
 fn read_place(node: &Node, elements: &[Named]) -> Option<SpringPlace> {
     match (element(node, elements)?, node.string()?) {
+        (_, BASE) => Some(SpringPlace::Base),
+        (_, "world") => Some(SpringPlace::World),
         (Some(index), _) => Some(SpringPlace::Element(index)),
-        (None, "base") => Some(SpringPlace::Base),
-        (None, "world") => Some(SpringPlace::World),
         (None, name) => node.fault(
             format!("the chain has no \"{name}\""),
             &format!("choose base, world, or one of: {}", names(elements)),

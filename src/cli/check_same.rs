@@ -3,6 +3,7 @@
 use super::failure::Failure;
 use super::manifest::{CHOICES, MANIFESTS, RUN, SHARD, VERDICT};
 use super::result_folder::complete;
+use crate::report::summary::TIMING;
 use crate::report::whole_file::folder_of;
 use minijinja::HtmlEscape;
 use serde_json::Value;
@@ -12,9 +13,6 @@ use std::path::{Path, PathBuf};
 /// Keys of run.json and shard.json that differ from run to run: times, the machine, and the hashes of files that contain
 /// times.
 const OF_A_RUN: [&str; 5] = ["elapsed_s", "designs_per_s", "threads", "platform", "files"];
-/// Marks around the text in summary.md and report.html that states how long a run took. The text between the marks is
-/// left out of the comparison, because it differs from run to run.
-const TIMING: [&str; 2] = ["<!-- timing -->", "<!-- /timing -->"];
 /// Commands in summary.md and report.html after which the folder of results is named. The name is left out of the
 /// comparison, because each result is in a folder of its own.
 const COMMANDS: [&str; 5] =

@@ -5,7 +5,7 @@
 //! the displacement fields of its beam are added. The elements come in the same order as in
 //! [`Chain::pose_rad`](super::chain::Chain::pose_rad).
 
-use super::chain::{ElasticElement, Posed, Prepared};
+use super::chain::{ElasticElement, Owner, Posed, Prepared};
 use super::{Twist, displacement_at};
 use crate::arm::prismatic::Moves;
 use nalgebra::{DVector, Rotation3, Vector3};
@@ -31,21 +31,21 @@ impl Posed<'_> {
     /// of each element, base to tip; `pose_rad` is the pose in which the arm is. A joint has one point; a link and
     /// the travel of a prismatic joint have several.
     pub fn centre_line(&self, pose_rad: &[f64], coordinates: &[Vec<f64>]) -> Vec<Station> {
-        let mut elements = self.elements().zip(coordinates);
+        let mut elements = self.elements().zip(coordinates).peekable();
         let mut walk = Walk::default();
         let mut out = Vec::new();
-        for _ in 0..self.chain.elements_of_base() {
-            walk.deflects(elements.next());
+        while let Some(element) = elements.next_if(|(e, _)| e.owner == Owner::Base) {
+            walk.deflects(Some(element));
         }
-        for piece in &self.chain.pieces {
+        for (index, piece) in self.chain.pieces.iter().enumerate() {
+            let is_own = |e: &ElasticElement| e.owner == Owner::Piece(index);
             match piece {
                 Prepared::Joint(joint) => {
                     let axis = walk.rotation * joint.axis.into_inner();
                     out.push(walk.station(&joint.name, walk.at_m, Some(axis)));
-                    if joint.tilts() {
-                        walk.deflects(elements.next());
+                    while let Some(element) = elements.next_if(|(e, _)| is_own(e)) {
+                        walk.deflects(Some(element));
                     }
-                    walk.deflects(elements.next());
                     walk.rotation *= Rotation3::from_axis_angle(&joint.axis, joint.angle.of(pose_rad));
                 }
                 Prepared::Prismatic(joint) => {
@@ -55,18 +55,18 @@ impl Posed<'_> {
                     if joint.moves == Moves::Carriage {
                         out.push(walk.station(&joint.name, walk.at_m + travel, None));
                     }
-                    if !joint.guide_is_rigid() {
-                        walk.deflects(elements.next());
+                    while let Some(element) = elements.next_if(|(e, _)| is_own(e)) {
+                        walk.deflects(Some(element));
                     }
-                    walk.deflects(elements.next());
                     walk.at_m += travel;
                     out.push(walk.station(&joint.name, walk.at_m, None));
                 }
                 Prepared::Link(link, beam) => {
-                    if !link.root_frame.springs().is_empty() {
-                        walk.deflects(elements.next());
+                    let is_frame = |e: &ElasticElement| is_own(e) && e.own.is_none();
+                    while let Some(element) = elements.next_if(|(e, _)| is_frame(e)) {
+                        walk.deflects(Some(element));
                     }
-                    let element = if beam.is_some() { elements.next() } else { None };
+                    let element = elements.next_if(|(e, _)| is_own(e));
                     let vector = walk.rotation * link.vector_m;
                     for point in 0..POINTS {
                         let xi = point as f64 / (POINTS - 1) as f64;
@@ -181,8 +181,10 @@ mod tests {
         let lift = r#"{"effect": "base_lift", "at": "base", "parameters": {"stiffness_nm_per_rad": 2e5, "preload_nm": 5}}"#;
         let tilt =
             r#"{"effect": "base_compliance", "at": "base", "parameters": {"stiffness_nm_per_rad": 3e5}}"#;
-        let both = format!("{lift}, {tilt}");
-        for effects in ["", lift, tilt, both.as_str()] {
+        let frame = r#"{"effect": "frame_compliance", "at": "base",
+            "parameters": {"diagonal_rad_per_nm": [1e-5, 2e-5, 0], "coupling_rad_per_nm": [0, 0, 0]}}"#;
+        let all = format!("{lift}, {tilt}, {frame}");
+        for effects in ["", lift, tilt, frame, all.as_str()] {
             let (line, tip) = stations("j1", effects);
             let last = line.last().expect("stations");
             assert!((last.moved_m - tip).norm() < 1e-12, "{effects}: {} {tip}", last.moved_m);

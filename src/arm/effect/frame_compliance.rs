@@ -30,12 +30,14 @@ pub(crate) const KIND: Kind = Kind {
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
     let added = matrix(numbers);
-    // where a link has the name of the base, the base is meant, as for every effect
-    if at == "base" {
-        subject.structure.base_frame = FrameCompliance(subject.structure.base_frame.0 + added);
-    } else if let Some(link) = subject.structure.link_mut(at) {
+    let structure = &mut subject.structure;
+    let frame = match structure.place(at, KIND.places) {
+        Some(Place::Base) => Some(&mut structure.base_frame),
         // a structure may be only a part of the arm and lack this link; then nothing changes
-        link.root_frame = FrameCompliance(link.root_frame.0 + added);
+        _ => structure.link_mut(at).map(|link| &mut link.root_frame),
+    };
+    if let Some(frame) = frame {
+        *frame = FrameCompliance(frame.0 + added);
     }
 }
 
