@@ -12,7 +12,8 @@ of the program's files.
 """
 
 from ._armwright import Catalogs, __version__
-from ._front import Front
+from ._export import Export, export
+from ._front import Designs, Front
 from ._mujoco import from_mujoco
 from ._questions import (
     Analysis,
@@ -49,7 +50,9 @@ __all__ = [
     "ArmwrightError",
     "CatalogError",
     "Catalogs",
+    "Designs",
     "EmptySpaceError",
+    "Export",
     "Fault",
     "FileError",
     "Front",
@@ -67,6 +70,7 @@ __all__ = [
     "capacity",
     "design",
     "driven_joints",
+    "export",
     "from_mujoco",
     "from_urdf",
     "paper",

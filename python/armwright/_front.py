@@ -6,11 +6,17 @@ from typing import Any, Dict, List, Optional
 
 import numpy as np
 
-from . import _questions
+from . import _export, _questions
 from .table import Table
 
 
-class Front(Table):
+class Designs(Table):
+    """A table of designs, a row a design."""
+
+    _texts = ("design_id", "near_to", "material", "shape", "profile", "gear", "motor", "binds")
+
+
+class Front(Designs):
     """The designs of a study that no other dominates, lightest first, with the columns of ``front.csv``.
 
     ``front.objectives`` has tip deflection [mm], mass [kg] and lowest mode [Hz] of each design; ``front.arm(id)`` is a design
@@ -24,12 +30,18 @@ class Front(Table):
     """The fronts of the designs whose chosen links are all of one material. An exact search has them only if it found the
     whole front."""
 
-    _texts = ("design_id", "material", "shape", "profile", "gear", "motor", "binds")
+    near: Optional[Designs]
+    """The designs that are worse than some design of the front by at most ``within_percent``, nearest first, with the columns of
+    ``near.csv``; None if they were not asked for, or if the front is not whole (``remarks`` says so)."""
+    scatter: Optional[Designs]
+    """How often each design is on the front, and how often it is each pick, if the ratings of its parts scatter as
+    ``tolerance_percent`` says, with the columns of ``tolerance.csv``; None if this was not asked for."""
 
-    def __init__(self, columns, rows, facts, study, catalogs, by_material=None):
+    def __init__(self, columns, rows, facts, study, catalogs, by_material=None, near=None, scatter=None):
         super().__init__(columns, rows)
         self.facts = facts
         self.by_material = by_material or {}
+        self.near, self.scatter = near, scatter
         self._study = study
         self._catalogs = catalogs
 
@@ -77,6 +89,21 @@ class Front(Table):
     def capacity(self, design_id: str) -> Dict[str, Any]:
         """The largest payload of a design, as :func:`armwright.capacity` gives it."""
         return _questions.capacity(self._study, design=design_id, catalogs=self._catalogs)
+
+    def export(
+        self,
+        design_id: str,
+        to: str,
+        *,
+        case: Optional[str] = None,
+        pieces_per_link: Optional[int] = None,
+        backlash: bool = False,
+    ) -> _export.Export:
+        """A design as files for another program, as :func:`armwright.export` makes them, in a case of its study."""
+        arm, cases = _questions.design(self._study, design_id, catalogs=self._catalogs)
+        return _export.export(
+            arm, to, cases=cases, case=case, pieces_per_link=pieces_per_link, backlash=backlash, catalogs=self._catalogs
+        )
 
     def lightest(self) -> Optional[str]:
         """The ``design_id`` of the lightest design."""

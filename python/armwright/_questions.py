@@ -151,7 +151,7 @@ def analyze(
     alone = [name for name, value in of_response.items() if value is not None]
     if response_n is None and alone:
         raise TypeError(f"{' and '.join(alone)} without response_n: give the amplitude of the force too")
-    asked = [_case(held, arm_source, given)] if cases is None else cases
+    asked = [one_case(held, arm_source, given)] if cases is None else cases
     harmonic = None
     if response_n is not None:
         at_hz = _RESPONSE_HZ if response_hz is None else [finite(f, "response_hz", 0) for f in response_hz]
@@ -163,14 +163,14 @@ def analyze(
     return answers[0] if cases is None else answers
 
 
-def _case(held: Catalogs, arm: Any, given: Dict[str, Any]) -> Dict[str, Any]:
+def one_case(held: Catalogs, arm: Any, given: Dict[str, Any]) -> Dict[str, Any]:
     """The case of the arguments of :func:`analyze`, by the keys of a cases file."""
     stated = {name: value for name, value in given.items() if value is not None}
     payload = [("payload_kg", "mass_kg"), ("payload_cg_m", "cg_m"), ("payload_inertia_kgm2", "inertia_about_cg_kgm2")]
     rest = [("force_n", "tip_force_n"), ("moment_nm", "tip_moment_nm"), ("links", "links"), ("joints", "joints")]
     case: Dict[str, Any] = {"name": "case", **{key: stated[name] for name, key in rest if name in stated}}
     case["payload"] = {"mass_kg": 0.0, **{key: stated[name] for name, key in payload if name in stated}}
-    pose = given["pose"]
+    pose = given.get("pose")
     if isinstance(pose, Mapping):
         case["pose"] = pose
     else:

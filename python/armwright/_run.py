@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-from typing import Any, Callable, Dict, Optional
+from typing import Any, Callable, Dict, Mapping, Optional, Tuple, Union
 
 from . import _armwright
 from ._armwright import Catalogs
-from ._front import Front
+from ._front import Designs, Front
 from ._input import catalogs_or_builtin, finite, source, whole
-from ._questions import Described
+from ._questions import Described, Outcome
 from .errors import UsageError
 
 
@@ -26,6 +26,12 @@ def run(
     search: Optional[str] = None,
     gap_percent: Optional[float] = None,
     time_limit_s: Optional[float] = None,
+    effects: Union[None, Described, Outcome] = None,
+    within_percent: Optional[float] = None,
+    within_most: int = 10_000,
+    tolerance_percent: Optional[Mapping[str, float]] = None,
+    samples: int = 1000,
+    seed: int = 1,
     threads: int = 0,
     catalogs: Optional[Catalogs] = None,
 ) -> Front:
@@ -41,7 +47,18 @@ def run(
     :param gap_percent: the exact search may end when for every design some listed one is worse by at most this percentage in each
         objective; 0 asks for the whole front. Default: the study's.
     :param time_limit_s: ends an exact search [s]
+    :param effects: a measured arm: what :func:`reconcile` found, or an arm file as :func:`analyze` takes it. Its effects and calibrated
+        values are applied to the study's joints and links of the same name; ``facts["carried_over"]`` lists them, and those that do
+        not apply with the reason.
+    :param within_percent: also lists in ``near`` the designs that are worse than some design of the front by at most this percentage in
+        mass, deflection and lowest mode. This takes a second search.
+    :param within_most: the largest number of designs in ``near``, the nearest first
+    :param tolerance_percent: scatter of ratings, such as ``{"gear_stiffness": 20, "mass": 2}``: 95 % of the rows of a catalog lie
+        within it. ``scatter`` then has for each design the share of samples in which it is on the front.
+    :param samples: number of samples of the scatter
+    :param seed: seed of the samples; the same seed gives the same samples on any number of threads
     :param threads: worker threads; 0 is one a core. Results do not depend on it.
+    :raises UsageError: a word or number is none that it can be, or no effect of ``effects`` applies to the study
     :raises InfeasibleError: no design meets the study; the message says which limits are in the way
     :raises EmptySpaceError: there is nothing to choose from
     :raises OutOfTimeError: the time limit came before any design was found
@@ -55,20 +72,41 @@ def run(
     if time_limit_s is not None:
         time_limit_s = finite(time_limit_s, "time_limit_s", 0)
     threads = whole(threads, "threads")
+    measured = effects.corrected_arm if isinstance(effects, Outcome) else effects
+    arm = None if measured is None else source(measured, "arm")
+    within = None if within_percent is None else (_percentage(within_percent, "within_percent"), whole(within_most, "within_most"))
+    scatter = None if tolerance_percent is None else _scatter(tolerance_percent, whole(samples, "samples"), whole(seed, "seed"))
 
     def front(found: Any) -> Front:
-        (columns, rows), materials, facts, text = found
+        (columns, rows), materials, further, facts, text = found
         facts = json.loads(facts)
         # a file may change: the designs of this front are those of the study as it was read
         of_material = {**facts, "picks": []}
         by_material = {name: Front(c, r, of_material, text, held) for name, (c, r) in materials}
-        return Front(columns, rows, facts, text, held, by_material)
+        near, scattered = (None if table is None else Designs.from_csv(table) for table in further)
+        return Front(columns, rows, facts, text, held, by_material, near, scattered)
 
     try:
-        return front(_armwright.run(held, asked, search, gap_percent, time_limit_s, threads, progress))
+        return front(_armwright.run(held, asked, arm, search, gap_percent, time_limit_s, within, scatter, threads, progress))
     except KeyboardInterrupt as stopped:
         interrupted = Interrupted(*stopped.args)
         found = getattr(stopped, "_found", None)
         if found is not None and found[0][1]:
             interrupted.front = front(found)
         raise interrupted from None
+
+
+def _percentage(value: Any, what: str) -> float:
+    """A percentage above 0 and below 100."""
+    percent = finite(value, what, 0)
+    if not 0 < percent < 100:
+        raise UsageError(f"{what} is {percent:g}: give a percentage above 0 and below 100")
+    return percent
+
+
+def _scatter(ratings: Mapping[str, float], samples: int, seed: int) -> Tuple[str, int, int]:
+    """The scatter of ratings as the program reads it, the number of samples and their seed."""
+    if not 1 <= samples <= 1_000_000:
+        raise UsageError(f"samples is {samples}: give a number from 1 to 1000000")
+    parts = [f"{name}={_percentage(percent, f'the scatter of {name}')!r}%" for name, percent in ratings.items()]
+    return ",".join(parts), samples, seed

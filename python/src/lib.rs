@@ -19,6 +19,7 @@ fn _armwright(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(questions::size, module)?)?;
     module.add_function(wrap_pyfunction!(questions::capacity, module)?)?;
     module.add_function(wrap_pyfunction!(questions::design, module)?)?;
+    module.add_function(wrap_pyfunction!(questions::export, module)?)?;
     module.add_function(wrap_pyfunction!(questions::from_urdf, module)?)?;
     module.add_function(wrap_pyfunction!(questions::paper, module)?)?;
     module.add_function(wrap_pyfunction!(questions::study_names, module)?)?;

@@ -5,7 +5,8 @@ use crate::conduct::{pooled, workers};
 use crate::errors;
 use crate::source::Source;
 use armwright::arm::read_load_cases;
-use armwright::interchange::import_urdf;
+use armwright::arm::Words;
+use armwright::interchange::{ExportRequest, Format, import_urdf};
 use armwright::reconcile::predict_files::{Files, predict_files};
 use armwright::reconcile::{Campaign, Outcome};
 use armwright::report::analysis::{Analysis, Harmonic};
@@ -116,6 +117,31 @@ pub(crate) fn design(
     let (arm, cases) = pooled(py, || arm_of_design(&study, id, parts))?.map_err(errors::refused)?;
     let cases: Vec<Value> = cases.iter().map(|case| case.to_json(&arm.driven_joints())).collect();
     Ok((arm.to_json().to_string(), Value::Array(cases).to_string()))
+}
+
+/// The name of the case, and the files of an export by name.
+type ExportedFiles = (String, Vec<(String, Vec<u8>)>);
+
+/// The files of an arm for another program.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "they are those of the Python function")]
+pub(crate) fn export(
+    py: Python<'_>,
+    catalogs: &Catalogs,
+    arm: Source,
+    cases: Source,
+    to: &str,
+    case: Option<&str>,
+    pieces_per_link: Option<u16>,
+    backlash: bool,
+) -> PyResult<ExportedFiles> {
+    let unknown = || errors::usage(format!("to is \"{to}\": give one of {}", Format::words()));
+    let format = Format::from_word(to).ok_or_else(unknown)?;
+    let arm = arm.arm(&catalogs.parts)?;
+    let cases = read_load_cases(cases.document()?, &arm.driven_joints()).map_err(errors::faults)?;
+    let request = ExportRequest { arm: &arm, cases: &cases, case, format, pieces_per_link, backlash };
+    let exported = pooled(py, || request.answer(&catalogs.parts))?.map_err(errors::usage)?;
+    Ok((exported.case, exported.files))
 }
 
 /// The arm of a robot in a URDF file, from its root to a link, and what became of the rest of it.

@@ -10,11 +10,14 @@ use armwright::pareto::hypervolume::front_hypervolume;
 use armwright::report::facts::constraint_words;
 use armwright::report::front_table::FrontTable;
 use armwright::report::picks::{Pick, designs, picks};
+use armwright::report::supplement::Supplement;
 use armwright::search::Status;
+use armwright::search::near::{NearDesigns, Slack};
 use armwright::space::ArmProblem;
 use armwright::study::{
-    Extent, Refusal, SearchMethod, SearchWish, Study, StudyOutcome, caveats_on, effects_json, front_table,
-    judged_cases, run_exact, run_study, table_and_remarks, why_infeasible,
+    Asked as AskedStudy, Extent, NO_NEAR, NearFront, Refusal, Sampling, SearchMethod, SearchWish, Study,
+    StudyOutcome, Tolerance, caveats_on, corrections_json, effects_json, front_table, judged_cases,
+    near_front, run_exact, run_study, scatter_front, table_and_remarks, why_infeasible,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -26,8 +29,12 @@ use std::time::{Duration, Instant};
 /// A table: its columns and rows.
 type Table = (Vec<String>, Vec<Vec<String>>);
 
-/// What a search found, as Python gets it: the front, the front of each material, facts in JSON, and the study's text.
-type Found = (Table, Vec<(String, Table)>, String, String);
+/// What a search found, as Python gets it: the front, the front of each material, the near designs and the scatter as CSV
+/// text if they were asked for, facts in JSON, and the study's text.
+type Found = (Table, Vec<(String, Table)>, [Option<String>; 2], String, String);
+
+/// Scatter of ratings in words, number of samples, seed.
+type Scatter = (String, u32, u64);
 
 /// What a search tells while it runs.
 #[derive(Debug, Clone, Copy, Default)]
@@ -39,9 +46,7 @@ struct Told {
 
 /// How a study is searched.
 struct Asked<'a> {
-    study: &'a Study,
-    /// Text of the study's file.
-    text: &'a str,
+    asked: &'a AskedStudy,
     catalogs: &'a catalog::Catalogs,
     /// Why this method was chosen, if an estimate chose it.
     why: Option<String>,
@@ -49,6 +54,10 @@ struct Asked<'a> {
     /// Gap at which an exact search may end, as a fraction.
     gap: f64,
     time_limit: Option<Duration>,
+    /// How much worse near designs may be, and how many are listed; `None` if none are asked for.
+    slack: Option<Slack>,
+    /// How the ratings of parts scatter; `None` if this is not asked for.
+    sampling: Option<Sampling>,
 }
 
 /// Why a search has no front.
@@ -59,21 +68,26 @@ enum NoFront {
 
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "they are those of the Python function")]
-#[pyo3(signature = (catalogs, study, method, gap_percent, time_limit_s, threads, progress))]
+#[pyo3(signature = (catalogs, study, effects, method, gap_percent, time_limit_s, within, scatter, threads, progress))]
 pub(crate) fn run(
     py: Python<'_>,
     catalogs: &Catalogs,
     study: Source,
+    effects: Option<Source>,
     method: Option<&str>,
     gap_percent: Option<f64>,
     time_limit_s: Option<f64>,
+    within: Option<(f64, usize)>,
+    scatter: Option<Scatter>,
     threads: usize,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Found> {
     let parts = catalogs.parts.clone();
     let pool = workers(threads)?;
     // a study of many parts takes a while to read
-    let (study, text) = py.detach(|| pool.install(|| study.study(&parts)))?;
+    let asked = py.detach(|| pool.install(|| asked_study(&study, effects, &parts)))?;
+    let slack = within.map(|(percent, most)| Slack { part: 0.01 * percent, most });
+    let sampling = scatter.map(sampling).transpose()?;
     let time_limit = time_limit_s.map(Duration::try_from_secs_f64).transpose().map_err(errors::usage)?;
     let wish = SearchWish {
         method: method.map(search_method).transpose()?,
@@ -87,9 +101,10 @@ pub(crate) fn run(
     };
     let (found, raised) = conduct(py, tell, |stop| {
         pool.install(|| {
-            let (method, why) = wish.method(&study, &parts).map_err(NoFront::Refused)?;
-            let gap = gap_percent.map_or(study.gap, |percent| percent * 0.01);
-            let asked = Asked { study: &study, text: &text, catalogs: &parts, why, method, gap, time_limit };
+            let (method, why) = wish.method(&asked.study, &parts).map_err(NoFront::Refused)?;
+            let gap = gap_percent.map_or(asked.study.gap, |percent| percent * 0.01);
+            let (asked, catalogs) = (&asked, &*parts);
+            let asked = Asked { asked, catalogs, why, method, gap, time_limit, slack, sampling };
             find(&asked, stop, &told)
         })
     });
@@ -106,6 +121,20 @@ pub(crate) fn run(
             Err(errors::out_of_time("no design was found before the time limit; allow more time".into()))
         }
     }
+}
+
+/// The study of a name, file or text, with the effects of a measured arm if one is given.
+fn asked_study(study: &Source, effects: Option<Source>, catalogs: &catalog::Catalogs) -> PyResult<AskedStudy> {
+    let (study, text) = study.study(catalogs)?;
+    match effects {
+        None => Ok(AskedStudy::as_stated(study, text)),
+        Some(arm) => AskedStudy::corrected_by(arm.arm_document()?, &study, &text, catalogs).map_err(errors::refused),
+    }
+}
+
+fn sampling((scatter, samples, seed): Scatter) -> PyResult<Sampling> {
+    let tolerance = scatter.parse::<Tolerance>().map_err(errors::usage)?;
+    Ok(Sampling { tolerance, samples, seed })
 }
 
 fn search_method(word: &str) -> PyResult<SearchMethod> {
@@ -150,12 +179,12 @@ fn find(asked: &Asked, stop: &AtomicBool, told: &Mutex<Told>) -> Result<Found, N
 }
 
 fn infeasible(asked: &Asked, stop: &AtomicBool, deadline: Option<Instant>) -> NoFront {
-    NoFront::Refused(Refusal::Infeasible(why_infeasible(asked.study, asked.catalogs, stop, deadline)))
+    NoFront::Refused(Refusal::Infeasible(why_infeasible(&asked.asked.study, asked.catalogs, stop, deadline)))
 }
 
 /// Visits every design.
 fn visit_all(asked: &Asked, stop: &AtomicBool, told: &Mutex<Told>) -> Result<Found, NoFront> {
-    let &Asked { study, catalogs, .. } = asked;
+    let &Asked { asked: AskedStudy { study, .. }, catalogs, .. } = asked;
     let started = Instant::now();
     let outcome = run_study(study, catalogs, stop, |total, visited, finished| {
         let designs_total = Some(total as f64);
@@ -165,16 +194,18 @@ fn visit_all(asked: &Asked, stop: &AtomicBool, told: &Mutex<Told>) -> Result<Fou
         return Err(infeasible(asked, stop, None));
     }
     let facts = facts(asked, &outcome, started, "exhaustive");
-    Ok(tables(asked, study, &outcome, facts))
+    let problem = ArmProblem::new(&study.space, catalogs);
+    let near = asked.slack.and_then(|slack| near_front(&problem, catalogs, &outcome, slack, stop));
+    Ok(tables(asked, (&problem, &outcome), near, stop, facts))
 }
 
 /// Finds the front without visiting every design.
 fn search_exactly(asked: &Asked, stop: &AtomicBool, told: &Mutex<Told>) -> Result<Found, NoFront> {
-    let &Asked { study, catalogs, gap, time_limit, .. } = asked;
+    let &Asked { asked: AskedStudy { study, .. }, catalogs, gap, time_limit, slack, .. } = asked;
     let started = Instant::now();
     let deadline = time_limit.map(|limit| started + limit);
     let designs_total = study.space.designs(catalogs).map(|designs| designs as f64);
-    let extent = Extent { deadline, gap, near: None };
+    let extent = Extent { deadline, gap, near: slack };
     let found = run_exact(study, catalogs, stop, extent, |known, finished| {
         watch(told, finished, || Told { designs: 0, designs_total, known: Some(known()) });
     });
@@ -189,12 +220,15 @@ fn search_exactly(asked: &Asked, stop: &AtomicBool, told: &Mutex<Told>) -> Resul
     facts["boxes_open"] = json!(found.boxes[1]);
     facts["gap"] = json!(found.gap);
     facts["ties_listed"] = json!(found.ties_listed);
-    Ok(tables(asked, &found.study, outcome, facts))
+    let problem = ArmProblem::new(&found.study.space, catalogs);
+    let of = |(near, slack): (&NearDesigns, Slack)| NearFront::of(&problem, catalogs, &outcome.front, near, slack);
+    let near = found.near.as_ref().zip(slack).map(of);
+    Ok(tables(asked, (&problem, outcome), near, stop, facts))
 }
 
 /// The facts of a search, by the keys that `run.json` has for them; `search_reason` is said on the terminal.
 fn facts(asked: &Asked, outcome: &StudyOutcome, started: Instant, search: &str) -> Value {
-    let (study, sweep) = (asked.study, &outcome.sweep);
+    let (study, sweep) = (&asked.asked.study, &outcome.sweep);
     json!({
         "study": study.name,
         "question": study.question,
@@ -217,6 +251,7 @@ fn facts(asked: &Asked, outcome: &StudyOutcome, started: Instant, search: &str) 
         "cases": judged_cases(study),
         "effects": effects_json(study),
         "effects_mass_kg": study.space.effects_mass_kg(),
+        "carried_over": corrections_json(&asked.asked.corrections),
         "not_checked": study.not_checked,
         "tool_version": env!("CARGO_PKG_VERSION"),
     })
@@ -227,18 +262,38 @@ fn count(n: u128) -> Value {
     u64::try_from(n).map_or_else(|_| json!(n as f64), |n| json!(n))
 }
 
-/// The tables of a search, with what is to be said of them added to the facts. `searched` has the designs of the outcome.
-fn tables(asked: &Asked, searched: &Study, outcome: &StudyOutcome, mut facts: Value) -> Found {
-    let &Asked { study, catalogs, text, .. } = asked;
-    let problem = ArmProblem::new(&searched.space, catalogs);
-    let (front, remarks) = table_and_remarks(study, &problem, catalogs, &outcome.front);
+/// The tables of a search, with what is to be said of them added to the facts. `problem` has the designs of the outcome.
+fn tables(
+    asked: &Asked,
+    (problem, outcome): (&ArmProblem, &StudyOutcome),
+    near: Option<NearFront>,
+    stop: &AtomicBool,
+    mut facts: Value,
+) -> Found {
+    let &Asked { asked: AskedStudy { study, text, .. }, catalogs, .. } = asked;
+    let (front, mut remarks) = table_and_remarks(study, problem, catalogs, &outcome.front);
+    if asked.slack.is_some() && near.is_none() {
+        remarks.push(NO_NEAR.into());
+    }
     facts["remarks"] = json!(remarks);
     facts["caveats"] = json!(caveats_on(study, catalogs, &front));
     facts["picks"] = picks(&designs(&front)).iter().map(pick_json).collect();
+    let scatter = |sampling| scatter_front(problem, catalogs, &outcome.front, &designs(&front), &sampling, stop);
+    let further = [near.map(|near| near.supplement()), asked.sampling.and_then(scatter).map(|of| of.supplement())];
+    let further = further.map(|supplement| added(supplement, &mut facts));
     let table = |FrontTable { columns, rows }| (columns, rows);
-    let of_material = |front| table(front_table(&problem, catalogs, front));
+    let of_material = |front| table(front_table(problem, catalogs, front));
     let by_material = outcome.by_material.iter().map(|of| (of.name.clone(), of_material(&of.front)));
-    (table(front), by_material.collect(), facts.to_string(), text.to_string())
+    (table(front), by_material.collect(), further, facts.to_string(), text.to_string())
+}
+
+/// Adds the facts of a supplement to `facts` and returns its table as CSV text.
+fn added(supplement: Option<Supplement>, facts: &mut Value) -> Option<String> {
+    let supplement = supplement?;
+    if let Some((key, value)) = supplement.run {
+        facts[key] = value;
+    }
+    supplement.file.map(|(_, csv)| String::from_utf8_lossy(&csv).into_owned())
 }
 
 /// A pick by the keys that it has in `run.json`, without what its budget adds there.

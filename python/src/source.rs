@@ -23,12 +23,17 @@ impl Source {
 
     /// The arm of a file or text.
     pub(crate) fn arm(&self, catalogs: &Catalogs) -> PyResult<Arm> {
+        read_arm_document(self.arm_document()?, catalogs).map_err(errors::faults)
+    }
+
+    /// The document of an arm file, and not of a study.
+    pub(crate) fn arm_document(&self) -> PyResult<Document> {
         let document = self.document()?;
         if is_rather(&document, &STUDY_FILE, &ARM_FILE) {
             let hint = "run, size and capacity take it; front.arm(id) is the arm of a design that was found";
             return Err(other_kind(&document, "a study, and an arm is asked for", hint));
         }
-        read_arm_document(document, catalogs).map_err(errors::faults)
+        Ok(document)
     }
 
     /// Whether this is an arm file, and no study.

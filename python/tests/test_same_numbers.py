@@ -177,3 +177,68 @@ def test_the_remarks_on_a_front_are_those_of_its_gears_and_not_of_its_study_alon
     front = armwright.run(study, catalogs=armwright.Catalogs.load(parts))
     assert sum("loose by up to" in remark for remark in front.remarks) == 2, front.remarks
     assert front.facts["remarks"] == run["remarks"] and front.facts["caveats"] == run["caveats"]
+
+
+def written(folder):
+    """The files of a folder by name, without those whose names begin with a point."""
+    return {path.name: path.read_bytes() for path in folder.iterdir() if not path.name.startswith(".")}
+
+
+def test_an_export_has_the_files_of_the_program(program, tmp_path, lever, bench_arm):
+    arm = tmp_path / "arm.json"
+    arm.write_text(json.dumps(lever))
+    for to in ["calculix", "mjcf", "urdf", "json", "csv", "bom"]:
+        program("export", arm, "--payload-kg", 2, "--pose-deg", 30, "--to", to, "--out", tmp_path / to)
+        exported = armwright.export(lever, to, pose=[30], payload_kg=2)
+        assert exported.files == written(tmp_path / to) and exported.json["to"] == to
+    study = tmp_path / "bench-arm.json"
+    study.write_text(json.dumps(bench_arm))
+    program("run", study, "--search", "exhaustive", "--out", tmp_path / "out", "--quiet")
+    front = armwright.run(study, search="exhaustive")
+    chosen = front.picks["knee"]
+    flags = ["--to", "mjcf", "--flexible", 4, "--out", tmp_path / "knee"]
+    program("export", f"{tmp_path / 'out'}#{chosen}", *flags)
+    exported = front.export(chosen, "mjcf", pieces_per_link=4)
+    assert exported.files == written(tmp_path / "knee")
+    paths = exported.write(tmp_path / "again")
+    assert written(tmp_path / "again") == exported.files and len(paths) == len(exported.files)
+
+
+@pytest.mark.parametrize("search", ["exhaustive", "exact"])
+def test_near_designs_and_scatter_are_those_of_the_program(program, tmp_path, search, bench_arm):
+    study = tmp_path / "bench-arm.json"
+    study.write_text(json.dumps(bench_arm))
+    out = tmp_path / "out"
+    gap = ["--gap", "0%"] if search == "exact" else []
+    asked = ["--within", "5%", "--tolerance", "gear_stiffness=20%,mass=2.5%", "--samples", 200, "--seed", 7]
+    program("run", study, "--search", search, *gap, *asked, "--out", out, "--quiet")
+    front = armwright.run(
+        study, search=search, gap_percent=0 if gap else None, within_percent=5,
+        tolerance_percent={"gear_stiffness": 20, "mass": 2.5}, samples=200, seed=7,
+    )  # fmt: skip
+    assert front.near.to_csv() == (out / "near.csv").read_text() and len(front.near)
+    assert front.scatter.to_csv() == (out / "tolerance.csv").read_text()
+    run = json.loads((out / "run.json").read_text())
+    assert [front.facts[key] for key in ["near", "tolerance"]] == [run[key] for key in ["near", "tolerance"]]
+    plain = armwright.run(study, search=search)
+    assert plain.near is None and plain.scatter is None
+
+
+def test_a_study_with_the_effects_of_a_measured_arm_is_that_of_the_program(program, tmp_path, bench_arm):
+    study, arm = tmp_path / "bench-arm.json", tmp_path / "arm.corrected.json"
+    study.write_text(json.dumps(bench_arm))
+    joint = bench_arm["chain"][0]["name"]
+    measured = armwright.run(bench_arm, search="exhaustive")
+    measured = measured.arm(measured.lightest())
+    measured["effects"] = [{"effect": "bearing_tilt", "at": joint, "stiffness_nm_per_rad": 2e4}]
+    arm.write_text(json.dumps(measured))
+    program("run", study, "--search", "exhaustive", "--effects", arm, "--out", tmp_path / "out", "--quiet")
+    for effects in [measured, arm]:
+        front = armwright.run(study, search="exhaustive", effects=effects)
+        assert front.to_csv() == (tmp_path / "out" / "front.csv").read_text()
+    run = json.loads((tmp_path / "out" / "run.json").read_text())
+    assert front.facts["carried_over"] == run["carried_over"] and front.facts["carried_over"][0]["carried"]
+    # the designs of this front have the effect too
+    assert front.arm(front.lightest())["effects"] == measured["effects"]
+    with pytest.raises(armwright.UsageError, match="changes nothing in the study"):
+        armwright.run(study, effects={**measured, "effects": []})

@@ -22,15 +22,13 @@ use super::springs::Spring;
 use super::springs_file::{BodiesOf, Named, Values, hang, read_counterweights, read_springs};
 use super::transmission::{Seen, Transmission, gear_is_at_motor, read_turns_with};
 use super::transmissions::{Driven, place_all};
-use super::{Arm, Element, Joint};
+use super::{Arm, Element, GRAVITY_M_S2, Joint};
 use crate::catalog::gear::{Gear, GearMass};
 use crate::catalog::{Catalogs, PartError};
 use crate::input::json::{Document, Faults, InputError, Node, Object};
 use nalgebra::{Unit, Vector3};
 use serde_json::Value;
 use std::path::Path;
-
-const DEFAULT_GRAVITY_M_S2: f64 = 9.81;
 
 /// Reads an arm file. Gears, motors and materials that it names are looked up in `catalogs`.
 ///
@@ -115,7 +113,7 @@ fn read_balance(root: &Object, chain: &mut [Element]) -> Option<Vec<Spring>> {
 /// Returns the magnitude of the acceleration \[m/s²\] and its direction.
 pub(crate) fn read_gravity(object: &Object) -> Option<(f64, Vector3<f64>)> {
     let upright = -Vector3::z();
-    object.or("gravity_m_s2", (DEFAULT_GRAVITY_M_S2, upright), |n| match n.value() {
+    object.or("gravity_m_s2", (GRAVITY_M_S2, upright), |n| match n.value() {
         Value::Array(_) => {
             let acceleration = vector(n)?;
             let direction = Unit::try_new(acceleration, 0.0).map_or(upright, Unit::into_inner);

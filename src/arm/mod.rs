@@ -272,6 +272,9 @@ impl Element {
     }
 }
 
+/// Gravity of an arm, a study or an imported robot that states none \[m/s²\].
+pub(crate) const GRAVITY_M_S2: f64 = 9.81;
+
 /// Largest number of joints and links of an arm. The time for modes grows with the third power of this number; an arm
 /// of 2000 elements takes seconds.
 pub(crate) const MOST_ELEMENTS: usize = 2_000;

@@ -35,6 +35,8 @@ enum Problem {
     Faulty(Faults),
     /// The files of a result differ from those that were written.
     Changed(String),
+    /// A result has no other files than those that were written before the user stopped, or one failed.
+    Incomplete(String),
     /// A file cannot be read.
     Unreadable(String),
 }
@@ -60,7 +62,7 @@ fn exit_of(found: &[Found]) -> Exit {
     let has = |is: fn(&Problem) -> bool| found.iter().any(|f| f.outcome.as_ref().err().is_some_and(is));
     if has(|p| matches!(p, Problem::Faulty(_))) {
         Exit::Input
-    } else if has(|p| matches!(p, Problem::Changed(_))) {
+    } else if has(|p| matches!(p, Problem::Changed(_) | Problem::Incomplete(_))) {
         Exit::CheckFailed
     } else if has(|p| matches!(p, Problem::Unreadable(_))) {
         Exit::File
@@ -107,7 +109,7 @@ type Look = (&'static str, Result<(), Problem>);
 fn look_at_folder(folder: &Path, catalogs: &Catalogs) -> Look {
     let has = |name: &str| folder.join(name).is_file();
     if let Some(manifest) = MANIFESTS.into_iter().find(|name| has(name)) {
-        return (result_words(manifest), unchanged(folder, manifest));
+        return (result_words(manifest), unchanged(folder, manifest).and_then(|written| whole(&written)));
     }
     if has("campaign.json") {
         return ("campaign", Campaign::read(folder, catalogs).map(drop).map_err(Problem::from));
@@ -237,8 +239,8 @@ fn result_words(manifest: &str) -> &'static str {
     }
 }
 
-/// Checks that the files of a result still have the hashes that the file `manifest` lists.
-fn unchanged(folder: &Path, manifest: &str) -> Result<(), Problem> {
+/// Checks that the files of a result still have the hashes that the file `manifest` lists. Returns what this file says.
+fn unchanged(folder: &Path, manifest: &str) -> Result<Value, Problem> {
     let path = folder.join(manifest);
     let text = std::fs::read_to_string(&path).map_err(|e| Problem::Unreadable(e.to_string()))?;
     let value: Value =
@@ -254,7 +256,17 @@ fn unchanged(folder: &Path, manifest: &str) -> Result<(), Problem> {
             Err(e) => Some(format!("{name}: {e}")),
         })
         .collect();
-    if wrong.is_empty() { Ok(()) } else { Err(Problem::Changed(wrong.join("\n  "))) }
+    if wrong.is_empty() { Ok(value) } else { Err(Problem::Changed(wrong.join("\n  "))) }
+}
+
+/// Checks that nothing is missing in the result of a study whose `run.json` is `written`.
+fn whole(written: &Value) -> Result<(), Problem> {
+    let missing = written["not_written"].as_array().into_iter().flatten();
+    let missing: Vec<&str> = missing.filter_map(Value::as_str).collect();
+    match missing.is_empty() {
+        true => Ok(()),
+        false => Err(Problem::Incomplete(format!("not written: {}", missing.join("\n  not written: ")))),
+    }
 }
 
 fn unknown(path: &Path, problem: &str, hint: &str) -> Problem {
@@ -288,6 +300,9 @@ impl Found {
                 format!("{head}, {count}\n{lines}")
             }
             Err(Problem::Changed(what)) => format!("{head}, changed\n  {what}\n"),
+            Err(Problem::Incomplete(what)) => {
+                format!("{head}, incomplete\n  {what}\n  the command that made it makes the rest\n")
+            }
             Err(Problem::Unreadable(why)) => format!("{head}, cannot be read\n  {why}\n"),
         }
     }
@@ -298,6 +313,7 @@ impl Found {
             Ok(()) => ("sound", Vec::new()),
             Err(Problem::Faulty(Faults(faults))) => ("faulty", faults.iter().map(fault).collect()),
             Err(Problem::Changed(what)) => ("changed", vec![json!({"problem": what})]),
+            Err(Problem::Incomplete(what)) => ("incomplete", vec![json!({"problem": what})]),
             Err(Problem::Unreadable(why)) => ("unreadable", vec![json!({"problem": why})]),
         };
         json!({"path": self.place.display().to_string(), "kind": self.what, "state": state, "faults": faults})

@@ -1,7 +1,6 @@
 //! Runs a study that leaves values of springs or counterweights open: it searches one choice after the other, each in a
 //! folder of its own, and joins their fronts.
 
-use super::asked::Asked;
 use super::beside::{another_stands, say_missing};
 use super::compare::files_of_comparison;
 use super::compare_remarks::{remarks, said_by};
@@ -26,6 +25,7 @@ use crate::report::number::significant;
 use crate::report::words::{TERMINAL, wrap};
 use crate::search::resume::KeepState;
 use crate::search::sweep::Status;
+use crate::study::asked::Asked;
 use crate::study::balance_choices::{BalanceChoice, balance_choices};
 use crate::study::definition::Study;
 use crate::study::read::read_study;

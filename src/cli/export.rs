@@ -2,7 +2,6 @@
 
 use super::design::resolve_design;
 use super::failure::Failure;
-use super::finished::pretty;
 use super::own_files::write_own;
 use super::pose_flags::PoseArgs;
 use super::values::{choice, numbers};
@@ -12,8 +11,8 @@ use crate::arm::load::{LoadCase, Payload, read_load_cases};
 use crate::arm::{Arm, JointModel, LinkModel};
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
-use crate::interchange::export::{Asked, Export, Format, export};
-use crate::mechanics::chain::Chain;
+use crate::interchange::export::Format;
+use crate::interchange::request::{ExportRequest, Exported};
 use crate::report::number::percent;
 use clap::Args;
 use nalgebra::Vector3;
@@ -64,36 +63,23 @@ pub(crate) struct ExportArgs {
 
 /// Executes the verb.
 pub(super) fn run(args: &ExportArgs, catalogs: &Catalogs) -> Result<String, Failure> {
-    if args.to != Format::Mjcf && (args.flexible.is_some() || args.backlash) {
-        return Err(Failure::Usage("--flexible and --backlash are for --to mjcf".into()));
-    }
     let (arm, cases, inputs) = source(args, catalogs)?;
-    if let (Some(joint), Format::Calculix) = (arm.prismatics().next(), args.to) {
-        return Err(Failure::Usage(format!(
-            "{} is a prismatic joint: the decks of CalculiX join links by hinges between two points, and have nothing that \
-             slides; --to mjcf with --flexible has its springs and flexible links",
-            joint.name
-        )));
-    }
-    let case = chosen_case(args, &arm, &cases)?;
-    let asked = Asked {
+    let request = ExportRequest {
         arm: &arm,
-        case,
         cases: &cases,
+        case: args.case.as_deref(),
         format: args.to,
-        pieces: args.flexible.map_or(0, usize::from),
+        pieces_per_link: args.flexible,
         backlash: args.backlash,
     };
-    let exported = export(&asked, catalogs);
-    let mut files = exported.files.clone();
-    files.push(("export.json".into(), pretty(&exported.to_json(&asked))));
+    let exported = request.answer(catalogs).map_err(Failure::Usage)?;
     let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
-    write_own(&args.out, &files, &inputs)?;
-    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+    write_own(&args.out, &exported.files, &inputs)?;
+    let names: Vec<&str> = exported.files.iter().map(|(name, _)| name.as_str()).collect();
     Ok(format!(
         "{}, case \"{}\"\n{}written to {}: {}\n",
         arm.name,
-        case.name,
+        exported.case,
         said(&exported),
         args.out.display(),
         names.join(", ")
@@ -101,7 +87,7 @@ pub(super) fn run(args: &ExportArgs, catalogs: &Catalogs) -> Result<String, Fail
 }
 
 /// The text about an export: what the files leave out, each with its part of the tip deflection, and the notes.
-fn said(exported: &Export) -> String {
+fn said(exported: &Exported) -> String {
     let left_out = exported.left_out.iter().map(|left| {
         format!(
             "  left out: {} at {} ({} of the deflection): {}\n",
@@ -162,20 +148,4 @@ fn case_of_flags(args: &ExportArgs, arm: &Arm) -> Result<LoadCase, Failure> {
         joints: JointModel::default(),
         water: None,
     })
-}
-
-/// The case that the user names. Without a name, it is the case with the largest tip deflection.
-fn chosen_case<'c>(args: &ExportArgs, arm: &Arm, cases: &'c [LoadCase]) -> Result<&'c LoadCase, Failure> {
-    if let Some(name) = &args.case {
-        let names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
-        let unknown =
-            || Failure::Usage(format!("no case is called \"{name}\"; the cases are: {}", names.join(", ")));
-        return cases.iter().find(|case| case.name == *name).ok_or_else(unknown);
-    }
-    let deflection_m = |case: &LoadCase| {
-        Chain::new(&arm.structure_in(case), case.links).pose(case).statics().tip_displacement_m.norm()
-    };
-    // of cases with equal deflections, the first one is taken
-    let worst = cases.iter().rev().max_by(|a, b| deflection_m(a).total_cmp(&deflection_m(b)));
-    worst.ok_or_else(|| Failure::Usage("there is no case".into()))
 }

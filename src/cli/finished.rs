@@ -1,8 +1,6 @@
 //! The output of a finished search: its files, the page for a browser, and the text for the terminal.
 
-use super::asked::Asked;
 use super::beside::{Beside, another_stands, say_missing};
-use super::corrections;
 use super::exit::Exit;
 use super::failure::Failure;
 use super::log::Log;
@@ -32,9 +30,11 @@ use crate::search::near::NearDesigns;
 use crate::search::sweep::Status;
 use crate::space::design_space::DesignSpace;
 use crate::space::problem::ArmProblem;
+use crate::study::asked::Asked;
 use crate::study::budget::budgets;
 use crate::study::definition::Study;
 use crate::study::effects::Correction;
+use crate::study::effects::corrections_json;
 use crate::study::front_remarks::{caveats_of, caveats_on, effects_json, judged_cases, table_and_remarks};
 use crate::study::outcome::StudyOutcome;
 use crate::study::page::study_page;
@@ -395,7 +395,7 @@ impl Finished<'_> {
             "caveats": caveats_on(study, self.catalogs, &summary.overall),
             "effects": effects_json(study),
             "effects_mass_kg": study.space.effects_mass_kg(),
-            "carried_over": corrections::to_json(self.corrections),
+            "carried_over": corrections_json(self.corrections),
             "catalogs": self.overlay.map(|p| p.display().to_string()),
             "study_hash": blake3::hash(self.text.as_bytes()).to_hex().to_string(),
             "catalogs_hash": catalogs_hash(self.catalogs),

@@ -1,7 +1,6 @@
 //! `armwright merge` and `armwright status`: join the shards of a search into its front, and list the shards that are
 //! found.
 
-use super::asked::Asked;
 use super::begun::{Begun, begun_in};
 use super::exit::Answer;
 use super::failure::Failure;
@@ -22,9 +21,9 @@ use crate::input::json::Document;
 use crate::report::file_names::folder_name;
 use crate::search::sweep::{Shard, Status};
 use crate::space::problem::ArmProblem;
+use crate::study::asked::Asked;
 use crate::study::definition::Study;
 use crate::study::diagnose::why_infeasible;
-use crate::study::effects::left_out;
 use crate::study::exact_shards::joined_exactly;
 use crate::study::outcome::{ExactStudy, Extent, judge_swept};
 use crate::study::read::read_study;
@@ -371,7 +370,7 @@ impl Found {
         let file = self.dir.join(STUDY);
         let text = fs_err::read_to_string(&file).map_err(|e| Failure::File(e.to_string()))?;
         let study = read_study(Document::parse(&file.display().to_string(), &text)?, catalogs)?;
-        Ok(Asked { corrections: left_out(&study), study, text })
+        Ok(Asked::as_stated(study, text))
     }
 
     fn swept(&self, materials: usize) -> Result<Swept, Failure> {

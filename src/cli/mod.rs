@@ -2,8 +2,7 @@
 //! standard output.
 
 pub(crate) mod analyze;
-pub(crate) mod asked;
-mod begun;
+pub(crate) mod begun;
 pub(crate) mod beside;
 pub(crate) mod capacity;
 pub(crate) mod catalog;

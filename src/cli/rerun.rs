@@ -1,6 +1,5 @@
 //! Runs a study twice, without and with the corrections of a measured arm, and compares both fronts.
 
-use super::asked::Asked;
 use super::corrections;
 use super::exit::Exit;
 use super::failure::Failure;
@@ -22,6 +21,8 @@ use crate::space::design::evaluate;
 use crate::space::design::{number, number_of};
 use crate::space::levels::OutwardIn;
 use crate::space::problem::ArmProblem;
+use crate::study::asked::Asked;
+use crate::study::effects::corrections_json;
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -77,11 +78,11 @@ pub(super) fn rerun(
     let name = nominal.name.clone();
     let calibrated: Vec<(String, f64)> =
         outcome.calibrated.iter().map(|c| (c.name.clone(), c.factor.value)).collect();
-    let corrected = corrections::corrected(&nominal, &text, &outcome.corrected, &calibrated, catalogs)?;
+    let corrected = Asked::corrected(&nominal, &text, &outcome.corrected, &calibrated, catalogs)?;
     if corrected.study.space.effects.len() == nominal.space.effects.len() {
         let mut rerun = Rerun::without(&name, "not_run", "not re-run: no effect of the arm applies to it");
         rerun.text.push_str(corrections::to_text(&corrected.corrections).trim_start());
-        rerun.json["carried_over"] = corrections::to_json(&corrected.corrections);
+        rerun.json["carried_over"] = corrections_json(&corrected.corrections);
         return Ok(rerun);
     }
     let nominal = Asked { study: nominal, text, corrections: Vec::new() };
@@ -151,7 +152,7 @@ fn told(name: &str, corrected: &Asked, found: &[Written], changes: &Changes) -> 
     let json = json!({
         "study": name,
         "status": if all_whole { Status::Complete } else { Status::Partial }.word(),
-        "carried_over": corrections::to_json(&corrected.corrections),
+        "carried_over": corrections_json(&corrected.corrections),
         "effects_mass_kg": corrected.study.space.effects_mass_kg(),
         "nominal": {"results": "study/nominal", "front_size": sizes[0], "gap": found[0].gap},
         "corrected": {"results": "study/corrected", "front_size": sizes[1], "gap": found[1].gap},

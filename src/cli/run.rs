@@ -1,6 +1,5 @@
 //! `armwright run`: finds the front of a study and writes it.
 
-use super::asked::Asked;
 use super::beside::{another_stands, say_missing};
 use super::choices::{Each, run_choices};
 use super::corrections;
@@ -30,8 +29,8 @@ use crate::report::table::Table;
 use crate::report::whole_file;
 use crate::report::words::{TERMINAL, wrap};
 use crate::search::sweep::{Shard, Status};
+use crate::study::asked::Asked;
 use crate::study::definition::Study;
-use crate::study::effects::left_out;
 use crate::study::read::read_study;
 use clap::Args;
 use serde_json::{Value, json};
@@ -91,7 +90,7 @@ impl RunArgs {
             None => (study, text),
         };
         match &self.effects {
-            None => Ok(Asked { corrections: left_out(&study), study, text }),
+            None => Ok(Asked::as_stated(study, text)),
             Some(path) => corrections::from_arm_file(path, &study, &text, catalogs),
         }
     }

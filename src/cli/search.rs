@@ -1,6 +1,5 @@
 //! Searches a study: chooses the method, and stops when the user asks for it.
 
-use super::asked::Asked;
 use super::beside::say_missing;
 use super::exit::Exit;
 use super::failure::Failure;
@@ -18,6 +17,7 @@ use crate::report::certificate::certificate_words;
 use crate::report::words::{TERMINAL, wrap};
 use crate::search::sweep::{Shard, Status};
 use crate::space::problem::ArmProblem;
+use crate::study::asked::Asked;
 use crate::study::definition::Study;
 use crate::study::diagnose::why_infeasible;
 use crate::study::outcome::{ExactStudy, Extent, StudyOutcome, judge_swept, resume_exact, sweep_shard};
@@ -355,18 +355,25 @@ fn search_exactly(asked: &Asked, with: &With) -> Result<Written, Failure> {
                 written.terminal.push_str(&finishing_words(finishing.elapsed()));
             }
             let is_partial = outcome.sweep.status == Status::Partial;
-            if is_interrupted && is_partial {
-                log.note("stopped; the front so far is written without summary, page and plots, and the same command goes on");
-                written.exit = Exit::Interrupted;
-            } else {
-                written = written.after_search(log);
-            }
-            if is_partial && written.exit == Exit::Done {
-                written.exit = Exit::Partial;
-            }
+            let mut written = after_exact_search(written, is_partial, is_interrupted, log);
             written.terminal.push_str(&certificate_words(boxes, gap, written.proved_to_mass_kg));
             Ok(written)
         }
+    }
+}
+
+/// The result of an exact search with the exit code that it ends with. `is_partial` tells whether something remains to
+/// be proved, `is_interrupted` whether the user stopped the search.
+fn after_exact_search(written: Written, is_partial: bool, is_interrupted: bool, log: Log) -> Written {
+    let exit = |written: Written, exit: Exit| Written { exit, ..written };
+    if is_interrupted && is_partial {
+        log.note("stopped; the front so far is written without summary, page and plots, and the same command goes on");
+        return exit(written, Exit::Interrupted);
+    }
+    let written = written.after_search(log);
+    match (is_partial, written.exit) {
+        (true, Exit::Done) => exit(written, Exit::Partial),
+        _ => written,
     }
 }
 

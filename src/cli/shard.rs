@@ -1,7 +1,6 @@
 //! `armwright run STUDY --shard M/N`: searches one part of a study's designs. It writes the designs that it found and a
 //! manifest, both for `armwright merge`.
 
-use super::asked::Asked;
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
 use super::finished::{catalogs_hash, count, pretty};
@@ -13,6 +12,7 @@ use super::stop::stopped_by_signal;
 use crate::exact::Known;
 use crate::exact::outcome::FoundInShard;
 use crate::search::sweep::{Shard, Status};
+use crate::study::asked::Asked;
 use crate::study::definition::Study;
 use crate::study::exact_shards::{exact_shard, fronts_of};
 use crate::study::outcome::sweep_shard;

@@ -10,7 +10,7 @@ use crate::report::words::{TERMINAL, wrap};
 use crate::search::near::{NearDesigns, Slack};
 use crate::space::problem::ArmProblem;
 use crate::study::ballast::{self, ballast_flags};
-use crate::study::near::{self, NearFront, near_front};
+use crate::study::near::{self, NO_NEAR, NearFront, near_front};
 use crate::study::outcome::StudyOutcome;
 use crate::study::pick_poses::picks_in_poses;
 use crate::study::same_drives::picks_on_same_drives;
@@ -141,7 +141,3 @@ impl SupplementArgs {
             .ok_or(())
     }
 }
-
-/// The reason why there is no list of near designs although the user asks for one.
-const NO_NEAR: &str = "No near.csv was written: near designs are listed only if the front is complete and has all ties as rows. A longer \
-                       --time-limit, --gap 0% or tighter constraints help.";

@@ -1,6 +1,7 @@
 //! Reads the values of options: lists of numbers, and words of which one is to be chosen.
 
 use crate::arm::Words;
+use crate::input::magnitude::beyond_calculation;
 use clap::builder::{PossibleValue, TypedValueParser};
 use clap::{Arg, Command};
 use std::ffi::OsStr;
@@ -16,8 +17,8 @@ pub(super) fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
 pub(super) fn number_list(text: &str) -> Result<Vec<f64>, String> {
     text.split(',')
         .map(|cell| match cell.trim().parse::<f64>() {
-            Ok(x) if x.is_finite() => Ok(x),
-            _ => Err(format!("\"{cell}\" is not a finite number")),
+            Ok(x) => beyond_calculation(x).map_or(Ok(x), |(problem, _)| Err(problem)),
+            Err(_) => Err(format!("\"{cell}\" is not a number")),
         })
         .collect()
 }

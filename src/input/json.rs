@@ -8,6 +8,7 @@ pub use super::lines::LineCounter;
 
 use super::encoding::{NotUtf8, decode};
 use super::key::Shape;
+use super::magnitude::{beyond_calculation, not_positive};
 use super::names::visible;
 use super::path::join;
 use serde_json::{Map, Value};
@@ -309,20 +310,23 @@ impl<'a> Node<'a> {
         }
     }
 
-    /// This node as a finite number.
+    /// This node as a number that can be calculated with: finite, and of a magnitude up to 1e30.
     pub fn number(&self) -> Option<f64> {
         match self.value.as_f64() {
-            Some(x) if x.is_finite() => Some(x),
-            Some(x) => self.fault(format!("= {x} is not finite"), "give a finite number"),
+            Some(x) => match beyond_calculation(x) {
+                None => Some(x),
+                Some((problem, hint)) => self.fault(problem, hint),
+            },
             None => self.fault(format!("is {}, not a number", kind(self.value)), "give a number in SI units"),
         }
     }
 
     /// This node as a number greater than zero.
     pub fn positive(&self) -> Option<f64> {
-        match self.number()? {
-            x if x > 0.0 => Some(x),
-            x => self.fault(format!("= {x} must be greater than 0"), "check sign and unit"),
+        let x = self.number()?;
+        match not_positive(x) {
+            None => Some(x),
+            Some((problem, hint)) => self.fault(problem, hint),
         }
     }
 

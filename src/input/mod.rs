@@ -6,6 +6,7 @@ pub(crate) mod encoding;
 pub(crate) mod json;
 pub(crate) mod key;
 pub(crate) mod lines;
+pub(crate) mod magnitude;
 pub(crate) mod names;
 pub(crate) mod path;
 pub(crate) mod schema;

@@ -6,7 +6,6 @@ use super::calculix::deck::{Step, deck};
 use super::calculix::mesh::has_shape;
 use super::calculix::model::model;
 use super::design_table::design_csv;
-use super::import::GRAVITY_M_S2;
 use super::left_out::{LeftOut, Remainder};
 use super::mjcf::{Mjcf, mjcf};
 use super::motors::{motors, plays};
@@ -19,7 +18,7 @@ use crate::arm::effect::entry::Effect;
 use crate::arm::load::{LoadCase, Payload};
 use crate::arm::section::Section;
 use crate::arm::structure::{Piece, Structure};
-use crate::arm::{Arm, Element, LinkBody, LinkModel, Words};
+use crate::arm::{Arm, Element, GRAVITY_M_S2, LinkBody, LinkModel, Words};
 use crate::catalog::Catalogs;
 use nalgebra::Vector3;
 use serde_json::{Value, json};
@@ -27,7 +26,7 @@ use std::collections::BTreeMap;
 
 /// The program or file format to export to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Format {
+pub enum Format {
     /// Input decks of CalculiX.
     Calculix,
     /// MJCF, the model format of MuJoCo.

@@ -18,14 +18,11 @@ use super::urdf_file::{UrdfTree, isometry, moves, slides, tensor};
 use crate::arm::body::RigidBody;
 use crate::arm::extras::Extras;
 use crate::arm::joint_law::Curve;
-use crate::arm::{Arm, Element, Joint, JointBodies, Link, LinkBody, Prismatic};
+use crate::arm::{Arm, Element, GRAVITY_M_S2, Joint, JointBodies, Link, LinkBody, Prismatic};
 use crate::input::json::{Fault, Faults};
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 use std::collections::{BTreeMap, BTreeSet};
 use urdf_rs::JointType;
-
-/// Gravity of an imported arm \[m/s²\], downwards along z. A URDF states none.
-pub(super) const GRAVITY_M_S2: f64 = 9.81;
 
 /// A robot of a URDF file, with the tip link that determines the arm.
 pub(crate) struct Robot<'a> {

@@ -6,7 +6,7 @@
 //!   to a tip. `given` reads the stiffness of the joints, which a URDF does not have; `keys` has the
 //!   keys of these files. `report` says what became of
 //!   every link and joint of the URDF.
-//! - Export: `export` writes an arm in a load case. `snapshot` has its springs at their working points, and `tree`
+//! - Export: `request` is what is asked for, and `export` writes an arm in a load case. `snapshot` has its springs at their working points, and `tree`
 //!   converts it to a chain of rigid bodies for `mjcf` and `urdf_out`. `motors` has what catalogs know of its drives. `calculix` converts it to solids, `bill` and
 //!   `design_table` to tables; `table_notes` says what these do not have. `left_out` lists what a file cannot represent, each with its part of the tip deflection.
 
@@ -25,6 +25,7 @@ pub(crate) mod left_out;
 pub(crate) mod mjcf;
 mod motors;
 pub(crate) mod report;
+pub(crate) mod request;
 pub(crate) mod snapshot;
 mod table_notes;
 mod time_step;
@@ -34,6 +35,9 @@ pub(crate) mod urdf_out;
 mod urdf_place;
 mod urdf_shapes;
 mod xml;
+
+pub use export::Format;
+pub use request::{ExportRequest, Exported};
 
 use crate::arm::Arm;
 use crate::catalog::Catalogs;

@@ -3,6 +3,7 @@
 //! mass.
 
 use super::number::{fixed, percent, shortest, significant};
+use super::picks::KNEE;
 use super::section::PageSection;
 use super::table::{Column, Table, csv_line};
 use super::words::wrap;
@@ -220,7 +221,7 @@ fn effect(gain: &Gain) -> String {
 
 /// The pick whose budget the terminal shows: the knee, or the last pick if there is no knee.
 fn shown(budgets: &[PickBudget]) -> Option<&PickBudget> {
-    budgets.iter().find(|b| b.names.contains(&"knee")).or(budgets.last())
+    budgets.iter().find(|b| b.names.contains(&KNEE)).or(budgets.last())
 }
 
 /// A change per kilogram with its sign, in at most seven characters if its magnitude is below 1000.

@@ -184,17 +184,23 @@ pub(crate) fn rows_and_names(picks: &[Pick]) -> Vec<(usize, String)> {
     picks.iter().map(|pick| (pick.design.row, pick.names.join(", "))).collect()
 }
 
+/// The picks that are best in one objective: their names, and the objective.
+pub(crate) const BEST: [(&str, Objective); 3] =
+    [("lightest", Objective::Mass), ("stiffest", Objective::Deflection), ("highest mode", Objective::Mode)];
+
+/// Name of the pick that is nearest to the best of all objectives.
+pub(crate) const KNEE: &str = "knee";
+
+/// The names of all picks, in the order in which they are listed.
+pub const PICKS: [&str; 4] = [BEST[0].0, BEST[1].0, BEST[2].0, KNEE];
+
 /// The picks of a front: lightest, stiffest, highest mode and knee. A design that is picked twice is listed once,
 /// with both names.
 pub fn picks(designs: &[Design]) -> Vec<Pick> {
-    let named = [
-        ("lightest", best(Objective::Mass, designs)),
-        ("stiffest", best(Objective::Deflection, designs)),
-        ("highest mode", best(Objective::Mode, designs)),
-        ("knee", knee(designs)),
-    ];
+    let best = BEST.map(|(name, objective)| (name, best(objective, designs)));
+    let named = best.into_iter().chain([(KNEE, knee(designs))]);
     let mut out: Vec<Pick> = Vec::new();
-    for (name, design) in named.into_iter().filter_map(|(n, d)| Some((n, d?))) {
+    for (name, design) in named.filter_map(|(n, d)| Some((n, d?))) {
         match out.iter_mut().find(|p| p.design.row == design.row) {
             Some(pick) => pick.names.push(name),
             None => out.push(Pick { names: vec![name], design: design.clone() }),

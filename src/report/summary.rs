@@ -7,7 +7,7 @@ use super::facts::SummaryFacts;
 use super::front_table::FrontTable;
 use super::number::{cost_words, fixed, grouped, large, percent_of, significant};
 use super::picks::{
-    Design, Objective, Pick, TightestCheck, best, designs, knee, marked_choices, materials, picks,
+    Design, KNEE, Objective, Pick, TightestCheck, best, designs, knee, marked_choices, materials, picks,
     rows_and_names, tightest_check,
 };
 use super::resonance::warnings;
@@ -71,7 +71,7 @@ pub fn summary_md(input: &SummaryInput) -> String {
         if !caveats.is_empty() {
             out.push_str(&format!("\n{caveats}\n"));
         }
-        out.push_str(KNEE);
+        out.push_str(KNEE_NOTE);
         let names: Vec<String> = input.materials.iter().map(|m| m.name.clone()).collect();
         if !names.is_empty() {
             out.push_str(&format!(
@@ -111,7 +111,7 @@ fn section(title: &str, lines: &[String]) -> String {
     if listed.is_empty() { listed } else { format!("\n## {title}\n\n{listed}") }
 }
 
-const KNEE: &str = "\nThe knee is the design nearest to the ideal point, which has the best value of every objective. Distances are\nmeasured in logarithms, each objective scaled by its range over the front.\n";
+const KNEE_NOTE: &str = "\nThe knee is the design nearest to the ideal point, which has the best value of every objective. Distances are\nmeasured in logarithms, each objective scaled by its range over the front.\n";
 
 /// The summary for a terminal of 80 columns.
 pub fn terminal_summary(input: &SummaryInput) -> String {
@@ -195,7 +195,7 @@ impl Found {
 
     /// The pick that examples of commands use: the knee.
     fn default_pick(&self) -> Option<&Pick> {
-        self.picks.iter().find(|p| p.names.contains(&"knee"))
+        self.picks.iter().find(|p| p.names.contains(&KNEE))
     }
 }
 

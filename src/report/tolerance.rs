@@ -2,7 +2,7 @@
 //! picked, and which design replaces it.
 
 use super::number::{percent_short, shortest, significant};
-use super::picks::{Design, Objective};
+use super::picks::{Design, Objective, PICKS};
 use super::section::PageSection;
 use super::supplement::Supplement;
 use super::table::{Column, Table, csv_line};
@@ -14,8 +14,6 @@ pub const FILE: &str = "tolerance.csv";
 /// Key of the results under scatter in `run.json`.
 pub const KEY: &str = "tolerance";
 
-/// What a design may be picked for, in the order of [`Fate::picked`].
-pub const PICKS: [&str; 4] = ["lightest", "stiffest", "highest mode", "knee"];
 /// The percentiles that are computed for each objective \[%\].
 pub const PERCENTILES: [u32; 3] = [5, 50, 95];
 

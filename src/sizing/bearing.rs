@@ -27,6 +27,11 @@ pub(crate) const SAFETY_IN_A_STOP: f64 = 2.0;
 pub(crate) const LOAD_FACTOR: f64 = 1.3;
 /// Factor of the axial force in the static equivalent load P₀.
 pub(super) const AXIAL_SHARE: f64 = 0.44;
+/// Factor Y of the axial force in the dynamic equivalent load while this force is at most 1.5 times the one across; the
+/// factor X of the force across is then 1.
+pub(super) const AXIAL_FACTOR: f64 = 0.45;
+/// Factor X and Y of both forces in the dynamic equivalent load where the axial force is larger than that.
+pub(super) const STEEP_FACTOR: f64 = 0.67;
 /// Number of turns for which the dynamic load rating C is defined.
 const RATED_TURNS: f64 = 1e6;
 
@@ -205,7 +210,7 @@ impl BearingLimits {
     #[inline]
     pub fn dynamic_load_n(&self, load: &BearingLoad) -> f64 {
         let across_n = self.across_n(load);
-        (across_n + 0.45 * load.axial_n).max(0.67 * (across_n + load.axial_n))
+        (across_n + AXIAL_FACTOR * load.axial_n).max(STEEP_FACTOR * (across_n + load.axial_n))
     }
 
     /// Whether the bearing meets `demand`: no load of the demand exceeds its limit.

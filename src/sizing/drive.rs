@@ -38,6 +38,13 @@ pub(super) fn if_any(gear: &Gear, rating: Option<f64>, none: f64, name: &'static
     }
 }
 
+/// A mass rounded to the microgram \[kg\]. Sums of catalog masses that are equal on paper are then equal as
+/// floating-point numbers too.
+pub(crate) fn to_the_microgram(mass_kg: f64) -> f64 {
+    const PER_KG: f64 = 1e9;
+    (mass_kg * PER_KG).round() / PER_KG
+}
+
 /// A gear and a motor, as they are mounted in a joint.
 ///
 /// ```
@@ -118,13 +125,11 @@ impl Drive<'_> {
         self.stage.ratio * input_speed_rpm(self.gear, motion)
     }
 
-    /// Mass of gear and motor \[kg\], rounded to the microgram. Rounding makes sums of catalog masses that are equal
-    /// on paper also equal as floating-point numbers.
+    /// Mass of gear and motor \[kg\], rounded to the microgram.
     ///
     /// # Errors
     /// The name of the mass that the catalog leaves blank.
     pub fn mass_kg(&self) -> Result<f64, MissingRating> {
-        const PER_KG: f64 = 1e9;
         let name = match self.gear_mass {
             _ if self.gear.kind == GearKind::Actuator => "mass_kg",
             GearMass::ComponentSet => "gear mass_component_set_kg",
@@ -132,7 +137,7 @@ impl Drive<'_> {
         };
         let sum_kg =
             known(self.gear.mass_kg(self.gear_mass), name)? + known(self.motor.mass_kg, "motor mass_kg")?;
-        Ok((sum_kg * PER_KG).round() / PER_KG)
+        Ok(to_the_microgram(sum_kg))
     }
 
     /// Eq 9: J_in, the inertia of rotor and gear input (wave generator), referred to the motor \[kg m²\]. It includes

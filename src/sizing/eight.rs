@@ -3,7 +3,7 @@
 //! The operations and their order are the same as in [`JointMotion::demand`] and [`DriveTable::first_fit`]. An arm
 //! therefore gets the same drive whether it is sized by itself or among eight.
 
-use super::bearing::{AXIAL_SHARE, BearingLimits};
+use super::bearing::{AXIAL_FACTOR, AXIAL_SHARE, BearingLimits, STEEP_FACTOR};
 use super::demand::JointMotion;
 use super::demand::LinearReading;
 use super::duty::HeatWeights;
@@ -129,7 +129,8 @@ impl<V: Lanes> EightBearing<V> {
         let across = self.at_rest.across(limits);
         let axial_n = self.at_rest.axial_n;
         let share = V::splat(AXIAL_SHARE);
-        let lasting = (across + V::splat(0.45) * axial_n).max(V::splat(0.67) * (across + axial_n));
+        let lasting =
+            (across + V::splat(AXIAL_FACTOR) * axial_n).max(V::splat(STEEP_FACTOR) * (across + axial_n));
         V::splat(limits.running_moment_nm).less(self.running.moment_at_centre(limits))
             | V::splat(limits.at_rest_n).less(across + share * axial_n)
             | V::splat(limits.in_stop_n).less(self.in_stop.across(limits) + share * self.in_stop.axial_n)

@@ -3,6 +3,7 @@
 use super::demand::{JointMotion, LinearReading};
 use super::duty::{DutyCycle, Phase, PhaseKind};
 use super::fit::FitRequirement;
+use crate::arm::GRAVITY_M_S2;
 
 /// The motion that a study asks of the tip, and the life it asks of every gear.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,7 +43,7 @@ impl Default for MotionRequirement {
             duty_cycle: DutyCycle::move_and_rest(0.20),
             life_h: 10_000.0,
             linear_reading: LinearReading::Exact,
-            gravity_m_s2: 9.81,
+            gravity_m_s2: GRAVITY_M_S2,
             checks_motor_heat: true,
             emergency_stops: None,
         }

@@ -13,7 +13,7 @@ use crate::arm::prismatic::{NamedPart, Prismatic};
 use crate::arm::transmission::{Hung, HungOn};
 use crate::arm::{Arm, Element, Joint};
 use crate::pareto::objectives::Objectives;
-use crate::sizing::drive::Drive;
+use crate::sizing::drive::{Drive, to_the_microgram};
 use nalgebra::Matrix3;
 
 /// The part that a design has at one piece of the arm.
@@ -160,9 +160,7 @@ impl<'c> ArmProblem<'c> {
             (SpacePiece::Joint(joint), _) => joint.extras.stated().total_kg(),
             _ => 0.0,
         });
-        const PER_KG: f64 = 1e9;
-        // rounded to the microgram, as the mass of a drive is
-        Some((extras_kg.sum::<f64>() * PER_KG).round() / PER_KG)
+        Some(to_the_microgram(extras_kg.sum()))
     }
 
     /// The judged cases of the study, as load cases of the full model.

@@ -7,6 +7,10 @@ use crate::input::json::{Node, Object};
 use crate::space::design_space::Case;
 use nalgebra::Vector3;
 
+/// Largest number of cases of a study: its poses times its environments. What a search tabulates grows with this number
+/// times that of the link options, and is about 360 MB for 1,000 cases of 500 options.
+const MOST_CASES: usize = 2_000;
+
 /// All cases of a study, with the indices of the judged cases and of the sizing cases.
 #[derive(Default)]
 pub(super) struct Cases {
@@ -41,8 +45,18 @@ pub(super) fn read_cases(root: &Object, joints: &[DrivenJoint]) -> Option<Cases>
     let poses: Vec<_> = poses?.iter().map(|n| read_case(n, joints, &usual)).collect();
     let poses = poses.into_iter().collect::<Option<Vec<_>>>()?;
     let (environments, _, _, _) = (environments?, payload?, force?, moment?);
-    if poses.is_empty() {
-        return root.required("poses")?.fault("is empty", "give at least the pose the arm is judged in");
+    let cases = poses.len() * environments.len();
+    if !(1..=MOST_CASES).contains(&cases) {
+        let node = root.required("poses")?;
+        return match cases {
+            0 => node.fault("is empty", "give at least the pose the arm is judged in"),
+            _ => node.fault(
+                format!(
+                    "with the environments makes {cases} cases, and the limit of a study is {MOST_CASES}"
+                ),
+                "keep the poses that are farthest out, and each extreme of a joint",
+            ),
+        };
     }
     let mut out = Cases::default();
     for environment in &environments {

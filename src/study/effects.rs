@@ -119,6 +119,12 @@ pub fn left_out(study: &Study) -> Vec<Correction> {
     of_test.map(|effect| Correction { what: effect.label(), applied: false, words: OF_TEST.into() }).collect()
 }
 
+/// The corrections as JSON: what each one is, whether it was applied, and why. The key of this in files is
+/// `carried_over`.
+pub fn corrections_json(corrections: &[Correction]) -> Value {
+    corrections.iter().map(|c| json!({"what": c.what, "carried": c.applied, "words": c.words})).collect()
+}
+
 const OF_TEST: &str = "it describes how the arm was tested, not the arm";
 
 /// Applies the corrections of a measured arm to the file of a study. They are the effects of `arm`, and the factors in

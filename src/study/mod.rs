@@ -3,6 +3,7 @@
 pub(crate) mod alternatives;
 pub(crate) mod arm_capacity;
 pub(crate) mod arm_remarks;
+pub(crate) mod asked;
 mod balance;
 pub(crate) mod balance_choices;
 pub(crate) mod ballast;
@@ -71,6 +72,7 @@ pub(crate) mod worst_pose;
 
 pub use arm_capacity::{capacity_of_arm, is_arm_file};
 pub use arm_remarks::{arm_remarks, ignored_words};
+pub use asked::Asked;
 pub use balance_choices::{BalanceChoice, balance_choices};
 pub use ballast::{BallastFlags, ballast_flags};
 pub use budget::budgets;
@@ -79,14 +81,14 @@ pub use check::{Claim, Completeness, FrontCheck, check_front, resume_check};
 pub use chosen::{arm_of_design, sizing_of, sizing_remarks};
 pub use definition::Study;
 pub use diagnose::{empty_pieces, why_infeasible};
-pub use effects::{CorrectedStudy, Correction, apply_corrections, left_out};
+pub use effects::{CorrectedStudy, Correction, apply_corrections, corrections_json, left_out};
 pub use exact_shards::{exact_shard, fronts_of, joined_exactly};
 pub use front_remarks::{caveats_on, effects_json, judged_cases, table_and_remarks};
 pub use keys::STUDY_FILE;
 pub use largest_speed::LargestSpeed;
 pub use load::{load_study, refuse_empty};
 pub use named::{NAMED, list, named, names};
-pub use near::{NearFront, near_front};
+pub use near::{NO_NEAR, NearFront, near_front};
 pub use outcome::{
     ExactStudy, Extent, Front, Judged, OfMaterial, StudyOutcome, judge_swept, resume_exact, run_exact,
     run_study, sweep_shard,

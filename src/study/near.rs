@@ -41,6 +41,10 @@ pub struct NearFront {
     pub capped: bool,
 }
 
+/// The reason why there is no list of near designs although the user asks for one.
+pub const NO_NEAR: &str = "Near designs are not listed: they are listed only if the front is complete and has all ties as rows. A longer \
+                       --time-limit, --gap 0% or tighter constraints help.";
+
 /// Finds the near designs of an exhaustive search, by a second search of the same space. `slack` says how much worse
 /// they may be. `None` if the user stopped it.
 pub fn near_front(

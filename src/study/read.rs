@@ -51,6 +51,10 @@ use crate::space::prismatic::SpacePrismatic;
 use serde_json::Value;
 use std::sync::Arc;
 
+/// Largest number of joints of a study. What the exact search prepares grows with the fourth power of this number, and
+/// takes seconds for 200 joints.
+const MOST_JOINTS: usize = 200;
+
 /// Reads a study. Materials, profiles and parts that it names are looked up in `catalogs`. The keys are in
 /// `docs/study-format.md`.
 ///
@@ -84,19 +88,9 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     let (question, _notes) = (text("question"), text("notes"));
     let gravity = read_gravity(&root);
     let gap = root.or("gap_percent", 0.0, read_gap);
-    let filter = root.or("drives", Drives::default(), |n| read_drives(n, catalogs));
     let constraints = root.or("constraints", Constraints::default(), read_constraints);
-    let extras = read_extras_source(&root, ExtrasSource::Usual);
-    let fit = read_fit(&root, FitRequirement::default());
-    let connection_share = root.or("connection_share", 0.0, Node::non_negative);
     let mut aside = Aside::default();
-    let duty = root.or("duty", None, |n| read_duty_of_only_joint(n, node).map(Some));
-    let chain = root.required("chain").and_then(|n| {
-        let (drives, constraints, extras, fit) = (filter.as_ref()?, constraints.as_ref()?, extras?, fit?);
-        let (connection_share, duty) = (connection_share?, duty.as_ref()?.as_ref());
-        let open = Open { catalogs, drives, constraints, extras, fit, connection_share, duty };
-        read_chain(&n, &open, &mut aside)
-    });
+    let chain = read_open_chain(&root, constraints.as_ref(), catalogs, &mut aside);
     let joints = driven_joints(node);
     let cases = read_cases(&root, &joints);
     let in_range = check_poses(&root, chain.as_deref(), cases.as_ref().map(|read| &read.cases[..]));
@@ -141,6 +135,26 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
         not_checked,
         remarks,
     })
+}
+
+/// Reads the chain of a study, and what holds for all of its open links and drives. `constraints` is `None` if the
+/// study's are faulty.
+fn read_open_chain(
+    root: &Object,
+    constraints: Option<&Constraints>,
+    catalogs: &Catalogs,
+    aside: &mut Aside,
+) -> Option<Vec<SpacePiece>> {
+    let filter = root.or("drives", Drives::default(), |n| read_drives(n, catalogs));
+    let extras = read_extras_source(root, ExtrasSource::Usual);
+    let fit = read_fit(root, FitRequirement::default());
+    let connection_share = root.or("connection_share", 0.0, Node::non_negative);
+    let duty = root.or("duty", None, |n| read_duty_of_only_joint(n, root.node()).map(Some));
+    let chain = root.required("chain")?;
+    let (drives, extras, fit) = (filter.as_ref()?, extras?, fit?);
+    let (connection_share, duty) = (connection_share?, duty.as_ref()?.as_ref());
+    let open = Open { catalogs, drives, constraints: constraints?, extras, fit, connection_share, duty };
+    read_chain(&chain, &open, aside)
 }
 
 /// Reads the name of a study. It must have a letter or a digit, because the folder of results is named after it.
@@ -265,17 +279,29 @@ struct Open<'a> {
     duty: Option<&'a StatedDuty>,
 }
 
+/// Refuses a chain that is too long, or has too many joints, for a search.
+fn fits_a_search(node: &Node, items: &[Node]) -> Option<()> {
+    let elements: usize = items.iter().map(elements_of).sum();
+    let joints = items.iter().filter(|n| n.value().get("type").is_some_and(|kind| kind != "link")).count();
+    let (problem, hint) = match (elements, joints) {
+        (1..=MOST_ELEMENTS, ..=MOST_JOINTS) => return Some(()),
+        (0, _) => ("is empty".into(), "an arm has at least one joint or link"),
+        (..=MOST_ELEMENTS, joints) => (
+            format!("has {joints} joints, and the limit of a study is {MOST_JOINTS}"),
+            "study a part of the arm, or solve the arm of a stated design by `armwright analyze`",
+        ),
+        (elements, _) => (
+            format!("has {elements} joints and links, and the limit is {MOST_ELEMENTS}"),
+            "join links that lie in line, or study a part of the arm",
+        ),
+    };
+    node.fault(problem, hint)
+}
+
 fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePiece>> {
     let items = node.array()?;
-    if items.is_empty() {
-        return node.fault("is empty", "an arm has at least one joint or link");
-    }
+    fits_a_search(node, &items)?;
     let counts: Vec<usize> = items.iter().map(elements_of).collect();
-    let elements: usize = counts.iter().sum();
-    if elements > MOST_ELEMENTS {
-        let problem = format!("has {elements} joints and links, and the limit is {MOST_ELEMENTS}");
-        return node.fault(problem, "join links that lie in line, or study a part of the arm");
-    }
     let mut transmissions = Vec::new();
     let read: Vec<Option<Vec<SpacePiece>>> = items
         .iter()

@@ -160,3 +160,53 @@ fn every_file_says_what_it_is_for() {
         assert!(text.starts_with("//!"), "{} does not open with a paragraph", file.display());
     }
 }
+
+/// Most lines of a file.
+const MOST_OF_FILE: usize = 600;
+/// Most lines of a function of `src`.
+const MOST_OF_FUNCTION: usize = 60;
+
+/// The first line of every function, and its number of lines. A function ends with a brace that is indented as far as
+/// its first line.
+fn functions(text: &str) -> Vec<(&str, usize)> {
+    let lines: Vec<&str> = text.lines().collect();
+    let is_head = |line: &str| {
+        let words = line.trim_start().split_once("fn ").map(|(words, _)| words);
+        let may_stand =
+            |word: &str| ["pub", "const", "unsafe", "extern"].contains(&word) || word.starts_with("pub(");
+        words.is_some_and(|words| words.split_whitespace().all(may_stand))
+    };
+    let length = |at: usize| {
+        let indentation = lines[at].len() - lines[at].trim_start().len();
+        let last = format!("{}}}", " ".repeat(indentation));
+        let is_one_line = lines[at].ends_with(['}', ';']);
+        let more = if is_one_line { Some(0) } else { lines[at..].iter().position(|line| *line == last) };
+        more.map(|more| more + 1)
+    };
+    let heads = (0..lines.len()).filter(|at| is_head(lines[*at]));
+    heads.filter_map(|at| Some((lines[at].trim(), length(at)?))).collect()
+}
+
+#[test]
+fn files_and_functions_are_short() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut long = Vec::new();
+    for folder in ["src", "tests", "benches", "python/src"] {
+        let mut files = Vec::new();
+        source_files(&root.join(folder), &mut files);
+        for file in files {
+            let text = fs::read_to_string(&file).expect("a source file");
+            let lines = text.lines().count();
+            if lines > MOST_OF_FILE {
+                long.push(format!("{}: {lines} lines", file.display()));
+            }
+            let is_long = |(_, lines): &(&str, usize)| *lines > MOST_OF_FUNCTION && folder == "src";
+            let functions = functions(&text).into_iter().filter(is_long);
+            long.extend(functions.map(|(head, lines)| format!("{}: {head} {lines} lines", file.display())));
+        }
+    }
+    assert!(long.is_empty(), "{}", long.join("\n"));
+    let body = "let a = 1;\n".repeat(61);
+    let text = format!("impl A {{\n    pub(super) fn long() {{\n{body}    }}\n    fn short() {{}}\n}}\n");
+    assert_eq!(functions(&text), [("pub(super) fn long() {", 63), ("fn short() {}", 1)]);
+}

@@ -26,6 +26,48 @@ fn a_chain_of_thousands_of_joints_is_refused_with_the_limit() {
 }
 
 #[test]
+fn a_study_of_more_joints_or_cases_than_a_search_takes_is_refused_with_the_limit() {
+    let here = tempfile::tempdir().expect("a folder");
+    let joint = |k: usize| json!({"type": "joint", "name": format!("j{k}"), "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e5, "mass_kg": 1});
+    let study = |joints: usize, poses: usize| {
+        let chain: Vec<_> = (0..joints).map(joint).collect();
+        let poses = vec![json!({"pose_deg": vec![0; joints]}); poses];
+        json!({"name": "long", "chain": chain, "payload": {"mass_kg": 1}, "poses": poses})
+    };
+    for (study, limit) in [
+        (study(201, 1), "has 201 joints, and the limit of a study is 200"),
+        (study(1, 2001), "makes 2001 cases, and the limit of a study is 2000"),
+    ] {
+        std::fs::write(here.path().join("study.json"), study.to_string()).expect("written");
+        for words in [["run", "study.json"], ["size", "study.json"], ["check", "study.json"]] {
+            let (code, said) = armwright(here.path(), &words);
+            assert!(code == 3 && said.contains(limit), "{words:?}: {said}");
+        }
+    }
+}
+
+#[test]
+fn numbers_that_no_quantity_has_are_refused() {
+    let here = tempfile::tempdir().expect("a folder");
+    let arm = |length_m: f64, mass_kg: f64| {
+        json!({"name": "far", "chain": [
+            {"type": "joint", "name": "j1", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e5, "mass_kg": mass_kg},
+            {"type": "link", "name": "arm", "vector_m": [length_m, 0, 0], "mass_kg": 1}]})
+    };
+    for (arm, words) in [
+        (arm(1e160, 1.0), "chain[1].vector_m[0]: = 1e160 is larger than 1e30"),
+        (arm(1.0, -1e31), "chain[0].mass_kg: = -1e31 is larger than 1e30"),
+    ] {
+        std::fs::write(here.path().join("arm.json"), arm.to_string()).expect("written");
+        let (code, said) = armwright(here.path(), &["analyze", "arm.json"]);
+        assert!(code == 3 && said.contains(words), "{said}");
+    }
+    std::fs::write(here.path().join("arm.json"), arm(1.0, 1.0).to_string()).expect("written");
+    let (code, said) = armwright(here.path(), &["analyze", "arm.json", "--force-n", "1e200,0,0"]);
+    assert!(code == 2 && said.contains("larger than 1e30"), "{said}");
+}
+
+#[test]
 fn a_product_of_grids_is_refused_before_it_is_made() {
     let here = tempfile::tempdir().expect("a folder");
     let grid = json!({"from": 1, "to": 90_000, "step": 1});

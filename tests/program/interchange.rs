@@ -1,8 +1,7 @@
 //! Robots of URDF files come in, arms and designs go out to other programs, and both are the same machine as before.
 //!
 //! `tests/data/urdf` has five public robots, written down from published figures, and a made-up one with everything that a URDF
-//! may have beside a plain chain. The comparisons with CalculiX and MuJoCo are in `tests/interchange`; they run where these
-//! programs are found.
+//! may have beside a plain chain. `simulators.rs` compares with CalculiX and MuJoCo.
 
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 use serde_json::{Value, json};
@@ -12,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 /// The robots and their tips.
-const ROBOTS: [(&str, &str); 6] = [
+pub(crate) const ROBOTS: [(&str, &str); 6] = [
     ("ur5e", "tool0"),
     ("ur10e", "tool0"),
     ("panda", "panda_hand_tcp"),
@@ -24,11 +23,11 @@ const ROBOTS: [(&str, &str); 6] = [
 /// Poses in which the torques of a robot are compared.
 const POSES: usize = 50;
 
-fn project() -> PathBuf {
+pub(crate) fn project() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
-fn urdf(name: &str) -> PathBuf {
+pub(crate) fn urdf(name: &str) -> PathBuf {
     project().join(format!("tests/data/urdf/{name}.urdf"))
 }
 
@@ -275,7 +274,7 @@ fn prismatic_joints_come_in_with_ranges_and_given_springs() {
 }
 
 /// A robot whose third joint slides.
-const SCARA: (&str, &str) = ("irb910sc", "tool0");
+pub(crate) const SCARA: (&str, &str) = ("irb910sc", "tool0");
 
 #[test]
 fn a_scara_comes_in_and_its_quill_alone_holds_weight() {
@@ -537,7 +536,7 @@ fn exports_have_the_same_bytes_and_refuse_what_they_cannot() {
     let out = folder.path().join("x").display().to_string();
     for (words, exit, part) in [
         (vec!["--to", "step"], 2, "calculix, mjcf, urdf"),
-        (vec!["--to", "urdf", "--flexible", "4"], 2, "--to mjcf"),
+        (vec!["--to", "urdf", "--flexible", "4"], 2, "are for mjcf"),
         (vec!["--to", "mjcf", "--pose-deg", "1,2"], 2, "3 driven joints: j1, j2, j3"),
         (vec!["--to", "mjcf", "--case", "up"], 2, "the cases are: case"),
     ] {
@@ -548,64 +547,4 @@ fn exports_have_the_same_bytes_and_refuse_what_they_cannot() {
     }
     let output = armwright(&["export", "results/none#abc", "--to", "bom", "--out", &out]);
     assert_eq!(output.status.code(), Some(7), "{}", String::from_utf8_lossy(&output.stderr));
-}
-
-/// A Python that has MuJoCo: `ARMWRIGHT_PYTHON`, that of `scripts/test`, or the system's.
-fn python() -> Option<String> {
-    let own = project().join("target/mujoco/bin/python").display().to_string();
-    let candidates = [std::env::var("ARMWRIGHT_PYTHON").ok(), Some(own), Some("python3".into())];
-    candidates.into_iter().flatten().find(|python| {
-        Command::new(python)
-            .args(["-c", "import mujoco, numpy"])
-            .output()
-            .is_ok_and(|output| output.status.success())
-    })
-}
-
-/// Runs a comparison of `tests/interchange`.
-fn compared(python: &str, script: &str, words: &[&str]) {
-    let folder = tempfile::tempdir().expect("a folder");
-    let output = Command::new(python)
-        .arg(project().join("tests/interchange").join(script))
-        .args([env!("CARGO_BIN_EXE_armwright"), &folder.path().display().to_string()])
-        .args(words)
-        .env("PYTHONDONTWRITEBYTECODE", "1")
-        .output()
-        .expect("it runs");
-    let said = String::from_utf8_lossy(&output.stdout);
-    println!("{said}");
-    assert!(output.status.success(), "{script}:\n{said}{}", String::from_utf8_lossy(&output.stderr));
-    assert!(said.lines().count() > 0, "{script} compared nothing");
-}
-
-#[test]
-fn mujoco_finds_the_torques_deflections_and_frequencies_of_exported_arms() {
-    match python() {
-        Some(python) => compared(&python, "mujoco_export.py", &[]),
-        None => eprintln!("SKIPPED: no Python with mujoco (set ARMWRIGHT_PYTHON)"),
-    }
-}
-
-#[test]
-fn mujoco_finds_the_torques_of_imported_robots() {
-    let all = ROBOTS.iter().chain(&[SCARA]);
-    let robots: Vec<String> = all.map(|(name, tip)| format!("{}:{tip}", urdf(name).display())).collect();
-    let robots: Vec<&str> = robots.iter().map(String::as_str).collect();
-    match python() {
-        Some(python) => compared(&python, "mujoco_import.py", &robots),
-        None => eprintln!("SKIPPED: no Python with mujoco (set ARMWRIGHT_PYTHON)"),
-    }
-}
-
-#[test]
-fn calculix_finds_the_deflections_and_frequencies_of_exported_arms() {
-    let has = |program: &str| Command::new(program).arg("-v").output().is_ok();
-    if !has("ccx") || !has("python3") {
-        return eprintln!("SKIPPED: no ccx or no python3 on the PATH");
-    }
-    // all arms take a minute or more: ARMWRIGHT_CALCULIX=all
-    match std::env::var("ARMWRIGHT_CALCULIX").as_deref() {
-        Ok("all") => compared("python3", "calculix.py", &[]),
-        _ => compared("python3", "calculix.py", &["linkage", "bodies"]),
-    }
 }

@@ -41,6 +41,7 @@ mod running;
 mod same_bytes;
 mod schemas;
 mod shards;
+mod simulators;
 mod slurm;
 mod starters;
 mod study_effects;

@@ -126,6 +126,8 @@ fn a_signal_after_the_search_leaves_a_whole_result_or_says_what_is_missing() {
         assert!(text.contains("warning: not written: what goes with the front"), "{text}");
         let written: Value = serde_json::from_slice(&fs::read(at("run.json")).expect("read")).expect("JSON");
         assert!(written["not_written"][0].is_string() && !at("summary.md").exists(), "{written}");
+        let (code, text) = armwright(here.path(), &["check", "out"]);
+        assert!(code == 9 && text.contains("incomplete\n  not written: what goes with the front"), "{text}");
         let (code, text) = stopped_at(here.path(), "the summary on the terminal", &run);
         assert_eq!(code, 0, "everything is written: {text}");
         assert!(at("report.html").is_file() && !at(".armwright").exists());

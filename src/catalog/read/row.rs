@@ -5,6 +5,7 @@ use super::log::Log;
 use crate::catalog::schema::{CatalogFile, Cell};
 use crate::catalog::{Confidence, Provenance};
 use crate::input::json::closest;
+use crate::input::magnitude::{beyond_calculation, not_positive};
 use crate::input::names::{unfit_cell, unfit_name};
 
 /// One row: the cells in the order of the file's known columns. `None` is the cell of an absent column.
@@ -228,10 +229,10 @@ fn read_number(kind: Cell, text: &str) -> Result<Option<f64>, Refusal> {
         return Ok(None);
     }
     let x = finite_number(text)?;
+    if let (Cell::Positive | Cell::Fraction, Some((problem, _))) = (kind, not_positive(x)) {
+        return refusal(problem, BLANK);
+    }
     match kind {
-        Cell::Positive | Cell::Fraction if x <= 0.0 => {
-            refusal(format!("= {x} must be greater than 0"), BLANK)
-        }
         Cell::NonNegative if x < 0.0 => refusal(format!("= {x} must not be negative"), BLANK),
         Cell::Fraction if x > 1.0 => {
             refusal(format!("= {x} must not exceed 1"), "write a fraction, 0.75 for 75 %")
@@ -242,11 +243,10 @@ fn read_number(kind: Cell, text: &str) -> Result<Option<f64>, Refusal> {
 
 fn finite_number(text: &str) -> Result<f64, Refusal> {
     match text.parse::<f64>() {
-        Ok(x) if x.is_finite() => Ok(x),
-        Ok(_) => refusal(
-            format!("= {text} is not a finite number"),
-            "leave the cell blank if the figure is unknown",
-        ),
+        Ok(x) => match beyond_calculation(x) {
+            None => Ok(x),
+            Some((problem, _)) => refusal(problem, "leave the cell blank if the figure is unknown"),
+        },
         Err(_) if text.contains(',') && text.replace(',', "").parse::<f64>().is_ok() => refusal(
             format!("\"{text}\" has a comma"),
             "the decimal sign is a point, and thousands are not separated",

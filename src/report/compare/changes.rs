@@ -6,7 +6,7 @@
 
 use crate::report::front_table::FrontTable;
 use crate::report::number::significant;
-use crate::report::picks::{choices, designs, picks};
+use crate::report::picks::{PICKS, choices, designs, picks};
 use crate::report::table::{Column, Table};
 use serde::Serialize;
 
@@ -73,8 +73,6 @@ pub(crate) struct Changes {
     /// Every design of either front. The designs of the nominal front come first.
     pub designs: Vec<Changed>,
 }
-
-const PICKS: [&str; 4] = ["lightest", "stiffest", "highest mode", "knee"];
 
 impl Changes {
     /// Compares the nominal and the corrected front of one study (`fronts`, in this order). `judge` computes the

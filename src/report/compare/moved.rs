@@ -4,7 +4,7 @@
 use super::contender::Contender;
 use crate::report::front_table::{FrontTable, OBJECTIVE_COLUMNS};
 use crate::report::number::percent_rounded;
-use crate::report::picks::{Objective, best, designs};
+use crate::report::picks::{BEST, Objective, best, designs};
 use crate::report::words::capital;
 use serde::Serialize;
 use std::collections::HashMap;
@@ -68,13 +68,9 @@ fn words(moved: &Moved, before: &Contender, after: &Contender) -> String {
         moved.from, moved.to, moved.unchanged, moved.judged_anew, moved.came, moved.went
     );
     let (old, new) = (designs(&before.front), designs(&after.front));
-    let changes = [
-        ("lightest", Objective::Mass),
-        ("stiffest", Objective::Deflection),
-        ("highest mode", Objective::Mode),
-    ]
-    .into_iter()
-    .filter_map(|(name, o)| Some(change(name, o, o.of(best(o, &old)?), o.of(best(o, &new)?))));
+    let changes = BEST
+        .into_iter()
+        .filter_map(|(name, o)| Some(change(name, o, o.of(best(o, &old)?), o.of(best(o, &new)?))));
     let changes: Vec<String> = changes.collect();
     if changes.is_empty() { counts } else { format!("{counts} {}.", capital(&changes.join("; "))) }
 }
