@@ -27,12 +27,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let problem = ArmProblem::new(&study.space, &catalogs);
     let lightest = outcome.front.first().ok_or("no design meets the constraints")?;
     let by_mode = |d: &&armwright::study::Judged| d.design.objectives.lowest_mode_hz;
-    let fastest = outcome
+    let highest = outcome
         .front
         .iter()
         .max_by(|a, b| by_mode(a).total_cmp(&by_mode(b)))
-        .expect("a front with a lightest design has a fastest");
-    for (what, judged) in [("lightest", lightest), ("highest mode", fastest)] {
+        .expect("a front with a lightest design has a highest mode");
+    for (what, judged) in [("lightest", lightest), ("highest mode", highest)] {
         let o = judged.design.objectives;
         println!(
             "{what} {}: {:.2} kg, {:.3} mm, {:.2} Hz",

@@ -23,6 +23,8 @@ pub struct GuideLoad {
     pub force_n: Vector3<f64>,
     /// Moment about the travel (roll), about the y axis (pitch) and about the z axis (yaw) of the guide \[N m\].
     pub moment_nm: Vector3<f64>,
+    /// Direction of the travel, a unit vector in world axes.
+    pub travel: Vector3<f64>,
 }
 
 impl GuideLoad {
@@ -31,7 +33,12 @@ impl GuideLoad {
     pub(super) fn of(name: &str, wrench: &Wrench, frame: &Matrix3<f64>, at_m: &Vector3<f64>) -> Self {
         let force_n = linear(wrench);
         let moment_nm = angular(wrench) - at_m.cross(&force_n);
-        Self { name: name.to_string(), force_n: frame.tr_mul(&force_n), moment_nm: frame.tr_mul(&moment_nm) }
+        Self {
+            name: name.to_string(),
+            force_n: frame.tr_mul(&force_n),
+            moment_nm: frame.tr_mul(&moment_nm),
+            travel: frame.column(0).into(),
+        }
     }
 }
 

@@ -181,7 +181,7 @@ impl Analysis {
             return;
         }
         let _ = writeln!(out, "  guide          force across N (y, z)    moment Nm (roll, pitch, yaw)");
-        for GuideLoad { name, force_n, moment_nm } in &self.statics.guide_loads {
+        for GuideLoad { name, force_n, moment_nm, .. } in &self.statics.guide_loads {
             let _ = writeln!(
                 out,
                 "  {name:<14} {:10.3} {:10.3}    {:10.3} {:10.3} {:10.3}",

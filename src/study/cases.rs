@@ -7,8 +7,8 @@ use crate::input::json::{Node, Object};
 use crate::space::design_space::Case;
 use nalgebra::Vector3;
 
-/// Largest number of cases of a study: its poses times its environments. What a search tabulates grows with this number
-/// times that of the link options, and is about 360 MB for 1,000 cases of 500 options.
+/// Largest number of cases of a study: its poses times its environments. A search tabulates up to 4 kB for each link
+/// option in each case.
 const MOST_CASES: usize = 2_000;
 
 /// All cases of a study, with the indices of the judged cases and of the sizing cases.

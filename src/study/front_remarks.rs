@@ -5,6 +5,7 @@ use super::definition::Study;
 use super::gear_remarks::{life_remarks_on, play_remarks};
 use super::given_parts::given_parts;
 use super::given_remarks::GivenDrives;
+use super::guide_remarks::guide_remark;
 use super::outcome::Front;
 use super::table::front_table_with;
 use crate::arm::effect::entry::Effect;
@@ -15,8 +16,8 @@ use crate::report::picks;
 use crate::space::problem::ArmProblem;
 use serde_json::{Value, json};
 
-/// The table of the front of a study, and remarks in sentences: on the question, and on the output bearings, gears and
-/// given drives in the answer. The remarks are those that `run.json` has under `remarks`.
+/// The table of the front of a study, and remarks in sentences: on the question, and on the output bearings, gears,
+/// given drives and guides in the answer. The remarks are those that `run.json` has under `remarks`.
 pub fn table_and_remarks(
     study: &Study,
     problem: &ArmProblem,
@@ -30,7 +31,9 @@ pub fn table_and_remarks(
     let of_lives = life_remarks_on(&study.space, catalogs, &table);
     let of_play = play_remarks(&study.space, catalogs, &table);
     let of_given = given.remarks(front.len());
-    let remarks = of_study.chain(of_bearings).chain(of_lives).chain(of_play).chain(of_given).collect();
+    let of_guides = guide_remark(problem, &table);
+    let of_parts = of_bearings.into_iter().chain(of_lives).chain(of_play).chain(of_given).chain(of_guides);
+    let remarks = of_study.chain(of_parts).collect();
     (table, remarks)
 }
 
