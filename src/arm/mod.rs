@@ -56,7 +56,7 @@ pub use joint_law::{Curve, FurtherTwist, JointLaw, LostMotion, Windup};
 pub use linkage::Linkage;
 pub use load::{LoadCase, Payload, Water, read_load_cases};
 pub use pose::{DrivenJoint, Motion, any_slides, pose_json, pose_si};
-pub use prismatic::{Guide, Moves, NamedPart, Prismatic, PrismaticPiece};
+pub use prismatic::{Guide, GuideLimits, Moves, NamedPart, Prismatic, PrismaticPiece};
 pub use section::{LinkMaterial, Section, SectionProperties, StatedSection};
 pub use springs::{Drawn, Spring, SpringEnd, SpringKind, SpringLaw, SpringPlace};
 pub use structure::{Beam, FrameCompliance, JointAngle, JointPiece, LinkPiece, Piece, Structure};

@@ -26,7 +26,7 @@ pub struct Prismatic {
     pub axis: Unit<Vector3<f64>>,
     /// Stiffness of the drive along the travel \[N/m\]; `None` means rigid.
     pub stiffness_n_per_m: Option<f64>,
-    /// Rotational stiffnesses of the guide.
+    /// Rotational stiffnesses of the guide, and the loads that it holds.
     pub guide: Guide,
     /// Whether a carriage or a ram travels.
     pub moves: Moves,
@@ -91,7 +91,8 @@ impl Moves {
     }
 }
 
-/// Rotational stiffnesses of a guide, as moment per tilt \[N m/rad\]; `None` means rigid about this axis.
+/// Rotational stiffnesses of a guide, as moment per tilt \[N m/rad\], where `None` means rigid about this axis, and the
+/// loads that it holds.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Guide {
     /// Stiffness in roll, about the travel \[N m/rad\].
@@ -100,6 +101,51 @@ pub struct Guide {
     pub pitch_nm_per_rad: Option<f64>,
     /// Stiffness in yaw, about the z axis of the same section frame \[N m/rad\].
     pub yaw_nm_per_rad: Option<f64>,
+    /// The largest loads, each acting alone.
+    pub limits: GuideLimits,
+}
+
+/// The largest loads that a guide holds, each acting alone: the ratings of the maker over the safety factor that it asks
+/// for. `None` means unknown.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct GuideLimits {
+    /// Force across the travel, along the y or the z axis of the guide \[N\].
+    pub force_n: Option<f64>,
+    /// Moments in the order roll, pitch, yaw \[N m\].
+    pub moment_nm: [Option<f64>; 3],
+}
+
+const LIMIT_KEYS: [&str; 4] = ["max_force_n", "max_roll_nm", "max_pitch_nm", "max_yaw_nm"];
+
+impl GuideLimits {
+    /// The part of what the guide holds that a load uses up; 1 is all of it. `force_n` and `moment_nm` are along and
+    /// about the axes of the guide, the travel first. The parts of all forces and moments add up (PBC Linear, Redi-Rail
+    /// catalog, "multiple-load force calculation"). Loads without a limit are left out; `None` if there is no limit.
+    pub fn part_used(&self, force_n: &Vector3<f64>, moment_nm: &Vector3<f64>) -> Option<f64> {
+        let forces = [force_n.y, force_n.z].map(|force_n| (force_n, self.force_n));
+        let moments = moment_nm.iter().copied().zip(self.moment_nm);
+        let parts = forces.into_iter().chain(moments).filter_map(|(load, most)| Some(load.abs() / most?));
+        parts.reduce(|sum, part| sum + part)
+    }
+
+    /// The words of the kinds of load for which no limit is known.
+    pub(crate) fn unknown(&self) -> Vec<&'static str> {
+        let known = [self.force_n, self.moment_nm[0], self.moment_nm[1], self.moment_nm[2]];
+        LIMIT_KEYS.into_iter().zip(known).filter(|(_, most)| most.is_none()).map(|(key, _)| key).collect()
+    }
+
+    fn read(object: &Object) -> Option<Self> {
+        let [force_n, roll, pitch, yaw] =
+            LIMIT_KEYS.map(|key| object.or(key, None, |node| node.positive().map(Some)));
+        Some(Self { force_n: force_n?, moment_nm: [roll?, pitch?, yaw?] })
+    }
+
+    /// The limits that are known, by their keys.
+    fn entries(&self) -> impl Iterator<Item = (String, Value)> + use<> {
+        let [roll, pitch, yaw] = self.moment_nm;
+        let all = LIMIT_KEYS.into_iter().zip([self.force_n, roll, pitch, yaw]);
+        all.filter_map(|(key, most)| Some((key.to_string(), json!(most?))))
+    }
 }
 
 const GUIDE_KEYS: [&str; 3] = ["roll_nm_per_rad", "pitch_nm_per_rad", "yaw_nm_per_rad"];
@@ -120,19 +166,20 @@ impl Guide {
     pub fn stiffened(self, factor: f64) -> Self {
         let [roll_nm_per_rad, pitch_nm_per_rad, yaw_nm_per_rad] =
             self.stiffnesses().map(|k| k.map(|k| k * factor));
-        Self { roll_nm_per_rad, pitch_nm_per_rad, yaw_nm_per_rad }
+        Self { roll_nm_per_rad, pitch_nm_per_rad, yaw_nm_per_rad, ..self }
     }
 
     fn read(node: &Node) -> Option<Self> {
         let object = node.shaped(&GUIDE)?;
         let [roll, pitch, yaw] = GUIDE_KEYS.map(|key| object.or(key, None, positive_or_rigid));
-        Some(Self { roll_nm_per_rad: roll?, pitch_nm_per_rad: pitch?, yaw_nm_per_rad: yaw? })
+        let limits = GuideLimits::read(&object);
+        Some(Self { roll_nm_per_rad: roll?, pitch_nm_per_rad: pitch?, yaw_nm_per_rad: yaw?, limits: limits? })
     }
 
     fn to_json(self) -> Value {
-        let entries: Map<String, Value> =
-            GUIDE_KEYS.iter().zip(self.stiffnesses()).map(|(key, k)| (key.to_string(), json!(k))).collect();
-        Value::Object(entries)
+        let stiffnesses = GUIDE_KEYS.iter().zip(self.stiffnesses());
+        let stiffnesses = stiffnesses.map(|(key, k)| (key.to_string(), json!(k)));
+        Value::Object(stiffnesses.chain(self.limits.entries()).collect::<Map<_, _>>())
     }
 }
 
@@ -308,6 +355,7 @@ impl PrismaticPiece {
 
 #[cfg(test)]
 mod tests {
+    use super::GuideLimits;
     use crate::arm::file::read_arm_document;
     use crate::arm::{Arm, Element};
     use crate::catalog::Catalogs;
@@ -315,7 +363,7 @@ mod tests {
 
     const GANTRY: &str = r#"{"chain": [
         {"type": "prismatic", "name": "rail", "axis": [2, 0, 0], "stiffness_n_per_m": 5e7, "mass_kg": 12,
-         "fixed_mass_kg": 3, "guide": {"roll_nm_per_rad": 1e5, "pitch_nm_per_rad": null},
+         "fixed_mass_kg": 3, "guide": {"roll_nm_per_rad": 1e5, "pitch_nm_per_rad": null, "max_force_n": 2000, "max_yaw_nm": 50},
          "bodies": [{"mass_kg": 1, "travels": true}, {"mass_kg": 2}]},
         {"type": "prismatic", "name": "z", "axis": [0, 0, 1], "stiffness_n_per_m": null, "moves": "ram"},
         {"type": "joint", "name": "j", "axis": [0, 0, 1], "stiffness_nm_per_rad": 1e4, "coupled": COUPLED}]}"#;
@@ -335,6 +383,13 @@ mod tests {
         assert_eq!(arm.mass_kg(), 18.0);
         let Element::Prismatic(rail) = &arm.chain[0] else { panic!("a prismatic joint") };
         assert_eq!((rail.guide.roll_nm_per_rad, rail.guide.pitch_nm_per_rad), (Some(1e5), None));
+        let limits = rail.guide.limits;
+        assert_eq!((limits.force_n, limits.moment_nm), (Some(2000.0), [None, None, Some(50.0)]));
+        assert_eq!(limits.unknown(), ["max_roll_nm", "max_pitch_nm"]);
+        // (100 + 300) / 2000 and 10 / 50; nothing is known of roll and pitch, and the drive holds the first force
+        let used = limits.part_used(&[900.0, -100.0, 300.0].into(), &[70.0, 80.0, -10.0].into());
+        assert!((used.expect("a limit") - 0.4).abs() < 1e-12);
+        assert_eq!(GuideLimits::default().part_used(&[1.0; 3].into(), &[1.0; 3].into()), None);
         let driven: Vec<String> = arm.driven_joints().iter().map(|joint| joint.key()).collect();
         assert_eq!(driven, ["rail_mm", "z_mm", "j_deg"]);
     }

@@ -15,9 +15,9 @@ pub(crate) const DRIVE_STIFFNESS: Key = required(
     "Stiffness of the drive along the travel; null is rigid.",
 );
 
-/// The stiffnesses of the guide.
+/// The stiffnesses of the guide, and the loads that it holds.
 pub(crate) const GUIDE_STIFFNESSES: Key =
-    optional("guide", Kind::Object(&GUIDE), "N m/rad", "rigid", "Stiffnesses of the guide.");
+    optional("guide", Kind::Object(&GUIDE), "-", "rigid", "Stiffnesses of the guide, and what it holds.");
 
 /// Whether the guide travels.
 pub(crate) const MOVES: Key = optional(
@@ -100,6 +100,22 @@ pub(crate) static GUIDE: Shape = Shape::new(
             "About the y of a section frame whose x is the travel.",
         ),
         optional("yaw_nm_per_rad", POSITIVE_OR_NULL, "N m/rad", "null", "About the z of this frame."),
+        optional(
+            "max_force_n",
+            Kind::Positive,
+            "N",
+            "unknown",
+            "Force across the travel that the guide holds alone: the maker's rating over the safety factor that it asks for.",
+        ),
+        optional(
+            "max_roll_nm",
+            Kind::Positive,
+            "N m",
+            "unknown",
+            "Moment about the travel that it holds alone.",
+        ),
+        optional("max_pitch_nm", Kind::Positive, "N m", "unknown", "Moment about the y that it holds alone."),
+        optional("max_yaw_nm", Kind::Positive, "N m", "unknown", "Moment about the z that it holds alone."),
     ],
     &[],
 );

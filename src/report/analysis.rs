@@ -133,7 +133,7 @@ impl Analysis {
             out["springs"] = self.springs.iter().map(spring_json).collect();
             out["springs_stiffen_modes"] = json!(false);
         }
-        self.guides_json(&mut out);
+        self.guides_json(arm, &mut out);
         if let Some(divided_hz) = self.divided_hz {
             out["lowest_mode_divided_hz"] = json!(divided_hz);
         }
@@ -162,7 +162,7 @@ impl Analysis {
     }
 
     /// Adds the forces of drives and the loads on guides to the object `out`, if the arm has prismatic joints.
-    fn guides_json(&self, out: &mut Value) {
+    fn guides_json(&self, arm: &Arm, out: &mut Value) {
         if self.statics.guide_loads.is_empty() {
             return;
         }
@@ -173,18 +173,27 @@ impl Analysis {
         out["joint_force_n"] = Value::Object(forces.collect());
         out["guide_force_n"] = each(&|load| json!([load.force_n.y, load.force_n.z]));
         out["guide_moment_nm"] = each(&|load| json!(load.moment_nm.as_slice()));
+        out["guide_part_used"] = each(&|load| json!(part_used(arm, load)));
     }
 
     /// Adds a table of the loads on the guides of prismatic joints.
-    fn guides_text(&self, out: &mut String) {
+    fn guides_text(&self, arm: &Arm, out: &mut String) {
         if self.statics.guide_loads.is_empty() {
             return;
         }
-        let _ = writeln!(out, "  guide          force across N (y, z)    moment Nm (roll, pitch, yaw)");
-        for GuideLoad { name, force_n, moment_nm, .. } in &self.statics.guide_loads {
+        let _ = writeln!(
+            out,
+            "  guide          force across N (y, z)    moment Nm (roll, pitch, yaw)      of what it holds at rest"
+        );
+        for load in &self.statics.guide_loads {
+            let GuideLoad { name, force_n, moment_nm, .. } = load;
+            let used = match part_used(arm, load) {
+                Some(part) => percent(100.0 * part, 1) + if part > 1.0 { "   too much" } else { "" },
+                None => "unknown".into(),
+            };
             let _ = writeln!(
                 out,
-                "  {name:<14} {:10.3} {:10.3}    {:10.3} {:10.3} {:10.3}",
+                "  {name:<14} {:10.3} {:10.3}    {:10.3} {:10.3} {:10.3}   {used:>10}",
                 force_n.y, force_n.z, moment_nm.x, moment_nm.y, moment_nm.z
             );
         }
@@ -255,7 +264,7 @@ impl Analysis {
             let _ = writeln!(out, "  ignored, because links are held rigid: {}", self.unbent.join(", "));
         }
         self.shares_text(&mut out);
-        self.guides_text(&mut out);
+        self.guides_text(arm, &mut out);
         self.bearings_text(arm, &mut out);
         joints_remarks_text(arm, &mut out);
         springs_text(&self.springs, &mut out);
@@ -395,6 +404,12 @@ fn joints_remarks_text(arm: &Arm, out: &mut String) {
             unweighed.join(", ")
         );
     }
+}
+
+/// The part of what a guide holds that a load uses up; `None` if the arm does not state what it holds.
+fn part_used(arm: &Arm, load: &GuideLoad) -> Option<f64> {
+    let joint = arm.prismatics().find(|joint| joint.name == load.name)?;
+    joint.guide.limits.part_used(&load.force_n, &load.moment_nm)
 }
 
 /// The joints that have a gear, but for which the arm file states no output bearing. Their bearings count as rigid.

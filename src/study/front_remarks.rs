@@ -5,7 +5,7 @@ use super::definition::Study;
 use super::gear_remarks::{life_remarks_on, play_remarks};
 use super::given_parts::given_parts;
 use super::given_remarks::GivenDrives;
-use super::guide_remarks::guide_remark;
+use super::guide_remarks::guide_remarks;
 use super::outcome::Front;
 use super::table::front_table_with;
 use crate::arm::effect::entry::Effect;
@@ -31,7 +31,7 @@ pub fn table_and_remarks(
     let of_lives = life_remarks_on(&study.space, catalogs, &table);
     let of_play = play_remarks(&study.space, catalogs, &table);
     let of_given = given.remarks(front.len());
-    let of_guides = guide_remark(problem, &table);
+    let of_guides = guide_remarks(problem, &table);
     let of_parts = of_bearings.into_iter().chain(of_lives).chain(of_play).chain(of_given).chain(of_guides);
     let remarks = of_study.chain(of_parts).collect();
     (table, remarks)

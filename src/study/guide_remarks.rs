@@ -1,94 +1,119 @@
-//! What the guides of a study's prismatic joints bear, for comparison with the ratings of their makers, which the study
-//! does not know.
+//! What the guides of a study's prismatic joints bear, for comparison with the ratings of their makers, where the study
+//! does not state them.
 
 use crate::arm::Arm;
 use crate::arm::load::LoadCase;
+use crate::arm::prismatic::{GuideLimits, Prismatic};
 use crate::mechanics::GuideLoad;
 use crate::mechanics::chain::Chain;
 use crate::report::front_table::FrontTable;
-use crate::report::number::significant;
+use crate::report::number::{percent, significant};
 use crate::report::picks::{designs, picks};
 use crate::space::design::number_of;
 use crate::space::design_space::SpacePiece;
 use crate::space::problem::ArmProblem;
 
-/// The largest load on one guide: force across the travel \[N\] and moment \[N m\].
+/// The largest load on one guide.
 #[derive(Debug, Clone, Copy, Default)]
 struct Largest {
+    /// Force across the travel \[N\].
     across_n: f64,
+    /// Moment \[N m\].
     moment_nm: f64,
+    /// The part of what the guide holds that is used up; `None` if nothing is known of what it holds.
+    part_used: Option<f64>,
 }
 
 impl Largest {
-    fn with(self, load: &GuideLoad) -> Self {
+    fn with(self, load: &GuideLoad, limits: &GuideLimits) -> Self {
+        let part_used = limits.part_used(&load.force_n, &load.moment_nm);
         Self {
             across_n: self.across_n.max(load.force_n.y.hypot(load.force_n.z)),
             moment_nm: self.moment_nm.max(load.moment_nm.norm()),
+            part_used: part_used.map(|part| self.part_used.map_or(part, |most| most.max(part))),
         }
     }
 
     fn words(&self) -> String {
-        format!("{} N and {} N m", significant(self.across_n, 3), significant(self.moment_nm, 3))
-    }
-}
-
-/// The load on one guide at rest, and in the ramp of its own travel.
-struct OnGuide<'s> {
-    joint: &'s str,
-    acceleration_m_s2: f64,
-    at_rest: Largest,
-    in_ramp: Largest,
-}
-
-/// A sentence on the force across the travel and the moment on every guide: the largest of the picks of `front` in the
-/// judged cases. `None` if the study has no prismatic joint.
-pub(super) fn guide_remark(problem: &ArmProblem, front: &FrontTable) -> Option<String> {
-    let mut guides = guides(problem);
-    if guides.is_empty() {
-        return None;
-    }
-    let cases = problem.load_cases();
-    for pick in picks(&designs(front)) {
-        let options = problem.options_of_whole(number_of(&pick.design.design_id)?)?;
-        let arm = problem.arm(&options)?;
-        for (case, guide) in cases.iter().flat_map(|case| guides.iter_mut().map(move |guide| (case, guide))) {
-            guide.add(&arm, case)?;
+        let loads = format!("{} N and {} N m", significant(self.across_n, 3), significant(self.moment_nm, 3));
+        match self.part_used {
+            Some(part) if part > 1.0 => format!("{loads} ({} times what it holds)", significant(part, 3)),
+            Some(part) => format!("{loads} ({} of what it holds)", percent(100.0 * part, 0)),
+            None => loads,
         }
     }
-    let words = guides.iter().map(|guide| {
-        format!("{} {} at rest, {} in its ramp", guide.joint, guide.at_rest.words(), guide.in_ramp.words())
-    });
-    Some(format!(
-        "Guides bear across their travel, at most in the judged cases of the picks: {}. Whether they hold this is not \
-         checked: compare with the load and moment ratings of the maker, with the safety factor that it asks for.",
-        words.collect::<Vec<_>>().join("; ")
-    ))
 }
 
-/// The guides of the study, base to tip, each with the acceleration of its ramp and without a load.
+/// The load on one guide at rest, and in an emergency stop of its own travel.
+struct OnGuide<'s> {
+    joint: &'s Prismatic,
+    deceleration_m_s2: f64,
+    at_rest: Largest,
+    in_stop: Largest,
+}
+
+/// Sentences on the force across the travel and the moment on every guide: the largest of the picks of `front` in the
+/// judged cases.
+pub(super) fn guide_remarks(problem: &ArmProblem, front: &FrontTable) -> Vec<String> {
+    let mut guides = guides(problem);
+    if guides.is_empty() || load_by_picks(&mut guides, problem, front).is_none() {
+        return Vec::new();
+    }
+    let words = guides.iter().map(|guide| {
+        let name = &guide.joint.name;
+        format!("{name} {} at rest, {} in an emergency stop", guide.at_rest.words(), guide.in_stop.words())
+    });
+    let bear = "Guides bear across their travel, at most in the judged cases of the picks";
+    let mut out = vec![format!("{bear}: {}.", words.collect::<Vec<_>>().join("; "))];
+    let lacking: Vec<String> = guides.iter().filter_map(OnGuide::unknown).collect();
+    if !lacking.is_empty() {
+        out.push(format!(
+            "Whether guides hold their loads is not checked where nothing is stated of it: {}. Compare with the ratings of \
+             the maker over its safety factor.",
+            lacking.join("; ")
+        ));
+    }
+    out
+}
+
+/// The guides of the study, base to tip, each with the deceleration of its stop and without a load.
 fn guides<'s>(problem: &'s ArmProblem) -> Vec<OnGuide<'s>> {
     let motion = &problem.space().motion;
     let guide = |piece: &'s SpacePiece| {
         let SpacePiece::Prismatic(rail) = piece else { return None };
         let sized = rail.drive.as_ref().map(|drive| drive.motion(motion).acceleration_rad_s2);
+        let acceleration_m_s2 = sized.unwrap_or(motion.tip_acceleration_m_s2());
         Some(OnGuide {
-            joint: &rail.joint.name,
-            acceleration_m_s2: sized.unwrap_or(motion.tip_acceleration_m_s2()),
+            joint: &rail.joint,
+            deceleration_m_s2: acceleration_m_s2 * motion.stop_factor().max(1.0),
             at_rest: Largest::default(),
-            in_ramp: Largest::default(),
+            in_stop: Largest::default(),
         })
     };
     problem.space().pieces.iter().filter_map(guide).collect()
 }
 
+/// Adds the loads of the picks of `front` in the judged cases. `None` if a pick is no design of the problem.
+fn load_by_picks(guides: &mut [OnGuide], problem: &ArmProblem, front: &FrontTable) -> Option<()> {
+    let cases = problem.load_cases();
+    for pick in picks(&designs(front)) {
+        let options = problem.options_of_whole(number_of(&pick.design.design_id)?)?;
+        let arm = problem.arm(&options)?;
+        for case in &cases {
+            guides.iter_mut().try_for_each(|guide| guide.add(&arm, case))?;
+        }
+    }
+    Some(())
+}
+
 impl OnGuide<'_> {
-    /// Adds the loads of an arm in a case. In the ramp everything outboard is accelerated along the travel, which acts as
+    /// Adds the loads of an arm in a case. In a stop everything outboard is accelerated along the travel, which acts as
     /// gravity the other way does. `None` if the arm has no such guide.
     fn add(&mut self, arm: &Arm, case: &LoadCase) -> Option<()> {
-        let at_rest = self.load(arm, case, 0.0)?;
-        self.at_rest = self.at_rest.with(&at_rest);
-        for acceleration_m_s2 in [-self.acceleration_m_s2, self.acceleration_m_s2] {
-            self.in_ramp = self.in_ramp.with(&self.load(arm, case, acceleration_m_s2)?);
+        let limits = &self.joint.guide.limits;
+        self.at_rest = self.at_rest.with(&self.load(arm, case, 0.0)?, limits);
+        for acceleration_m_s2 in [-self.deceleration_m_s2, self.deceleration_m_s2] {
+            self.in_stop = self.in_stop.with(&self.load(arm, case, acceleration_m_s2)?, limits);
         }
         Some(())
     }
@@ -98,7 +123,7 @@ impl OnGuide<'_> {
         let mut structure = arm.structure_in(case);
         let of_guide = |structure: &_| {
             let statics = Chain::new(structure, case.links).pose(case).statics();
-            statics.guide_loads.into_iter().find(|load| load.name == self.joint)
+            statics.guide_loads.into_iter().find(|load| load.name == self.joint.name)
         };
         let at_rest = of_guide(&structure)?;
         if acceleration_m_s2 == 0.0 {
@@ -108,5 +133,11 @@ impl OnGuide<'_> {
         structure.gravity_m_s2 = gravity.norm();
         structure.down = gravity.try_normalize(0.0).unwrap_or(structure.down);
         of_guide(&structure)
+    }
+
+    /// The keys that would state what the guide holds, in words; `None` if all are stated.
+    fn unknown(&self) -> Option<String> {
+        let keys = self.joint.guide.limits.unknown();
+        (!keys.is_empty()).then(|| format!("{} has no {} in its guide", self.joint.name, keys.join(", ")))
     }
 }

@@ -97,7 +97,7 @@ fn left_out_everywhere(space: &DesignSpace) -> String {
         words_of("the scatter and the friction of gears"),
         has_stages.then(|| "the pull and the strength of belts and stages".into()),
         has_sized_rail(space).then(|| "the friction of guides".into()),
-        has_rail(space).then(|| "the strength of guides".into()),
+        guide_words(space).map(String::from),
         tilts.is_empty().then(|| "the floor".into()),
         (!fits).then(|| "whether the parts fit into each other".into()),
     ];
@@ -112,9 +112,15 @@ fn places_of<'a>(space: &'a DesignSpace, effect: &str) -> Vec<&'a str> {
     space.effects.iter().filter(|e| e.effect == effect).map(|e| e.at.as_str()).collect()
 }
 
-/// Whether some joint of the study slides.
-fn has_rail(space: &DesignSpace) -> bool {
-    space.pieces.iter().any(|piece| matches!(piece, SpacePiece::Prismatic(_)))
+/// What no number says of the guides of the study; `None` if no joint slides. The loads on a guide are compared with what
+/// the study says that it holds.
+fn guide_words(space: &DesignSpace) -> Option<&'static str> {
+    let guide = |piece: &SpacePiece| match piece {
+        SpacePiece::Prismatic(rail) => Some(rail.joint.guide.limits.unknown().is_empty()),
+        _ => None,
+    };
+    let are_all_known = space.pieces.iter().filter_map(guide).reduce(|all, known| all && known)?;
+    Some(if are_all_known { "the life of guides" } else { "the strength and life of guides" })
 }
 
 /// Whether a screw or rack and its motor are chosen for some prismatic joint.

@@ -156,7 +156,10 @@ fn what_a_rail_cannot_have_is_refused_by_name() {
 fn a_study_with_a_rail_that_is_sized_says_that_the_friction_of_guides_is_left_out() {
     let study = read(&lift(json!({})), &Catalogs::builtin());
     assert!(
-        study.remarks.iter().any(|words| words.contains("the friction of guides, the strength of guides")),
+        study
+            .remarks
+            .iter()
+            .any(|words| words.contains("the friction of guides, the strength and life of guides")),
         "{:?}",
         study.remarks
     );
