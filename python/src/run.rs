@@ -10,12 +10,11 @@ use armwright::pareto::hypervolume::front_hypervolume;
 use armwright::report::facts::constraint_words;
 use armwright::report::front_table::FrontTable;
 use armwright::report::picks::{Pick, designs, picks};
-use armwright::report::supplement::Supplement;
 use armwright::search::Status;
 use armwright::search::near::{NearDesigns, Slack};
 use armwright::space::ArmProblem;
 use armwright::study::{
-    Asked as AskedStudy, Extent, NO_NEAR, NearFront, Refusal, Sampling, SearchMethod, SearchWish, Study,
+    Asked as AskedStudy, Extent, NO_NEAR, NearFront, Refusal, Sampling, SearchMethod, SearchWish,
     StudyOutcome, Tolerance, caveats_on, corrections_json, effects_json, front_table, judged_cases,
     near_front, run_exact, run_study, scatter_front, table_and_remarks, why_infeasible,
 };
@@ -124,11 +123,17 @@ pub(crate) fn run(
 }
 
 /// The study of a name, file or text, with the effects of a measured arm if one is given.
-fn asked_study(study: &Source, effects: Option<Source>, catalogs: &catalog::Catalogs) -> PyResult<AskedStudy> {
+fn asked_study(
+    study: &Source,
+    effects: Option<Source>,
+    catalogs: &catalog::Catalogs,
+) -> PyResult<AskedStudy> {
     let (study, text) = study.study(catalogs)?;
     match effects {
         None => Ok(AskedStudy::as_stated(study, text)),
-        Some(arm) => AskedStudy::corrected_by(arm.arm_document()?, &study, &text, catalogs).map_err(errors::refused),
+        Some(arm) => {
+            AskedStudy::corrected_by(arm.arm_document()?, &study, &text, catalogs).map_err(errors::refused)
+        }
     }
 }
 
@@ -221,7 +226,8 @@ fn search_exactly(asked: &Asked, stop: &AtomicBool, told: &Mutex<Told>) -> Resul
     facts["gap"] = json!(found.gap);
     facts["ties_listed"] = json!(found.ties_listed);
     let problem = ArmProblem::new(&found.study.space, catalogs);
-    let of = |(near, slack): (&NearDesigns, Slack)| NearFront::of(&problem, catalogs, &outcome.front, near, slack);
+    let of =
+        |(near, slack): (&NearDesigns, Slack)| NearFront::of(&problem, catalogs, &outcome.front, near, slack);
     let near = found.near.as_ref().zip(slack).map(of);
     Ok(tables(asked, (&problem, outcome), near, stop, facts))
 }
@@ -246,6 +252,8 @@ fn facts(asked: &Asked, outcome: &StudyOutcome, started: Instant, search: &str) 
         "boxes_open": null,
         "gap": null,
         "ties_listed": true,
+        "within": null,
+        "tolerance": null,
         "models": {"links": study.space.links.word(), "joints": study.space.joints.word()},
         "constraints": constraint_words(&study.space.constraints),
         "cases": judged_cases(study),
@@ -278,22 +286,30 @@ fn tables(
     facts["remarks"] = json!(remarks);
     facts["caveats"] = json!(caveats_on(study, catalogs, &front));
     facts["picks"] = picks(&designs(&front)).iter().map(pick_json).collect();
-    let scatter = |sampling| scatter_front(problem, catalogs, &outcome.front, &designs(&front), &sampling, stop);
-    let further = [near.map(|near| near.supplement()), asked.sampling.and_then(scatter).map(|of| of.supplement())];
-    let further = further.map(|supplement| added(supplement, &mut facts));
+    let scatter =
+        |sampling| scatter_front(problem, catalogs, &outcome.front, &designs(&front), &sampling, stop);
+    let scattered = asked.sampling.and_then(scatter).map(|of| of.supplement());
+    let near = near.map(|near| near.supplement());
+    let further = [
+        near.and_then(|of| added(of.run, of.file, &mut facts)),
+        scattered.and_then(|of| added(of.run, of.file, &mut facts)),
+    ];
     let table = |FrontTable { columns, rows }| (columns, rows);
     let of_material = |front| table(front_table(problem, catalogs, front));
     let by_material = outcome.by_material.iter().map(|of| (of.name.clone(), of_material(&of.front)));
     (table(front), by_material.collect(), further, facts.to_string(), text.to_string())
 }
 
-/// Adds the facts of a supplement to `facts` and returns its table as CSV text.
-fn added(supplement: Option<Supplement>, facts: &mut Value) -> Option<String> {
-    let supplement = supplement?;
-    if let Some((key, value)) = supplement.run {
+/// Adds the entry `run` that a list of designs has in `run.json` to `facts`, and returns its `file` as text.
+fn added(
+    run: Option<(&'static str, Value)>,
+    file: Option<(&'static str, Vec<u8>)>,
+    facts: &mut Value,
+) -> Option<String> {
+    if let Some((key, value)) = run {
         facts[key] = value;
     }
-    supplement.file.map(|(_, csv)| String::from_utf8_lossy(&csv).into_owned())
+    file.map(|(_, csv)| String::from_utf8_lossy(&csv).into_owned())
 }
 
 /// A pick by the keys that it has in `run.json`, without what its budget adds there.

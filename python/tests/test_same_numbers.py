@@ -219,9 +219,11 @@ def test_near_designs_and_scatter_are_those_of_the_program(program, tmp_path, se
     assert front.near.to_csv() == (out / "near.csv").read_text() and len(front.near)
     assert front.scatter.to_csv() == (out / "tolerance.csv").read_text()
     run = json.loads((out / "run.json").read_text())
-    assert [front.facts[key] for key in ["near", "tolerance"]] == [run[key] for key in ["near", "tolerance"]]
+    keys = ["within", "tolerance"]
+    assert [front.facts[key] for key in keys] == [run[key] for key in keys]
     plain = armwright.run(study, search=search)
     assert plain.near is None and plain.scatter is None
+    assert [plain.facts[key] for key in keys] == [None, None]
 
 
 def test_a_study_with_the_effects_of_a_measured_arm_is_that_of_the_program(program, tmp_path, bench_arm):
@@ -230,7 +232,7 @@ def test_a_study_with_the_effects_of_a_measured_arm_is_that_of_the_program(progr
     joint = bench_arm["chain"][0]["name"]
     measured = armwright.run(bench_arm, search="exhaustive")
     measured = measured.arm(measured.lightest())
-    measured["effects"] = [{"effect": "bearing_tilt", "at": joint, "stiffness_nm_per_rad": 2e4}]
+    measured["effects"] = [{"effect": "bearing_tilt", "at": joint, "parameters": {"stiffness_nm_per_rad": 2e4}}]
     arm.write_text(json.dumps(measured))
     program("run", study, "--search", "exhaustive", "--effects", arm, "--out", tmp_path / "out", "--quiet")
     for effects in [measured, arm]:
