@@ -50,6 +50,8 @@ pub(crate) enum Number {
     /// Shift of all points of a later session relative to the first session \[m\]: index of the session, instrument
     /// axis.
     SessionPosition(usize, usize),
+    /// Drift of all points from the first row to the last, along the instrument axis with this index \[m\].
+    Drift(usize),
 }
 
 impl Number {
@@ -65,7 +67,7 @@ impl Number {
             Number::Zero(_) => 0.03,
             Number::Axis(..) | Number::Vector(..) | Number::Ratio(..) => 0.01,
             Number::Transmission(..) => 0.002,
-            Number::Gravity(_) | Number::SessionPosition(..) => 0.05,
+            Number::Gravity(_) | Number::SessionPosition(..) | Number::Drift(_) => 0.05,
             Number::SessionRotation(..) => 0.02,
         }
     }
@@ -163,6 +165,8 @@ pub(crate) struct Geometry {
     /// For each session, relative to the first one: how all points turn about the base's origin, and how they shift
     /// \[m\].
     pub stations: Vec<(Rotation3<f64>, Vector3<f64>)>,
+    /// How far all points drift from the first row to the last \[m\].
+    pub drift_m: Vector3<f64>,
     /// Rotation from the base frame to the level frame, whose z axis is opposite to gravity.
     pub level: Rotation3<f64>,
     /// Direction of gravity in the level frame. It is -z, unless it was fitted after the frame was last levelled.
@@ -238,6 +242,7 @@ impl Geometry {
             origin_m: Vector3::zeros(),
             tools_m: vec![Vector3::zeros(); points],
             stations: vec![(Rotation3::identity(), Vector3::zeros())],
+            drift_m: Vector3::zeros(),
             level: Rotation3::identity(),
             gravity: -Vector3::z(),
             zeros_rad: vec![0.0; tree.driven.len()],
@@ -268,6 +273,7 @@ impl Geometry {
                 Number::Tool(p, c) => self.tools_m[p][c] += by,
                 Number::SessionRotation(s, c) => self.stations[s].0 = about(c, by) * self.stations[s].0,
                 Number::SessionPosition(s, c) => self.stations[s].1[c] += by,
+                Number::Drift(c) => self.drift_m[c] += by,
                 Number::Mount(i, c) => self.mounts[i] = about(c, by) * self.mounts[i],
                 Number::Zero(j) => self.zeros_rad[j] += by,
                 Number::Transmission(j, k) => self.transmissions_rad[j][k] += by,
@@ -419,6 +425,11 @@ impl Placer<'_> {
         own.origin_m + turn * (self.at_m - own.origin_m) + shift_m
     }
 
+    /// The point that was placed last, as seen from the base's origin, in the instrument's frame \[m\].
+    pub(crate) fn from_base_m(&self) -> Vector3<f64> {
+        self.at_m - self.geometry.origin_m
+    }
+
     /// Sine and cosine of the joint angle `angle` in a pose. For a joint without transmission error they follow, by
     /// the addition theorems, from the sines and cosines of its commanded angle and of its zero. Computing sines
     /// would otherwise take most of the time.
@@ -454,6 +465,8 @@ impl Placer<'_> {
             Number::SessionRotation(..) | Number::SessionPosition(..) => zero,
             Number::Tool(p, c) if p == asked.point => last() * Vector3::ith(c, 1.0),
             Number::Tool(..) | Number::Gravity(_) | Number::Tolerance(_) | Number::Effect(_) => zero,
+            // it depends on the row
+            Number::Drift(_) => zero,
             Number::Zero(j) => self.turning(j, along),
             Number::Transmission(j, k) => {
                 self.turning(j, along) * transmission_waves(asked.pose.angles_rad[j])[k]

@@ -46,7 +46,7 @@ impl<'a> Linearized<'a> {
     pub(crate) fn at(&mut self, sample: &Sample, further: Further) -> Vector3<f64> {
         let here = self.here;
         let at_m = self.placer.place_m(sample.placing());
-        let miss = sample.miss(&sample.error(at_m + self.from_level * here.displacement(sample)));
+        let miss = sample.miss(&sample.error(at_m + self.from_level * here.displacement(sample) + here.drifted_m(sample)));
         self.columns.clear();
         self.placer.slopes(sample.placing(), self.numbers, &mut self.columns);
         for (column, number) in self.columns.iter_mut().zip(self.numbers) {
@@ -55,6 +55,7 @@ impl<'a> Linearized<'a> {
                     let pulled = here.leaning(sample, c);
                     *column = self.from_level * (pulled + sample.deflection.known_slopes_m[c]);
                 }
+                Number::Drift(c) => *column = Vector3::ith(c, sample.part),
                 Number::Tolerance(k) | Number::Effect(k) => *column = self.from_level * sample.nominal_m[k],
                 _ => {}
             }
