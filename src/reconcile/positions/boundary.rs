@@ -174,7 +174,10 @@ impl Positions {
         let own = boundary.earlier;
         let price = self.session_price(own.numbers().len(), self.kinds(true, true).len());
         let rise = self.fitted.ln_likelihood - without.fitted.ln_likelihood;
-        (telling_part(&self.fitted, &self.numbers, &self.samples, own.numbers().len()) * rise - price, without)
+        (
+            telling_part(&self.fitted, &self.numbers, &self.samples, own.numbers().len()) * rise - price,
+            without,
+        )
     }
 
     /// The model without the session boundary `boundary`, fitted again: the rows on both sides of it are one session.

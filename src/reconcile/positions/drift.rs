@@ -22,8 +22,8 @@ fn numbers() -> impl Iterator<Item = Number> {
 }
 
 impl Positions {
-    /// Replaces the sessions that were found since the model `before` by a drift, if that explains the positions better. The
-    /// sessions that are needed in addition to the drift are found again. Returns whether there is a drift now.
+    /// Replaces the sessions that were found since the model `before` by a drift, if that explains the positions better and no
+    /// session is needed in addition to it. Returns whether there is a drift now.
     pub(super) fn take_drift_instead(&mut self, campaign: &Campaign, before: &Self) -> bool {
         let spec = &campaign.statement.positions;
         if before.drifts() || !campaign.statement.considers(EFFECT) {
@@ -35,8 +35,11 @@ impl Positions {
         if telling * rise < self.drift_price() + STRONG {
             return false;
         }
-        next.find_sessions(spec.tool_offset, spec.base_placement);
-        let is_better = next.score() > self.score();
+        if next.score() <= self.score() {
+            return false;
+        }
+        // what drifts and jumps too does not drift steadily
+        let is_better = next.find_sessions(spec.tool_offset, spec.base_placement) == 0;
         if is_better {
             next.stage(format!("{EFFECT}@{}", Channel::Positions.word()), Vec::new());
             *self = next;
@@ -71,6 +74,13 @@ impl Positions {
             *self = without;
         }
         is_needless
+    }
+
+    /// Why a drift must not be named, as a sentence: sessions are needed too. `None` if there is no drift, or it is steady.
+    pub(super) fn unsteady_drift(&self) -> Option<String> {
+        let jumps = self.sessions.iter().any(|boundary| !boundary.declared);
+        (self.drifts() && jumps)
+            .then(|| "the measured points move in the order of the readings, but not steadily".into())
     }
 
     /// Price of the drift of the model \[ln of the likelihood\]; 0 if there is none.

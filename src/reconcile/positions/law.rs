@@ -66,7 +66,8 @@ impl<'a> Book<'a> {
         let mut laws = Vec::new();
         for (c, candidate) in found.candidates.iter().enumerate() {
             let most_nm = found.samples.iter().map(|s| s.deflection.torque_nm(c)).fold(0.0, f64::max);
-            let is_joint = candidate.shape == Shape::Spring && candidate.rotation == ElasticRotation::AboutAxis;
+            let is_joint =
+                candidate.shape == Shape::Spring && candidate.rotation == ElasticRotation::AboutAxis;
             if is_joint && most_nm > 1e-6 {
                 laws.extend(BEND_PARTS.map(|part| Law::Bent(c, part * most_nm)));
                 laws.push(Law::Curve(c, most_nm));
@@ -90,9 +91,14 @@ impl<'a> Book<'a> {
             Law::Bent(c, _) => format!("a torsion of {} that grows ever less with the torque", at(c)),
             Law::Curve(c, _) => format!("a torsion of {} that is not proportional to the torque", at(c)),
             Law::Direction(joint) => {
-                format!("backlash of {} that follows the direction in which it turned into the pose", name(joint))
+                format!(
+                    "backlash of {} that follows the direction in which it turned into the pose",
+                    name(joint)
+                )
             }
-            Law::Zero(joint) => format!("a zero of {} that changes in the course of the readings", name(joint)),
+            Law::Zero(joint) => {
+                format!("a zero of {} that changes in the course of the readings", name(joint))
+            }
             Law::Tool => "a tool that bends under the payload".into(),
             Law::Drift => "a steady drift in the order of the readings".into(),
             Law::Growth => "an arm that grows in the order of the readings".into(),

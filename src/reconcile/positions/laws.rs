@@ -67,7 +67,10 @@ impl Positions {
         let book = Book::new(self, campaign);
         let better = self.groups().into_iter().filter_map(|group| {
             let (law, gain) = self.best_law(&book, &group)?;
-            Some((gain, format!("{} explains the positions better than {}", book.words(&law), self.words(&group))))
+            Some((
+                gain,
+                format!("{} explains the positions better than {}", book.words(&law), self.words(&group)),
+            ))
         });
         better.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, sentence)| sentence)
     }

@@ -11,10 +11,10 @@ use super::tree::Tree;
 use crate::arm::body::total_kg;
 use crate::arm::effect::kind::{ElasticRotation, Kind};
 use crate::arm::effect::subject::Subject;
+use crate::arm::effect::waves::transmission_waves;
 use crate::arm::effect::{
     base_compliance, bearing_tilt, connection_compliance, frame_compliance, joint_compliance,
 };
-use crate::arm::effect::waves::transmission_waves;
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::arm::load::Payload;
 use crate::arm::structure::{FrameCompliance, Piece, Structure};
@@ -466,8 +466,9 @@ fn slots(tree: &Tree, candidates: &[CompliantPlace]) -> Arc<[Slot]> {
     let mut first = 0;
     let mut out: Vec<Slot> = Vec::with_capacity(candidates.len());
     for candidate in candidates {
-        let is_spring_there =
-            |c: &CompliantPlace| (c.shape, c.rotation, &c.at) == (Shape::Spring, candidate.rotation, &candidate.at);
+        let is_spring_there = |c: &CompliantPlace| {
+            (c.shape, c.rotation, &c.at) == (Shape::Spring, candidate.rotation, &candidate.at)
+        };
         let own = candidates[..out.len()].iter().position(is_spring_there);
         out.push(Slot {
             first: own.map_or(first, |spring| out[spring].first),

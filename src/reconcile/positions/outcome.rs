@@ -156,7 +156,7 @@ impl Positions {
         if let Some(text) = angle_laws.iter().find_map(Competing::better) {
             return (Verdict::Unexplained, vec![text]);
         }
-        if let Some(text) = self.better_law(campaign) {
+        if let Some(text) = self.unsteady_drift().or_else(|| self.better_law(campaign)) {
             return (Verdict::Unexplained, vec![text]);
         }
         if let Some(said) = self.not_calibrated(campaign, adjusted) {
@@ -375,7 +375,9 @@ impl Positions {
         geometry.relevel();
         let turned = geometry.write_into(arm, &mut out);
         let names: Vec<String> = out.chain.iter().map(|e| e.name().to_string()).collect();
-        let own = effects.iter().filter(|f| ["base", Channel::Positions.word()].contains(&f.at.as_str()) || names.contains(&f.at));
+        let own = effects.iter().filter(|f| {
+            ["base", Channel::Positions.word()].contains(&f.at.as_str()) || names.contains(&f.at)
+        });
         out.effects.extend(own.map(|f| as_effect(campaign, f)));
         let placement = self.placement(campaign, arm, shown, turned).to_json();
         match arm {

@@ -46,7 +46,8 @@ impl<'a> Linearized<'a> {
     pub(crate) fn at(&mut self, sample: &Sample, further: Further) -> Vector3<f64> {
         let here = self.here;
         let at_m = self.placer.place_m(sample.placing());
-        let miss = sample.miss(&sample.error(at_m + self.from_level * here.displacement(sample) + here.drifted_m(sample)));
+        let miss = sample
+            .miss(&sample.error(at_m + self.from_level * here.displacement(sample) + here.drifted_m(sample)));
         self.columns.clear();
         self.placer.slopes(sample.placing(), self.numbers, &mut self.columns);
         for (column, number) in self.columns.iter_mut().zip(self.numbers) {

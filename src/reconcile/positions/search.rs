@@ -6,9 +6,9 @@ use super::analysis::Positions;
 use super::fit::{fit, ln_likelihood, scale};
 use super::fitted::{Fitted, Miss, Sample, readings};
 use super::normal::Factor;
+use super::rows::{Further, normal};
 use super::sessions::telling_part;
 use super::shape::Shape;
-use super::rows::{Further, normal};
 use super::structure::squares;
 use crate::arm::effect::kind::ElasticRotation;
 use crate::reconcile::readings::campaign::Campaign;
@@ -84,9 +84,14 @@ impl Positions {
     }
 
     /// The part of the rise of the logarithm of the likelihood from this model to `next` that tells nothing: with few readings
-    /// left over, the likelihood rises by chance with every further number.
+    /// left over, the likelihood rises by chance with every further number. Only the first effect is asked for so much, since
+    /// it decides whether anything is missing at all.
     fn untelling_rise(&self, next: &Self) -> f64 {
-        let count = |model: &Self| model.numbers.len() + model.fitted.compliances.iter().map(Vec::len).sum::<usize>();
+        if !self.fitted.effects.is_empty() || !self.transmissions.is_empty() {
+            return 0.0;
+        }
+        let count =
+            |model: &Self| model.numbers.len() + model.fitted.compliances.iter().map(Vec::len).sum::<usize>();
         let new = count(next).saturating_sub(count(self));
         let telling = telling_part(&next.fitted, &next.numbers, &next.samples, new);
         (1.0 - telling) * (next.fitted.ln_likelihood - self.fitted.ln_likelihood).max(0.0)
@@ -221,7 +226,13 @@ impl Positions {
             seen.push(*c);
             is_first
         });
-        gains.truncate(FULL_FITS);
+        // what is no spring must not displace a spring
+        let (mut springs, mut others): (Vec<_>, Vec<_>) =
+            gains.into_iter().partition(|(c, _)| !matches!(self.candidates[*c].shape, Shape::Lift(_)));
+        springs.truncate(FULL_FITS);
+        others.truncate(1);
+        springs.append(&mut others);
+        let gains = springs;
         let models = gains.into_iter().flat_map(|(c, _)| self.with(base, c).into_iter().map(move |m| (c, m)));
         let models: Vec<(usize, Vec<usize>)> = models.collect();
         models.into_par_iter().map(|(c, effects)| (c, fit(&all, &self.numbers, &effects, base))).collect()

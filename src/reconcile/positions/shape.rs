@@ -141,7 +141,10 @@ mod tests {
     fn the_base_tilts_by_the_law_of_the_effect() {
         let law = BaseLift { stiffness_nm_per_rad: 2e5, preload_nm: 30.0 };
         for moment_nm in [-80.0, -30.0, 0.0, 20.0, 31.0, 500.0] {
-            assert!((beyond_nm(moment_nm, 30.0) / 2e5 - law.angle_rad(moment_nm)).abs() < 1e-18, "{moment_nm}");
+            assert!(
+                (beyond_nm(moment_nm, 30.0) / 2e5 - law.angle_rad(moment_nm)).abs() < 1e-18,
+                "{moment_nm}"
+            );
         }
     }
 }

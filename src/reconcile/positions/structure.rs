@@ -8,8 +8,8 @@
 use super::analysis::Positions;
 use super::fitted::{Sample, readings};
 use super::normal::Factor;
-use super::shape::Shape;
 use super::rows::normal;
+use super::shape::Shape;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::kind::ElasticRotation;
 use crate::reconcile::fit::stats::{ln_chi_squared_tail, median};

@@ -131,8 +131,10 @@ fn threshold(tried: &[Tried], best_nm: f64) -> Estimate {
     };
     let is_in = |t: &Tried| t.fall < FALL;
     let crosses = |pair: &[Tried]| is_in(&pair[0]) != is_in(&pair[1]);
-    let low = tried.windows(2).find(|pair| pair[1].threshold_nm <= best_nm && !is_in(&pair[0]) && crosses(pair));
-    let high = tried.windows(2).rfind(|pair| pair[0].threshold_nm >= best_nm && !is_in(&pair[1]) && crosses(pair));
+    let low =
+        tried.windows(2).find(|pair| pair[1].threshold_nm <= best_nm && !is_in(&pair[0]) && crosses(pair));
+    let high =
+        tried.windows(2).rfind(|pair| pair[0].threshold_nm >= best_nm && !is_in(&pair[1]) && crosses(pair));
     Estimate {
         value: best_nm,
         low: low.map(|pair| crossing(&pair[1], &pair[0])),

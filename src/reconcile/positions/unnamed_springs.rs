@@ -48,7 +48,9 @@ impl Positions {
         };
         let is_spring = |c: &usize| {
             let candidate = &self.candidates[*c];
-            self.considered[*c] && candidate.shape == Shape::Spring && candidate.rotation != ElasticRotation::Frame
+            self.considered[*c]
+                && candidate.shape == Shape::Spring
+                && candidate.rotation != ElasticRotation::Frame
         };
         (0..self.candidates.len()).filter(is_spring).filter(|c| !is_named(*c)).collect()
     }

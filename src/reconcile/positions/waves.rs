@@ -15,6 +15,9 @@ use crate::reconcile::model::estimate::{Estimate, Z_95};
 use crate::reconcile::readings::campaign::Campaign;
 use std::f64::consts::PI;
 
+/// A joint's compliance varies by less than this part of itself.
+const MOST: f64 = 0.9;
+
 impl Positions {
     /// Adds the stiffness that varies with a joint's angle, or the transmission error, that raises the likelihood most, if
     /// the rise is worth its price and held-out poses confirm it. Returns whether one was added.
@@ -25,7 +28,8 @@ impl Positions {
         let gain = |f: &Fitted| {
             f.ln_likelihood - self.prices(&f.effects) - (base.ln_likelihood - self.prices(&base.effects))
         };
-        let varying = tried.map(|(c, f)| (gain(&f), c, f)).filter(|(gain, ..)| *gain > 0.0);
+        let possible = tried.filter(|(_, f)| self.has_possible_waves(f));
+        let varying = possible.map(|(c, f)| (gain(&f), c, f)).filter(|(gain, ..)| *gain > 0.0);
         let varying = varying.max_by(|a, b| a.0.total_cmp(&b.0));
         match (varying, uneven) {
             (Some((gain, c, fitted)), uneven) if uneven.as_ref().is_none_or(|(other, _)| gain > *other) => {
@@ -51,7 +55,9 @@ impl Positions {
         };
         let factors = self.dependences.iter().zip(&fitted.geometry.dependences);
         let factor = factors.filter_map(|(dependence, x)| match dependence {
-            Dependence::Tolerance(Calibration::Stiffness(name), _) if name == at => Some(dependence.value(*x)),
+            Dependence::Tolerance(Calibration::Stiffness(name), _) if name == at => {
+                Some(dependence.value(*x))
+            }
             _ => None,
         });
         let springs = fitted.effects.iter().zip(&fitted.compliances);
@@ -68,7 +74,18 @@ impl Positions {
     /// candidates.
     pub(super) fn can_vary(&self, fitted: &Fitted, candidate: usize) -> bool {
         let candidate = &self.candidates[candidate];
-        candidate.shape.waves().is_none() || self.mean_rad_per_nm(fitted, &candidate.at).is_some_and(|c| c > 0.0)
+        candidate.shape.waves().is_none()
+            || self.mean_rad_per_nm(fitted, &candidate.at).is_some_and(|c| c > 0.0)
+    }
+
+    /// Whether no joint's stiffness varies by more than it has in the fit `fitted`.
+    fn has_possible_waves(&self, fitted: &Fitted) -> bool {
+        fitted.effects.iter().zip(&fitted.compliances).all(|(&e, sizes)| {
+            let candidate = &self.candidates[e];
+            let mean = self.mean_rad_per_nm(fitted, &candidate.at).unwrap_or_default();
+            let amplitudes = sizes.chunks(2).map(|size| size[0].hypot(size[1]));
+            candidate.shape.waves().is_none() || amplitudes.sum::<f64>() < MOST * mean
+        })
     }
 
     /// The parameters of `stiffness_waves` that is effect number `position` of the model, with their 95 % intervals.
@@ -76,7 +93,8 @@ impl Positions {
         let at = &self.candidates[self.fitted.effects[position]].at;
         let mean = self.mean_rad_per_nm(&self.fitted, at).unwrap_or_default();
         let (sizes, deviations) = (&self.fitted.compliances[position], &self.fitted.deviations[position]);
-        let own = sizes.chunks(2).zip(deviations.chunks(2)).map(|(size, deviation)| wave(size, deviation, mean));
+        let own =
+            sizes.chunks(2).zip(deviations.chunks(2)).map(|(size, deviation)| wave(size, deviation, mean));
         let known = waves.range().step_by(2).map(|k| k / 2).zip(own);
         let mut parameters = Vec::new();
         let none = Estimate { value: 0.0, low: None, high: None };
@@ -105,7 +123,9 @@ impl Positions {
     pub(super) fn waves_instead(&self, joint: usize) -> Vec<(String, String)> {
         let without = self.without_transmission(joint);
         let tried = without.best_additions(&without.fitted, |c| self.candidates[c].shape.waves().is_some());
-        let good = tried.into_iter().filter(|(_, f)| f.ln_likelihood > self.fitted.ln_likelihood - TIE);
+        let is_good =
+            |f: &Fitted| f.ln_likelihood > self.fitted.ln_likelihood - TIE && self.has_possible_waves(f);
+        let good = tried.into_iter().filter(|(_, f)| is_good(f));
         good.map(|(c, _)| (stiffness_waves::KIND.name.to_string(), self.candidates[c].at.clone())).collect()
     }
 }
