@@ -9,6 +9,9 @@
 //!   (`moved`), and `standing` finds where the arm stands in each session. `search` finds compliances,
 //!   `nominal` stiffnesses, moduli and masses other than stated (`dependence`), and `transmission` joints with a transmission error.
 //!   `second_order` is what the linear displacement lacks.
+//! - `shape` says how a candidate that is no spring depends on its torque, `threshold` refines torque scales and preloads,
+//!   `waves` finds stiffnesses that vary with the angle. `drift` finds a drift in the place of sessions. `law` lists physics
+//!   that is no effect, and `laws` lets it compete with effects (`angle_laws`: errors of a joint's angle).
 //! - `setups` brings the positions of several campaigns into one frame.
 //! - `conventions` asks whether the file was written by another convention (`convention_changes`), `far_geometry` whether
 //!   calibration went further than its prior expects, `structure` tests the errors that are left,
