@@ -3,16 +3,17 @@
 
 use super::align;
 use super::dependence::Dependence;
-use super::drift;
 use super::fit::fit;
 use super::fitted::{Fitted, Sample};
 use super::kinematics::{Geometry, Number, Pose, number_groups};
 use super::loads::{CompliantPlace, Loads, candidates};
 use super::moved::{Boundary, Kind};
 use super::points::{Point, points};
-use super::shape::with_shapes;
+use super::shaped::with_shapes;
 use super::tree::Tree;
 use crate::arm::Arm;
+use crate::arm::effect::channel::Channel;
+use crate::arm::effect::drift;
 use crate::arm::effect::kind::ElasticRotation;
 use crate::reconcile::fit::stats::median;
 use crate::reconcile::readings::campaign::Campaign;
@@ -218,7 +219,7 @@ impl Positions {
         let mut out = self.clone();
         if *drifts {
             out = out.with_drift();
-            out.stage(format!("{}@positions", drift::EFFECT), Vec::new());
+            out.stage(format!("{}@{}", drift::KIND.name, Channel::Positions.word()), Vec::new());
         }
         out.divide(boundaries, false);
         if !boundaries.is_empty() {
@@ -345,6 +346,11 @@ fn precision(measured: &Components) -> Vector3<f64> {
     Vector3::from(measured.map(|read| read.map_or(0.0, |read| (best_mm / read.sigma_mm).max(LEAST))))
 }
 
+/// Number of the last row of the file, from 0, at least 1.
+pub(super) fn last_row(campaign: &Campaign) -> f64 {
+    campaign.positions.iter().map(|row| row.row).max().unwrap_or_default().max(1) as f64
+}
+
 /// The measured positions as samples: each with the deflection of its point under gravity and with what each of the
 /// `candidates` would add. `points` lists the measured points on the tools.
 pub(super) fn samples(
@@ -354,7 +360,7 @@ pub(super) fn samples(
     candidates: &[CompliantPlace],
     points: &[Point],
 ) -> Vec<Sample> {
-    let last_row = drift::last_row(campaign);
+    let last_row = last_row(campaign);
     let points: Vec<usize> = campaign
         .positions
         .iter()

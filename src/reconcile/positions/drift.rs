@@ -1,6 +1,6 @@
 //! A steady drift of the instrument in the course of the rows: it looks like a few sessions, but needs fewer numbers.
 
-use super::analysis::Positions;
+use super::analysis::{Positions, last_row};
 use super::fit::fit;
 use super::fitted::Sample;
 use super::kinematics::Number;
@@ -106,9 +106,4 @@ impl Positions {
             indistinguishable_from: Vec::new(),
         })
     }
-}
-
-/// Number of the last row of the file, from 0, at least 1.
-pub(super) fn last_row(campaign: &Campaign) -> f64 {
-    campaign.positions.iter().map(|row| row.row).max().unwrap_or_default().max(1) as f64
 }

@@ -9,7 +9,7 @@
 //!   (`moved`), and `standing` finds where the arm stands in each session. `search` finds compliances,
 //!   `nominal` stiffnesses, moduli and masses other than stated (`dependence`), and `transmission` joints with a transmission error.
 //!   `second_order` is what the linear displacement lacks.
-//! - `shape` says how a candidate that is no spring depends on its torque, `threshold` refines torque scales and preloads,
+//! - `shape` says how a candidate that is no spring depends on its torque, `shaped` lists them, `threshold` refines torque scales and preloads,
 //!   `waves` finds stiffnesses that vary with the angle. `drift` finds a drift in the place of sessions. `law` lists physics
 //!   that is no effect, and `laws` lets it compete with effects (`angle_laws`: errors of a joint's angle).
 //! - `setups` brings the positions of several campaigns into one frame.
@@ -47,6 +47,7 @@ pub(crate) mod second_order;
 pub(crate) mod sessions;
 pub(crate) mod setups;
 pub(crate) mod shape;
+mod shaped;
 pub(crate) mod springs;
 pub(crate) mod standing;
 pub(crate) mod structure;

@@ -4,23 +4,13 @@
 //! - Play: a joint turns by its half width `h` in the direction of its torque, and by less where the torque is small,
 //!   `h tanh(T/T_c)`.
 //! - Lift: the base is rigid about each horizontal axis up to the preload `M_p`, and tilts by `c (|M| - M_p)` beyond it.
-//! - Waves: a joint turns by `T (a sin q + b cos q)`, `T (a sin 2q + b cos 2q)`, or both, besides its usual compliance.
+//! - Waves: a joint turns by `T (a sin q + b cos q)`, `T (a sin 2q + b cos 2q)`, or both, in addition to its
+//!   usual compliance.
 //!
 //! For a given torque `T_c` or preload `M_p` (the threshold) the half width or compliance enters the model linearly. So the
 //! threshold is chosen out of a few, and then [refined](super::threshold).
 
-use super::fitted::Sample;
-use super::loads::CompliantPlace;
-use crate::arm::effect::kind::ElasticRotation;
-use crate::arm::effect::{base_compliance, base_lift, lost_motion, stiffness_waves};
 use std::ops::Range;
-
-/// Torque scales `T_c` of play that are tried, as fractions of the largest torque on the joint.
-const PLAY_PARTS: [f64; 5] = [0.01, 0.03, 0.08, 0.2, 0.5];
-/// Preloads of a base that are tried, as fractions of the largest moment on it.
-const LIFT_PARTS: [f64; 7] = [0.1, 0.2, 0.3, 0.45, 0.6, 0.75, 0.9];
-/// A torque below this size is zero up to rounding \[N m\].
-const NOTHING_NM: f64 = 1e-6;
 
 /// How the displacement by a candidate depends on the torques about it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,7 +70,7 @@ impl Shape {
         self.threshold_nm().is_none()
     }
 
-    /// Number of the candidate's numbers that may have either sign; 0 if none may.
+    /// Which of the four waves of an angle the compliance has; `None` if it does not vary with the angle.
     pub(crate) fn waves(self) -> Option<Range<usize>> {
         match self {
             Shape::Waves(waves) => Some(waves.range()),
@@ -92,44 +82,6 @@ impl Shape {
 /// What the moment \[N m\] has beyond the preload, with the sign of the moment.
 pub(crate) fn beyond_nm(moment_nm: f64, preload_nm: f64) -> f64 {
     (moment_nm.abs() - preload_nm).max(0.0).copysign(moment_nm)
-}
-
-/// Adds candidates that are no springs to the `springs`: play in each joint with five torque scales, a base that lifts off
-/// with seven preloads, and a stiffness of each joint that varies with the angle. `driven` are the names of the driven joints.
-pub(crate) fn with_shapes(
-    mut springs: Vec<CompliantPlace>,
-    samples: &[Sample],
-    driven: &[String],
-) -> Vec<CompliantPlace> {
-    let largest_nm = |c: usize| samples.iter().map(|s| s.deflection.torque_nm(c)).fold(0.0, f64::max);
-    let like = |c: &CompliantPlace, effect: &'static str, shape: Shape| CompliantPlace {
-        effect,
-        shape,
-        ..c.clone()
-    };
-    let mut further = Vec::new();
-    for (c, spring) in springs.iter().enumerate() {
-        let largest_nm = largest_nm(c);
-        if largest_nm <= NOTHING_NM {
-            continue;
-        }
-        if spring.rotation == ElasticRotation::AboutAxis {
-            let play = PLAY_PARTS.map(|part| Shape::Play(part * largest_nm));
-            further.extend(play.map(|shape| like(spring, lost_motion::KIND.name, shape)));
-        }
-        if spring.effect == base_compliance::KIND.name {
-            let lift = LIFT_PARTS.map(|part| Shape::Lift(part * largest_nm));
-            further.extend(lift.map(|shape| like(spring, base_lift::KIND.name, shape)));
-        }
-    }
-    for spring in springs.iter().filter(|c| c.rotation == ElasticRotation::AboutAxis) {
-        if driven.contains(&spring.at) {
-            let waves = [Waves::Once, Waves::Twice, Waves::Both].map(Shape::Waves);
-            further.extend(waves.map(|shape| like(spring, stiffness_waves::KIND.name, shape)));
-        }
-    }
-    springs.extend(further);
-    springs
 }
 
 #[cfg(test)]

@@ -101,7 +101,7 @@ impl Positions {
         let ratios = RATIOS.iter().flat_map(|ratio| [*ratio, 1.0 / ratio]);
         let ratios: Vec<f64> = ratios.filter(|ratio| ratio * best_nm < most_nm).collect();
         let fitted_deviation = self.with_threshold(position, best_nm).fitted.deviations[position][0];
-        // compliances without a name widen the interval at every threshold alike
+        // compliances without a name widen the interval at every threshold by the same factor
         let widened = (deviation / fitted_deviation).max(1.0);
         let tried = ratios.into_par_iter().map(|ratio| {
             let other = self.with_threshold(position, ratio * best_nm).fitted;
