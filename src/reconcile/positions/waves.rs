@@ -108,12 +108,12 @@ impl Positions {
     }
 
     /// Driven joints whose transmission error would fit as well in the place of effect number `position`, if that is a
-    /// stiffness that varies.
-    pub(super) fn transmissions_instead(&self, position: usize) -> Vec<(String, String)> {
+    /// stiffness that varies. `without` is the fit without this effect.
+    pub(super) fn transmissions_instead(&self, position: usize, without: &Fitted) -> Vec<(String, String)> {
         if self.candidates[self.fitted.effects[position]].shape.waves().is_none() {
             return Vec::new();
         }
-        let without = self.without_effect(position);
+        let without = Self { fitted: without.clone(), ..self.clone() };
         let tried = without.best_transmissions().into_iter();
         let good = tried.filter(|(_, f)| f.ln_likelihood > self.fitted.ln_likelihood - TIE);
         good.map(|(j, _)| (transmission::EFFECT.to_string(), self.tree.driven[j].clone())).collect()
