@@ -72,8 +72,7 @@ impl Number {
         }
     }
 
-    /// Whether the number does not move a point through the geometry of its arm: it acts through the deflection, or moves each
-    /// row of the file by another amount.
+    /// Whether the number acts through the deflection or the row of a point, and not through the geometry of its arm.
     pub(crate) fn acts_beyond_geometry(&self) -> bool {
         matches!(self, Number::Gravity(_) | Number::Tolerance(_) | Number::Effect(_) | Number::Drift(_))
     }
@@ -377,8 +376,7 @@ impl Geometry {
         self.arms.len()
     }
 
-    /// Position of the point `asked`, in the instrument's frame \[m\]. For many points, a [`placer`](Self::placer) is
-    /// faster.
+    /// Position of the point `asked`, in the instrument's frame \[m\]. For many points a [`placer`](Self::placer) is faster.
     pub(crate) fn place_m(&self, asked: Placing) -> Vector3<f64> {
         self.placer().place_m(asked)
     }
@@ -401,7 +399,7 @@ pub(crate) struct Placer<'a> {
     /// The frames along the chain: frame `k` is inboard of the chain's piece `k`, frame `k + 1` outboard of it.
     frames: Vec<Frame>,
     /// Position of the point that was placed last, without the motion of its session \[m\].
-    at_m: Vector3<f64>,
+    pub(super) at_m: Vector3<f64>,
 }
 
 impl Placer<'_> {
@@ -436,11 +434,6 @@ impl Placer<'_> {
         own.origin_m + turn * (self.at_m - own.origin_m) + shift_m
     }
 
-    /// The point that was placed last, as seen from the base's origin, in the instrument's frame \[m\].
-    pub(crate) fn from_base_m(&self) -> Vector3<f64> {
-        self.at_m - self.geometry.origin_m
-    }
-
     /// Sine and cosine of the joint angle `angle` in a pose. For a joint without transmission error they follow, by
     /// the addition theorems, from the sines and cosines of its commanded angle and of its zero. Computing sines
     /// would otherwise take most of the time.
@@ -473,11 +466,9 @@ impl Placer<'_> {
                 Vector3::ith(c, 1.0).cross(&(self.at_m - own.origin_m))
             }
             Number::SessionPosition(s, c) if s == asked.station => Vector3::ith(c, 1.0),
-            Number::SessionRotation(..) | Number::SessionPosition(..) => zero,
+            Number::SessionRotation(..) | Number::SessionPosition(..) | Number::Drift(_) => zero,
             Number::Tool(p, c) if p == asked.point => last() * Vector3::ith(c, 1.0),
             Number::Tool(..) | Number::Gravity(_) | Number::Tolerance(_) | Number::Effect(_) => zero,
-            // it depends on the row
-            Number::Drift(_) => zero,
             Number::Zero(j) => self.turning(j, along),
             Number::Transmission(j, k) => {
                 self.turning(j, along) * transmission_waves(asked.pose.angles_rad[j])[k]

@@ -121,6 +121,7 @@ impl<'a> Book<'a> {
             placer.slopes(sample.placing(), &[number], &mut out);
             out[0]
         };
+        let from_base_m = placer.at_m - placer.geometry.origin_m;
         match *law {
             Law::Bent(c, bend_nm) => {
                 let (lever, torque_nm) = sample.deflection.lever(c);
@@ -144,8 +145,8 @@ impl<'a> Book<'a> {
                 columns.extend(axes.map(|axis| axis * axis.dot(&weight)));
             }
             Law::Drift => columns.extend((0..3).map(|c| Vector3::ith(c, part))),
-            Law::Growth => columns.push(placer.from_base_m() * part),
-            Law::Scale => columns.push(placer.from_base_m()),
+            Law::Growth => columns.push(from_base_m * part),
+            Law::Scale => columns.push(from_base_m),
         }
     }
 }

@@ -277,8 +277,66 @@ impl Products {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arm::file::read_arm_document;
+    use crate::catalog::Catalogs;
+    use crate::input::json::Document;
+    use crate::reconcile::positions::fitted::misses;
+    use crate::reconcile::positions::kinematics::{Geometry, Pose, testing::ARM};
+    use crate::reconcile::positions::loads::Deflection;
+    use crate::reconcile::positions::tree::Tree;
+    use crate::reconcile::readings::campaign::{Campaign, read_statement};
     use rand_xoshiro::Xoshiro256PlusPlus;
     use rand_xoshiro::rand_core::{Rng, SeedableRng};
+    use std::sync::Arc;
+
+    /// Eleven samples of the arm of the tests, each in a pose of its own.
+    fn eleven() -> (Geometry, Vec<Sample>) {
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let file = folder.path().join("campaign.json");
+        std::fs::write(&file, "{}").expect("written");
+        let statement = read_statement(&file).expect("sound");
+        let arm =
+            read_arm_document(Document::parse("a", ARM).expect("JSON"), &Catalogs::default()).expect("sound");
+        let campaign = Campaign::of_positions(&statement, &[&arm], Vec::new()).expect("one trunk");
+        let sample = |k: usize| Sample {
+            pose: Arc::new(Pose::new(vec![0.3 * k as f64 - 1.0, 0.9 - 0.2 * k as f64])),
+            arm: 0,
+            point: 0,
+            station: 0,
+            part: 0.1 * k as f64,
+            index: k,
+            group: k,
+            measured_m: Vector3::new(0.1, 0.2, 0.3) * k as f64,
+            precision: Vector3::new(1.0, 0.5, 1.0),
+            deflection: Arc::new(Deflection::known(Vector3::new(0.0, 0.0, -1e-3 * k as f64))),
+            nominal_m: Vec::new(),
+            second_order_m: Vector3::zeros(),
+        };
+        (Geometry::nominal(&Tree::new(&campaign), 1), (0..11).map(sample).collect())
+    }
+
+    #[test]
+    fn equations_of_eight_samples_at_a_time_have_the_bits_of_each_alone() {
+        let (mut geometry, samples) = eleven();
+        let drift = (0..3).map(Number::Drift);
+        let numbers: Vec<Number> = (0..3).map(Number::BaseRotation).chain(drift.clone()).collect();
+        geometry.step(&numbers, &[0.2, -0.1, 0.3, 0.04, 0.05, 0.06]);
+        let mut here = Fitted::rigid(geometry, 0.01);
+        here.moved = vec![0.1; numbers.len()];
+        let samples: Vec<&Sample> = samples.iter().collect();
+        let drifted = misses(&samples, &here);
+        let [alone, eight] = [
+            normal(&samples, &numbers, &here, &mut |_, _, _| {}),
+            normal_of_fit(&samples, &drifted, &numbers, &here),
+        ];
+        assert_eq!((&alone.curvature, &alone.gradient), (&eight.curvature, &eight.gradient));
+        // without the drift each row is off by its part of it
+        here.geometry.step(&drift.collect::<Vec<_>>(), &[-0.04, -0.05, -0.06]);
+        for (k, (with, without)) in drifted.iter().zip(misses(&samples, &here)).enumerate() {
+            let moved_m = Vector3::new(0.04, 0.025, 0.06) * (0.1 * k as f64);
+            assert!((without.scaled_m - with.scaled_m - moved_m).norm() < 1e-15, "{k}");
+        }
+    }
 
     #[test]
     fn sums_of_blocks_are_the_products_of_all_rows_at_once() {
