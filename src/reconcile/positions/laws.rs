@@ -8,7 +8,7 @@
 
 use super::analysis::Positions;
 use super::fit::fit;
-use super::fitted::{Fitted, Sample};
+use super::fitted::{Fitted, Sample, readings};
 use super::kinematics::{Number, Placer};
 use super::law::{Book, Law};
 use super::normal::Factor;
@@ -155,14 +155,21 @@ impl Positions {
         order.sort_by(|a, b| b.1.total_cmp(&a.1));
         order.truncate(FULL_FITS);
         // a robust fit gains at most a few times what the linearized one promises
-        order.retain(|(_, gain)| 3.0 * gain > missing);
+        order.retain(|(_, gain)| 2.0 * without.promised(*gain) > missing);
         let named_price = self.price_of_group(group);
         let judged = order.into_par_iter().filter_map(|(law, _)| {
             let rise = without.with_law(book, law)? - self.fitted.ln_likelihood;
             let worth = rise + named_price - self.price(law.numbers(), book.laws.len());
-            (worth > 0.0 && rise.max(worth - named_price) > TIE).then(|| (law.clone(), worth))
+            (worth > 0.0 && rise > TIE).then(|| (law.clone(), worth))
         });
         judged.collect::<Vec<_>>().into_iter().max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// The rise of the logarithm of the likelihood that a fall of half of chi-squared by `gain` promises. Chi-squared is the
+    /// number of readings at the fitted scale of the errors, and the scale falls with it.
+    fn promised(&self, gain: f64) -> f64 {
+        let count = readings(&self.samples) as f64;
+        -0.5 * count * libm::log((1.0 - 2.0 * gain / count).max(f64::MIN_POSITIVE))
     }
 
     /// The logarithm of the likelihood of this model with the law `law`. Its amplitudes are found by Gauss-Newton steps, with

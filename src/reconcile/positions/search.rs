@@ -69,7 +69,7 @@ impl Positions {
         if next.score() - self.score() <= self.untelling_rise(&next) {
             return false;
         }
-        next.refine_thresholds(&self.fitted.effects);
+        next.refine_thresholds();
         let dropped = |e: &&usize| !next.fitted.effects.contains(e);
         let mut dropped: Vec<String> =
             self.fitted.effects.iter().filter(dropped).map(|e| self.label(*e)).collect();
