@@ -83,7 +83,7 @@ impl Positions {
         fitted.effects.iter().zip(&fitted.compliances).all(|(&e, sizes)| {
             let candidate = &self.candidates[e];
             let mean = self.mean_rad_per_nm(fitted, &candidate.at).unwrap_or_default();
-            let amplitudes = sizes.chunks(2).map(|size| size[0].hypot(size[1]));
+            let amplitudes = sizes.chunks(2).map(|size| libm::hypot(size[0], size[1]));
             candidate.shape.waves().is_none() || amplitudes.sum::<f64>() < MOST * mean
         })
     }
@@ -134,10 +134,10 @@ impl Positions {
 /// the mean `mean`, both in rad/(N m).
 fn wave(size: &[f64], deviation: &[f64], mean: f64) -> [Estimate; 2] {
     let [sin, cos] = [size[0], size[1]];
-    let length = sin.hypot(cos);
+    let length = libm::hypot(sin, cos);
     // the deviation along the wave, and that across it
-    let along = (sin * deviation[0]).hypot(cos * deviation[1]) / length;
-    let across = (cos * deviation[0]).hypot(sin * deviation[1]) / length;
+    let along = libm::hypot(sin * deviation[0], cos * deviation[1]) / length;
+    let across = libm::hypot(cos * deviation[0], sin * deviation[1]) / length;
     let phase = libm::atan2(cos, sin);
     let turn = Z_95 * across / length;
     let end = |x: f64| Some(x).filter(|_| turn < PI);
@@ -157,7 +157,7 @@ pub(super) fn as_parameters(waves: Waves, sizes: &[f64], mean: f64) -> Vec<(Stri
     let mut parameters = Vec::new();
     let mut phases = vec![0.0; 2];
     for (k, size) in waves.range().step_by(2).map(|k| k / 2).zip(sizes.chunks(2)) {
-        parameters.push((["once", "twice"][k].to_string(), vec![size[0].hypot(size[1]) / mean]));
+        parameters.push((["once", "twice"][k].to_string(), vec![libm::hypot(size[0], size[1]) / mean]));
         phases[k] = libm::atan2(size[1], size[0]);
     }
     parameters.push(("phases_rad".into(), phases));
