@@ -17,6 +17,7 @@ mod measured;
 mod nominal_positions;
 mod other_simulator;
 mod positions;
+mod positions_laws;
 mod positions_maker;
 mod positions_other_simulator;
 mod prismatic;

@@ -45,7 +45,27 @@ struct Truths {
     lost_rad: f64,
     /// Rotation of the base per moment about its axes \[rad/(N m)\].
     base_rad_per_nm: Matrix3<f64>,
+    /// The base tilts beyond its preload.
+    lifts: bool,
+    /// The compliance of the third joint varies with its angle.
+    varies: bool,
+    /// The torsion of the second joint grows ever less with its torque.
+    bends: bool,
+    /// All points have moved by so much, in the frame of the arm.
+    drifted_m: f64,
 }
+
+/// Tilt of a base that lifts off, per moment beyond its preload \[rad/(N m)\], and the preload \[N m\].
+pub const LIFT_RAD_PER_NM: f64 = 3e-5;
+pub const PRELOAD_NM: f64 = 90.0;
+/// The compliance of the third joint varies once a turn by this part of itself, with this phase \[rad\].
+pub const WAVE: f64 = 0.4;
+pub const WAVE_PHASE_RAD: f64 = 0.7;
+/// Compliance of the second joint without torque \[rad/(N m)\], and the torque at which it has turned half as far as that
+/// would let it \[N m\].
+const BENT: (f64, f64) = (1.2e-4, 40.0);
+/// Drift of the instrument \[mm\] per row, along the arm's x and y.
+pub const DRIFT_MM_PER_ROW: f64 = 0.006;
 
 /// A base that is stiffer one way than the other and turns about the vertical when it is tilted: xx, yy, zz;
 /// xy, xz, yz \[rad/(N m)\].
@@ -155,6 +175,27 @@ impl Made {
         )
     }
 
+    /// The base lifts off beyond a preload.
+    pub fn lifting(&self, pose_rad: &[f64; 3], _row: usize) -> Truth {
+        self.truth(pose_rad, Truths { lifts: true, ..Truths::default() })
+    }
+
+    /// Joints yield, and the stiffness of the third varies once a turn.
+    pub fn varying(&self, pose_rad: &[f64; 3], _row: usize) -> Truth {
+        self.truth(pose_rad, Truths { sag: true, varies: true, ..Truths::default() })
+    }
+
+    /// The second joint yields, and the more the torque is, the less.
+    pub fn bent(&self, pose_rad: &[f64; 3], _row: usize) -> Truth {
+        self.truth(pose_rad, Truths { bends: true, ..Truths::default() })
+    }
+
+    /// The instrument drifts.
+    pub fn drifting(&self, pose_rad: &[f64; 3], row: usize) -> Truth {
+        let drifted_m = 1e-3 * DRIFT_MM_PER_ROW * row as f64;
+        self.truth(pose_rad, Truths { drifted_m, ..Truths::default() })
+    }
+
     /// The stiffness that the truth has somewhere.
     pub fn stiffness_nm_per_rad(&self, at: &str, effect: &str) -> Option<f64> {
         let joint = ["q1", "q2", "q3"].iter().position(|n| *n == at)?;
@@ -186,10 +227,25 @@ impl Made {
             let outboard = bodies[j..].iter();
             let torque: f64 = outboard.map(|(m, cg)| axis.dot(&(cg - pivot).cross(&(down * *m)))).sum();
             let lost_rad = if j == 2 { truths.lost_rad * (torque / LOST_NM).tanh() } else { 0.0 };
-            sag += axis.cross(&(point - pivot)) * (torque / STIFFNESS_NM_PER_RAD[j] + lost_rad);
+            let softer = match j {
+                2 if truths.varies => 1.0 + WAVE * (pose_rad[2] + WAVE_PHASE_RAD).sin(),
+                _ => 1.0,
+            };
+            sag += axis.cross(&(point - pivot)) * (softer * torque / STIFFNESS_NM_PER_RAD[j] + lost_rad);
+        }
+        if truths.bends {
+            let (axis, pivot) = places[1];
+            let outboard = bodies[1..].iter();
+            let torque: f64 = outboard.map(|(m, cg)| axis.dot(&(cg - pivot).cross(&(down * *m)))).sum();
+            sag += axis.cross(&(point - pivot)) * (BENT.0 * torque / (1.0 + torque.abs() / BENT.1));
         }
         let moment: Vector3<f64> = bodies.iter().map(|(m, cg)| cg.cross(&(down * *m))).sum();
         sag += (truths.base_rad_per_nm * moment).cross(&point);
+        if truths.lifts {
+            let beyond = |nm: f64| (nm.abs() - PRELOAD_NM).max(0.0).copysign(nm);
+            sag += (Vector3::new(beyond(moment.x), beyond(moment.y), 0.0) * LIFT_RAD_PER_NM).cross(&point);
+        }
+        sag += Vector3::new(truths.drifted_m, truths.drifted_m, 0.0);
         Truth { position_m: askew() * (point + sag) + Vector3::new(1.0, -2.0, 0.5) }
     }
 

@@ -50,6 +50,9 @@ impl Estimate {
 /// Half of the width of a 95 % interval, in standard deviations.
 pub(crate) const Z_95: f64 = 1.96;
 
+/// Parameters that say how an effect acts, and not how large it is.
+const NO_SIZES: [&str; 3] = ["torque_nm", "preload_nm", "phases_rad"];
+
 /// An effect that was found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
@@ -70,8 +73,8 @@ impl Finding {
     }
 
     /// Whether no size of the effect differs from that of an arm without it by more than its own standard deviation: a
-    /// stiffness that may be infinite, a factor near 1, and any other size near 0. The torque over which play opens is no
-    /// size.
+    /// stiffness that may be infinite, a factor near 1, and any other size near 0. The torque over which play opens, a
+    /// preload and a phase are no sizes.
     pub(crate) fn is_within_its_deviation(&self) -> bool {
         let is_near = |name: &str, estimate: &Estimate| {
             let Estimate { value, low, high } = *estimate;
@@ -83,7 +86,7 @@ impl Finding {
             let deviation = low.zip(high).map_or(f64::INFINITY, |(low, high)| (high - low) / (2.0 * Z_95));
             (value - absent).abs() < deviation
         };
-        let mut sizes = self.parameters.iter().filter(|(name, _)| name != "torque_nm");
+        let mut sizes = self.parameters.iter().filter(|(name, _)| !NO_SIZES.contains(&name.as_str()));
         sizes.all(|(name, estimates)| estimates.iter().all(|estimate| is_near(name, estimate)))
     }
 

@@ -8,10 +8,12 @@ use super::fitted::{Fitted, Sample};
 use super::kinematics::{Geometry, Number, Pose, number_groups};
 use super::loads::{CompliantPlace, Loads, candidates};
 use super::moved::{Boundary, Kind};
-use super::play;
 use super::points::{Point, points};
+use super::shaped::with_shapes;
 use super::tree::Tree;
 use crate::arm::Arm;
+use crate::arm::effect::channel::Channel;
+use crate::arm::effect::drift;
 use crate::arm::effect::kind::ElasticRotation;
 use crate::reconcile::fit::stats::median;
 use crate::reconcile::readings::campaign::Campaign;
@@ -117,12 +119,13 @@ pub(crate) fn analyze(campaign: &Campaign) -> Positions {
         late.find_effects(campaign);
         late.tell_sessions(campaign);
         late.drop_needless_sessions();
-        let others = [late.boundaries(false), reviewed.boundaries(false)];
+        let set_ups = |model: &Positions| (model.boundaries(false), model.drifts());
+        let others = [set_ups(&late), set_ups(&reviewed)];
         let mut again: Vec<Positions> = Vec::new();
         for own in
             others.iter().enumerate().filter(|(k, own)| !others[..*k].contains(own)).map(|(_, own)| own)
         {
-            again.extend((*own != found.boundaries(false)).then(|| calibrated.with_sessions(campaign, own)));
+            again.extend((*own != set_ups(&found)).then(|| calibrated.with_sessions(campaign, own)));
         }
         found =
             again.into_iter().fold(found, |best, next| if next.score() > best.score() { next } else { best });
@@ -141,7 +144,7 @@ impl Positions {
         let geometry = Geometry::nominal(&tree, points.len());
         let springs = candidates(&tree);
         let loaded = samples(campaign, &tree, &geometry, &springs, &points);
-        let candidates = play::with_play(springs, &loaded);
+        let candidates = with_shapes(springs, &loaded, &tree.driven);
         let considered = candidates.iter().map(|c| campaign.statement.considers(c.effect)).collect();
         let samples = samples(campaign, &tree, &geometry, &candidates, &points);
         let fitted = Fitted::rigid(geometry, ROUGH_M);
@@ -199,18 +202,25 @@ impl Positions {
         boundaries.collect()
     }
 
-    /// Finds sessions that campaign.json does not declare, and adds them to the model.
+    /// Finds sessions that campaign.json does not declare, or a drift, and adds them to the model.
     fn tell_sessions(&mut self, campaign: &Campaign) {
         let spec = &campaign.statement.positions;
-        if self.find_sessions(spec.tool_offset, spec.base_placement) > 0 {
+        let before = self.clone();
+        if self.find_sessions(spec.tool_offset, spec.base_placement) > 0
+            && !self.take_drift_instead(campaign, &before)
+        {
             self.stage("sessions".into(), Vec::new());
         }
     }
 
     /// A copy of this calibrated model with the sessions that begin at `boundaries` (what was moved, and the first
-    /// row of the later session), and with the effects that are then found.
-    fn with_sessions(&self, campaign: &Campaign, boundaries: &[(Kind, usize)]) -> Self {
+    /// row of the later session), with a drift if it `drifts`, and with the effects that are then found.
+    fn with_sessions(&self, campaign: &Campaign, (boundaries, drifts): &(Vec<(Kind, usize)>, bool)) -> Self {
         let mut out = self.clone();
+        if *drifts {
+            out = out.with_drift();
+            out.stage(format!("{}@{}", drift::KIND.name, Channel::Positions.word()), Vec::new());
+        }
         out.divide(boundaries, false);
         if !boundaries.is_empty() {
             out.stage("sessions".into(), Vec::new());
@@ -222,12 +232,12 @@ impl Positions {
 
     /// Adds compliances and transmission errors to the model, one by one, as long as one is worth its price.
     fn find_effects(&mut self, campaign: &Campaign) {
-        // A transmission error can hide a compliance, so the search starts again after each one that is found.
+        // What follows a joint's angle can hide a compliance, so the search starts again after each one that is found.
         loop {
             for class in CLASSES {
                 while self.add(campaign, class) {}
             }
-            if !self.add_transmission(campaign) {
+            if !self.add_periodic(campaign) {
                 break;
             }
         }
@@ -336,6 +346,11 @@ fn precision(measured: &Components) -> Vector3<f64> {
     Vector3::from(measured.map(|read| read.map_or(0.0, |read| (best_mm / read.sigma_mm).max(LEAST))))
 }
 
+/// Number of the last row of the file, from 0, at least 1.
+pub(super) fn last_row(campaign: &Campaign) -> f64 {
+    campaign.positions.iter().map(|row| row.row).max().unwrap_or_default().max(1) as f64
+}
+
 /// The measured positions as samples: each with the deflection of its point under gravity and with what each of the
 /// `candidates` would add. `points` lists the measured points on the tools.
 pub(super) fn samples(
@@ -345,6 +360,7 @@ pub(super) fn samples(
     candidates: &[CompliantPlace],
     points: &[Point],
 ) -> Vec<Sample> {
+    let last_row = last_row(campaign);
     let points: Vec<usize> = campaign
         .positions
         .iter()
@@ -362,6 +378,7 @@ pub(super) fn samples(
                 arm: row.arm,
                 point,
                 station: 0,
+                part: row.row as f64 / last_row,
                 index,
                 group,
                 measured_m: Vector3::from(row.measured.map(|read| read.map_or(0.0, |read| read.value_mm)))

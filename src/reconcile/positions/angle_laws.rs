@@ -71,9 +71,10 @@ pub(super) struct Competing {
 }
 
 impl Competing {
-    /// Why the transmission error must not be named, as a sentence: the law fits clearly better. `None` if it does not.
+    /// Why the transmission error must not be named, as a sentence: the law fits clearly better, or about as well with so few
+    /// numbers that it is far more probable. `None` if it does not.
     pub(super) fn better(&self) -> Option<String> {
-        (self.likelihood_gain > TIE && self.score_gain > 0.0).then(|| {
+        (self.score_gain > 0.0 && self.likelihood_gain.max(self.score_gain) > TIE).then(|| {
             format!(
                 "{} explains the positions better than {EFFECT}@{}: this is no error once and twice a turn",
                 self.words, self.joint

@@ -145,7 +145,7 @@ impl Positions {
         self.sessions.iter().any(|b| !b.declared && self.changes_at(campaign, b).is_some())
     }
 
-    /// Drops undeclared sessions that are no longer worth their price (in ln of the likelihood) once effects are in
+    /// Drops a drift and undeclared sessions that are no longer worth their price (in ln of the likelihood) once effects are in
     /// the model, the least useful first. Returns whether any was dropped.
     pub(crate) fn drop_needless_sessions(&mut self) -> bool {
         let before = self.sessions.len();
@@ -155,7 +155,17 @@ impl Positions {
             let Some((_, without)) = needless.min_by(|a, b| a.0.total_cmp(&b.0)) else { break };
             *self = without;
         }
-        self.sessions.len() < before
+        let steady = self.drop_needless_drift();
+        steady || self.sessions.len() < before
+    }
+
+    /// The model without all sessions that were found, fitted again.
+    pub(super) fn without_found_sessions(&self) -> Self {
+        let mut out = self.clone();
+        while let Some(boundary) = out.sessions.iter().find(|b| !b.declared) {
+            out = out.without_session(boundary);
+        }
+        out
     }
 
     /// What a session is worth beyond its price \[ln of the likelihood\], and the model without its boundary.
@@ -164,7 +174,10 @@ impl Positions {
         let own = boundary.earlier;
         let price = self.session_price(own.numbers().len(), self.kinds(true, true).len());
         let rise = self.fitted.ln_likelihood - without.fitted.ln_likelihood;
-        (telling_part(&self.fitted, &self.numbers, &self.samples, own) * rise - price, without)
+        (
+            telling_part(&self.fitted, &self.numbers, &self.samples, own.numbers().len()) * rise - price,
+            without,
+        )
     }
 
     /// The model without the session boundary `boundary`, fitted again: the rows on both sides of it are one session.

@@ -164,7 +164,8 @@ impl<'a> EightPlacer<'a> {
             Number::BaseRotation(c) | Number::SessionRotation(_, c) => Part::About(c),
             Number::BasePosition(c) | Number::SessionPosition(_, c) => Part::Unit(c),
             Number::Tool(_, c) => Part::Column(self.chains[arm].len(), c),
-            Number::Gravity(_) | Number::Tolerance(_) | Number::Effect(_) => Part::Zero,
+            // they do not act through the geometry
+            Number::Gravity(_) | Number::Tolerance(_) | Number::Effect(_) | Number::Drift(_) => Part::Zero,
             Number::Zero(j) | Number::Transmission(j, _) => self.turning(arm, j),
             Number::Ratio(i, _) => along(i)
                 .map_or(Part::Zero, |k| Part::Turning(vec![(k, own.axes[i].into_inner().into(), 1.0)])),
@@ -455,7 +456,7 @@ mod tests {
         let of_sessions = |c: usize| [Number::SessionRotation(1, c), Number::SessionPosition(1, c)];
         numbers.extend((0..3).flat_map(of_sessions));
         numbers.extend((0..4).map(|k| Number::Transmission(1, k)));
-        numbers.push(Number::Gravity(0));
+        numbers.extend([Number::Gravity(0), Number::Drift(1)]);
         assert!(numbers.contains(&Number::Ratio(4, 1)) && numbers.contains(&Number::Mount(3, 2)));
         let mut geometry = Geometry::nominal(&tree, 2);
         geometry.stations.push(geometry.stations[0]);

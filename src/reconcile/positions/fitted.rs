@@ -21,6 +21,8 @@ pub(crate) struct Sample {
     pub point: usize,
     /// Index of the session that sets the arm's place in the instrument's frame (station).
     pub station: usize,
+    /// Where the row is in its file, from 0 for the first to 1 for the last.
+    pub part: f64,
     /// Index of this sample, which is the index of its row in the campaign.
     pub index: usize,
     /// Number of the pose, counted over different poses. Samples of one pose are held out together.
@@ -124,7 +126,12 @@ impl Fitted {
     /// geometry; it is passed in because that is faster for many samples.
     pub(crate) fn predicted_by(&self, placer: &mut Placer, sample: &Sample) -> Vector3<f64> {
         let rigid = placer.place_m(sample.placing());
-        rigid + self.geometry.level_to_instrument() * self.displacement(sample)
+        rigid + self.geometry.level_to_instrument() * self.displacement(sample) + self.drifted_m(sample)
+    }
+
+    /// How far a sample has drifted since the first row, in the instrument's frame \[m\].
+    pub(crate) fn drifted_m(&self, sample: &Sample) -> Vector3<f64> {
+        self.geometry.drift_m * sample.part
     }
 
     /// Error of a sample with this model, measured minus predicted position \[m\]; zero where a coordinate was not
@@ -155,10 +162,10 @@ impl Fitted {
 
     /// Derivative of the elastic displacement by the effects of the model with respect to a tilt of gravity along the
     /// axis with index `axis` \[m/rad\]. Play is left out: it is closed in most poses, and its displacement then does
-    /// not change with the tilt.
+    /// not change with the tilt. So is a base that lifts off: most of its moment does not change with the tilt.
     pub(crate) fn leaning(&self, sample: &Sample, axis: usize) -> Vector3<f64> {
         let effects = self.effects.iter().zip(&self.compliances);
-        let springs = effects.filter(|(effect, _)| !sample.deflection.is_play(**effect));
+        let springs = effects.filter(|(effect, _)| sample.deflection.is_proportional(**effect));
         springs.fold(Vector3::zeros(), |sum, (&effect, compliances)| {
             sum + sample.deflection.displaced_m(effect, compliances, &Vector3::ith(axis, 1.0))
         })
@@ -179,7 +186,8 @@ pub(crate) fn misses(samples: &[&Sample], fitted: &Fitted) -> Vec<Miss> {
         let asked: Vec<Placing> = eight.iter().map(|&i| samples[i].placing()).collect();
         for (&i, rigid_m) in eight.iter().zip(placer.place_m(&asked)) {
             let sample = samples[i];
-            out[i] = sample.miss(&sample.error(rigid_m + from_level * fitted.displacement(sample)));
+            let displaced_m = from_level * fitted.displacement(sample);
+            out[i] = sample.miss(&sample.error(rigid_m + displaced_m + fitted.drifted_m(sample)));
         }
     }
     out

@@ -50,6 +50,8 @@ pub(crate) enum Number {
     /// Shift of all points of a later session relative to the first session \[m\]: index of the session, instrument
     /// axis.
     SessionPosition(usize, usize),
+    /// Drift of all points from the first row to the last, along the instrument axis with this index \[m\].
+    Drift(usize),
 }
 
 impl Number {
@@ -65,14 +67,14 @@ impl Number {
             Number::Zero(_) => 0.03,
             Number::Axis(..) | Number::Vector(..) | Number::Ratio(..) => 0.01,
             Number::Transmission(..) => 0.002,
-            Number::Gravity(_) | Number::SessionPosition(..) => 0.05,
+            Number::Gravity(_) | Number::SessionPosition(..) | Number::Drift(_) => 0.05,
             Number::SessionRotation(..) => 0.02,
         }
     }
 
-    /// Whether the number moves a point through the deflection of the arm and not through its geometry.
-    pub(crate) fn acts_through_deflection(&self) -> bool {
-        matches!(self, Number::Gravity(_) | Number::Tolerance(_) | Number::Effect(_))
+    /// Whether the number acts through the deflection or the row of a point, and not through the geometry of its arm.
+    pub(crate) fn acts_beyond_geometry(&self) -> bool {
+        matches!(self, Number::Gravity(_) | Number::Tolerance(_) | Number::Effect(_) | Number::Drift(_))
     }
 
     /// Whether the number is a rotation that may be large, as for a placement. The fit shortens a step in which such a
@@ -168,6 +170,8 @@ pub(crate) struct Geometry {
     /// For each session, relative to the first one: how all points turn about the base's origin, and how they shift
     /// \[m\].
     pub stations: Vec<(Rotation3<f64>, Vector3<f64>)>,
+    /// How far all points drift from the first row to the last \[m\].
+    pub drift_m: Vector3<f64>,
     /// Rotation from the base frame to the level frame, whose z axis is opposite to gravity.
     pub level: Rotation3<f64>,
     /// Direction of gravity in the level frame. It is -z, unless it was fitted after the frame was last levelled.
@@ -243,6 +247,7 @@ impl Geometry {
             origin_m: Vector3::zeros(),
             tools_m: vec![Vector3::zeros(); points],
             stations: vec![(Rotation3::identity(), Vector3::zeros())],
+            drift_m: Vector3::zeros(),
             level: Rotation3::identity(),
             gravity: -Vector3::z(),
             zeros_rad: vec![0.0; tree.driven.len()],
@@ -273,6 +278,7 @@ impl Geometry {
                 Number::Tool(p, c) => self.tools_m[p][c] += by,
                 Number::SessionRotation(s, c) => self.stations[s].0 = about(c, by) * self.stations[s].0,
                 Number::SessionPosition(s, c) => self.stations[s].1[c] += by,
+                Number::Drift(c) => self.drift_m[c] += by,
                 Number::Mount(i, c) => self.mounts[i] = about(c, by) * self.mounts[i],
                 Number::Zero(j) => self.zeros_rad[j] += by,
                 Number::Transmission(j, k) => self.transmissions_rad[j][k] += by,
@@ -370,8 +376,7 @@ impl Geometry {
         self.arms.len()
     }
 
-    /// Position of the point `asked`, in the instrument's frame \[m\]. For many points, a [`placer`](Self::placer) is
-    /// faster.
+    /// Position of the point `asked`, in the instrument's frame \[m\]. For many points a [`placer`](Self::placer) is faster.
     pub(crate) fn place_m(&self, asked: Placing) -> Vector3<f64> {
         self.placer().place_m(asked)
     }
@@ -394,7 +399,7 @@ pub(crate) struct Placer<'a> {
     /// The frames along the chain: frame `k` is inboard of the chain's piece `k`, frame `k + 1` outboard of it.
     frames: Vec<Frame>,
     /// Position of the point that was placed last, without the motion of its session \[m\].
-    at_m: Vector3<f64>,
+    pub(super) at_m: Vector3<f64>,
 }
 
 impl Placer<'_> {
@@ -461,7 +466,7 @@ impl Placer<'_> {
                 Vector3::ith(c, 1.0).cross(&(self.at_m - own.origin_m))
             }
             Number::SessionPosition(s, c) if s == asked.station => Vector3::ith(c, 1.0),
-            Number::SessionRotation(..) | Number::SessionPosition(..) => zero,
+            Number::SessionRotation(..) | Number::SessionPosition(..) | Number::Drift(_) => zero,
             Number::Tool(p, c) if p == asked.point => last() * Vector3::ith(c, 1.0),
             Number::Tool(..) | Number::Gravity(_) | Number::Tolerance(_) | Number::Effect(_) => zero,
             Number::Zero(j) => self.turning(j, along),

@@ -6,10 +6,12 @@
 //! gravity. The mass of other arms on the same trunk is included.
 
 use super::kinematics::Geometry;
+use super::shape::{Shape, beyond_nm};
 use super::tree::Tree;
 use crate::arm::body::total_kg;
 use crate::arm::effect::kind::{ElasticRotation, Kind};
 use crate::arm::effect::subject::Subject;
+use crate::arm::effect::waves::transmission_waves;
 use crate::arm::effect::{
     base_compliance, bearing_tilt, connection_compliance, frame_compliance, joint_compliance,
 };
@@ -41,9 +43,9 @@ pub(crate) struct CompliantPlace {
     pub rotation: ElasticRotation,
     /// Place of the effect: the name of a joint or link, or `base`.
     pub at: String,
-    /// Torque scale `T_c` of play \[N m\], if the candidate is play and no spring. Its parameter is then the half width
-    /// \[rad\] and not a compliance. `None` for a spring.
-    pub play_nm: Option<f64>,
+    /// How the displacement depends on the torque. For play the candidate's parameter is the half width \[rad\] and not a
+    /// compliance.
+    pub shape: Shape,
 }
 
 /// How one measured point deflects under gravity in its pose, in the level frame.
@@ -57,6 +59,8 @@ pub(crate) struct Deflection {
     /// The rotations of all candidates, those of the first candidate first.
     swings: Vec<Swing>,
     slots: Arc<[Slot]>,
+    /// For each driven joint, sine and cosine of its angle and of twice its angle.
+    waves: Vec<[f64; 4]>,
 }
 
 /// One rotation by which a candidate can deflect: how it moves the point, and the torque about it.
@@ -69,20 +73,23 @@ struct Swing {
 }
 
 /// Where a candidate is among the rotations of all candidates: index of its first rotation, the number of its
-/// rotations, and the number of its compliances.
+/// rotations, and the number of its compliances. A candidate that is no spring shares the rotations of the spring at its
+/// place.
 #[derive(Debug, Clone, Copy)]
 struct Slot {
     first: usize,
     swings: usize,
     compliances: usize,
-    /// Torque scale of play \[N m\]; `None` for a spring.
-    play_nm: Option<f64>,
+    shape: Shape,
+    /// Index of the driven joint of this name, on whose angle the compliance may depend.
+    driven: usize,
 }
 
 impl Deflection {
     /// A deflection with the known displacement `known_m` and without candidates.
     pub(crate) fn known(known_m: Vector3<f64>) -> Self {
-        Self { known_m, known_slopes_m: [Vector3::zeros(); 2], swings: Vec::new(), slots: Arc::new([]) }
+        let known_slopes_m = [Vector3::zeros(); 2];
+        Self { known_m, known_slopes_m, swings: Vec::new(), slots: Arc::new([]), waves: Vec::new() }
     }
 
     /// Number of compliances of a candidate.
@@ -90,9 +97,21 @@ impl Deflection {
         self.slots[candidate].compliances
     }
 
-    /// Whether a candidate is play. The displacement by play is not proportional to the weight.
-    pub(crate) fn is_play(&self, candidate: usize) -> bool {
-        self.slots[candidate].play_nm.is_some()
+    /// Whether the displacement by a candidate is proportional to the weight.
+    pub(crate) fn is_proportional(&self, candidate: usize) -> bool {
+        self.slots[candidate].shape.is_proportional()
+    }
+
+    /// This deflection, with the threshold `nm` of the candidate \[N m\] (the torque scale of its play, or the preload).
+    pub(crate) fn with_threshold(&self, candidate: usize, nm: f64) -> Self {
+        let mut slots = self.slots.to_vec();
+        slots[candidate].shape = slots[candidate].shape.with_threshold(nm);
+        Self { slots: slots.into(), ..self.clone() }
+    }
+
+    /// The largest torque about an axis of a candidate under gravity along -z, without its sign \[N m\].
+    pub(crate) fn torque_nm(&self, candidate: usize) -> f64 {
+        self.swings(candidate).iter().map(|swing| swing.pull_nm.z.abs()).fold(0.0, f64::max)
     }
 
     fn swings(&self, candidate: usize) -> &[Swing] {
@@ -112,12 +131,19 @@ impl Deflection {
         let mut torques_nm = [0.0; 3];
         torques_nm.iter_mut().zip(own).for_each(|(nm, swing)| *nm = swing.pull_nm.dot(gravity));
         let along = |i: usize, j: usize| own[i].motion_m * torques_nm[j];
-        if let Some(scale_nm) = self.slots[candidate].play_nm {
-            return each(own[0].motion_m * libm::tanh(torques_nm[0] / scale_nm));
-        }
-        match self.count(candidate) {
-            1 => each((0..own.len()).fold(Vector3::zeros(), |sum, i| sum + along(i, i))),
-            count => FRAME_ENTRIES[..count].iter().for_each(|&(i, j)| {
+        let slot = &self.slots[candidate];
+        match (slot.shape, slot.compliances) {
+            (Shape::Play(scale_nm), _) => each(own[0].motion_m * libm::tanh(torques_nm[0] / scale_nm)),
+            (Shape::Lift(preload_nm), _) => {
+                let tilt = |i: usize| own[i].motion_m * beyond_nm(torques_nm[i], preload_nm);
+                each((0..own.len()).map(tilt).sum());
+            }
+            (Shape::Waves(waves), _) => {
+                let angle = &self.waves[slot.driven][waves.range()];
+                angle.iter().for_each(|wave| each(along(0, 0) * *wave));
+            }
+            (Shape::Spring, 1) => each((0..own.len()).fold(Vector3::zeros(), |sum, i| sum + along(i, i))),
+            (Shape::Spring, count) => FRAME_ENTRIES[..count].iter().for_each(|&(i, j)| {
                 each(if i == j { along(i, i) } else { along(i, j) + along(j, i) });
             }),
         }
@@ -183,7 +209,7 @@ impl Tree {
         };
         frame.rotation == ElasticRotation::Frame
             && other.rotation != ElasticRotation::Frame
-            && other.play_nm.is_none()
+            && other.shape == Shape::Spring
             && (frame.at == other.at || self.arms.iter().any(|chain| chain.windows(2).any(is_behind)))
     }
 }
@@ -196,18 +222,24 @@ impl CompliantPlace {
             effect: kind.name,
             rotation,
             at: at.into(),
-            play_nm: None,
+            shape: Shape::Spring,
         })
     }
 
     /// Number of compliances of the candidate. A frame has xx, yy, xy, xz and yz. The frame of a link also has zz,
     /// because weights can turn it about z; they cannot turn the base about z.
     pub(crate) fn count(&self) -> usize {
-        match (self.rotation, self.at.as_str()) {
-            (ElasticRotation::Frame, "base") => 5,
-            (ElasticRotation::Frame, _) => 6,
+        match (self.shape.waves(), self.rotation, self.at.as_str()) {
+            (Some(waves), ..) => waves.len(),
+            (None, ElasticRotation::Frame, "base") => 5,
+            (None, ElasticRotation::Frame, _) => 6,
             _ => 1,
         }
+    }
+
+    /// Number of parameters of the candidate: its compliances, and the threshold that is chosen.
+    pub(crate) fn numbers(&self) -> usize {
+        self.count() + usize::from(self.shape.threshold_nm().is_some())
     }
 
     /// Number of axes about which the candidate rotates under load.
@@ -294,14 +326,7 @@ impl<'a> Loads<'a> {
                 geometry.tools_m.iter().map(point).collect()
             })
             .collect();
-        let mut first = 0;
-        let slot = |candidate: &CompliantPlace| {
-            let (swings, compliances) = (candidate.axes(), candidate.count());
-            let slot = Slot { first, swings, compliances, play_nm: candidate.play_nm };
-            first += slot.swings;
-            slot
-        };
-        let slots = candidates.iter().map(slot).collect();
+        let slots = slots(tree, candidates);
         Self { tree, trunk: trunk_items(campaign, tree, &ready), ready, slots }
     }
 
@@ -311,7 +336,10 @@ impl<'a> Loads<'a> {
         let hung = self.hung(row, point);
         let mut unit = hung.own.pose(&hung.own.unit, &hung.pose_rad, &row.payload);
         hung.load_trunk(&mut unit, self.trunk[0]);
+        let varies = self.slots.iter().any(|slot| slot.shape.waves().is_some());
+        let angles = row.pose_deg.iter().filter(|_| varies);
         Deflection {
+            waves: angles.map(|angle| transmission_waves(angle.to_radians())).collect(),
             known_m: self.known_of(&hung, row).statics().tip_displacement_m,
             known_slopes_m: [Vector3::zeros(); 2],
             swings: hung.own.swings(&unit, &self.slots),
@@ -458,6 +486,29 @@ fn compliant_everywhere(structure: &Structure, known: &Chain, joints: usize) -> 
     unit
 }
 
+/// The places of the candidates among the rotations. The springs come first among the candidates.
+fn slots(tree: &Tree, candidates: &[CompliantPlace]) -> Arc<[Slot]> {
+    let mut first = 0;
+    let mut out: Vec<Slot> = Vec::with_capacity(candidates.len());
+    for candidate in candidates {
+        let is_spring_there = |c: &CompliantPlace| {
+            (c.shape, c.rotation, &c.at) == (Shape::Spring, candidate.rotation, &candidate.at)
+        };
+        let own = candidates[..out.len()].iter().position(is_spring_there);
+        out.push(Slot {
+            first: own.map_or(first, |spring| out[spring].first),
+            swings: candidate.axes(),
+            compliances: candidate.count(),
+            shape: candidate.shape,
+            driven: tree.driven.iter().position(|name| *name == candidate.at).unwrap_or_default(),
+        });
+        if candidate.shape == Shape::Spring {
+            first += candidate.axes();
+        }
+    }
+    out.into()
+}
+
 /// Number of items (bodies and elastic elements) of a posed arm that belong to the trunk: first in the arm with unit
 /// compliances, then in the arm as it is.
 fn trunk_items(campaign: &Campaign, tree: &Tree, ready: &[Vec<Ready>]) -> [usize; 2] {
@@ -495,8 +546,8 @@ impl Ready {
     /// compliances.
     fn swings(&self, unit: &Posed, slots: &[Slot]) -> Vec<Swing> {
         let (elements, swings) = self.swings_of_elements(unit);
-        let mut out = Vec::with_capacity(slots.last().map_or(0, |s| s.first + s.swings));
-        for (place, slot) in self.places.iter().zip(slots) {
+        let mut out: Vec<Swing> = Vec::new();
+        for (place, slot) in self.places.iter().zip(slots).filter(|(_, slot)| slot.shape == Shape::Spring) {
             // a candidate on another arm does not move this point
             let own = |k: usize| place.own.map_or_else(Swing::default, |at| swings[elements[at] + k]);
             out.extend((0..slot.swings).map(own));

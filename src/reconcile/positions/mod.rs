@@ -10,6 +10,9 @@
 //!   (`moved`), and `standing` finds where the arm stands in each session. `search` finds compliances,
 //!   `nominal` stiffnesses, moduli and masses other than stated (`dependence`), and `transmission` joints with a transmission error.
 //!   `second_order` is what the linear displacement lacks.
+//! - `shape` says how a candidate that is no spring depends on its torque, `shaped` lists them, `threshold` refines torque scales and preloads,
+//!   `waves` finds stiffnesses that vary with the angle. `drift` finds a drift in the place of sessions. `law` lists physics
+//!   that is no effect, and `laws` lets it compete with effects (`angle_laws`: errors of a joint's angle).
 //! - `setups` brings the positions of several campaigns into one frame.
 //! - `conventions` asks whether the file was written by another convention (`convention_changes`), `far_geometry` whether
 //!   calibration went further than its prior expects, `structure` tests the errors that are left,
@@ -24,19 +27,20 @@ pub(crate) mod boundary;
 pub(crate) mod convention_changes;
 pub(crate) mod conventions;
 pub(crate) mod dependence;
+mod drift;
 pub(crate) mod eight_places;
 pub(crate) mod far_geometry;
 pub(crate) mod fit;
 pub(crate) mod fitted;
 pub(crate) mod kinematics;
+mod law;
+mod laws;
 pub(crate) mod loads;
 pub(crate) mod moved;
 pub(crate) mod next_test;
 pub(crate) mod nominal;
 pub(crate) mod normal;
 pub(crate) mod outcome;
-pub(crate) mod play;
-pub(crate) mod play_scale;
 pub(crate) mod points;
 pub(crate) mod predict;
 pub(crate) mod rows;
@@ -44,9 +48,13 @@ pub(crate) mod search;
 pub(crate) mod second_order;
 pub(crate) mod sessions;
 pub(crate) mod setups;
+pub(crate) mod shape;
+mod shaped;
 pub(crate) mod springs;
 pub(crate) mod standing;
 pub(crate) mod structure;
+pub(crate) mod threshold;
 pub(crate) mod transmission;
 pub(crate) mod tree;
 pub(crate) mod unnamed_springs;
+pub(crate) mod waves;

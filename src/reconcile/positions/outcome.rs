@@ -2,13 +2,16 @@
 
 use super::analysis::{Positions, analyze};
 use super::angle_laws::Competing;
+use super::drift;
 use super::fitted::Fitted;
 use super::kinematics::Number;
 use super::loads::FRAME_ENTRIES;
 use super::search::TIE;
+use super::shape::Shape;
 use super::springs::frame_matrix;
 use super::structure::{MATERIAL_VARIANCE, mean_median_length};
 use super::transmission;
+use super::waves;
 use crate::arm::Arm;
 use crate::arm::effect::catalogue::kind;
 use crate::arm::effect::channel::Channel;
@@ -66,9 +69,11 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
             before.median_mm, after.median_mm
         ));
     }
+    let drifts: Vec<Finding> = findings.iter().filter(|f| f.effect == drift::EFFECT).cloned().collect();
     let (shown, in_arm) = match verdict == Verdict::Explained || helps {
         true => (&found.fitted, findings.as_slice()),
-        false => (&found.rigid, [].as_slice()),
+        // a drift is calibrated with the sessions
+        false => (&found.rigid, drifts.as_slice()),
     };
     let mut provenance = correct::provenance(campaign, verdict, found.calibrated(shown));
     let corrected: Vec<Arm> = (0..campaign.arms().len())
@@ -124,7 +129,7 @@ impl Positions {
         });
         let dependent = self.named_dependences.iter().map(|&k| self.dependence_finding(k));
         let uneven = self.transmissions.iter().map(|&joint| self.transmission_finding(joint));
-        compliant.chain(dependent).chain(uneven).collect()
+        compliant.chain(dependent).chain(uneven).chain(self.drift_finding(campaign)).collect()
     }
 
     /// Sentences on what was assumed or adjusted: sessions, factors beyond their tolerance (of those in `adjusted`), zeros
@@ -159,6 +164,9 @@ impl Positions {
         }
         let angle_laws = self.angle_laws();
         if let Some(text) = angle_laws.iter().find_map(Competing::better) {
+            return (Verdict::Unexplained, vec![text]);
+        }
+        if let Some(text) = self.unsteady_drift().or_else(|| self.better_law(campaign)) {
             return (Verdict::Unexplained, vec![text]);
         }
         if let Some(said) = self.not_calibrated(campaign, adjusted) {
@@ -306,13 +314,7 @@ impl Positions {
         let candidate = &self.candidates[self.fitted.effects[i]];
         let (c, sd) = (&self.fitted.compliances[i], &self.fitted.deviations[i]);
         let parameters = match candidate.rotation {
-            _ if candidate.play_nm.is_some() => {
-                let scale_nm = candidate.play_nm.unwrap_or_default();
-                vec![
-                    ("half_width_rad".into(), vec![within(c[0], sd[0])]),
-                    ("torque_nm".into(), vec![self.play_scale(i, scale_nm)]),
-                ]
-            }
+            _ if candidate.shape != Shape::Spring => self.shape_parameters(i),
             ElasticRotation::Frame => frame_parameters(c, sd),
             ElasticRotation::AboutAxis | ElasticRotation::Tilt => {
                 vec![("stiffness_nm_per_rad".into(), vec![stiffness(c[0], sd[0])])]
@@ -324,7 +326,26 @@ impl Positions {
             effect: candidate.effect.into(),
             at: candidate.at.clone(),
             parameters,
-            indistinguishable_from: springs.chain(self.dependences_instead(without)).collect(),
+            indistinguishable_from: springs
+                .chain(self.dependences_instead(without))
+                .chain(self.transmissions_instead(i, without))
+                .collect(),
+        }
+    }
+
+    /// Parameters, with their intervals, of effect number `i` of the model, which is no spring.
+    fn shape_parameters(&self, i: usize) -> Vec<(String, Vec<Estimate>)> {
+        let shape = self.candidates[self.fitted.effects[i]].shape;
+        if let Some(waves) = waves::of(shape) {
+            return self.wave_parameters(i, waves);
+        }
+        let Some([size, threshold]) = self.profile(i) else { return Vec::new() };
+        match shape {
+            Shape::Lift(_) => vec![
+                ("stiffness_nm_per_rad".into(), vec![reciprocal(size)]),
+                ("preload_nm".into(), vec![threshold]),
+            ],
+            _ => vec![("half_width_rad".into(), vec![size]), ("torque_nm".into(), vec![threshold])],
         }
     }
 
@@ -340,7 +361,12 @@ impl Positions {
                 "sin_cos_sin2_cos2_rad".into(),
                 own.map(|(_, (value, sd))| within(*value, *sd)).collect(),
             )],
-            indistinguishable_from: self.transmission_competitors(joint).into_iter().map(named).collect(),
+            indistinguishable_from: self
+                .transmission_competitors(joint)
+                .into_iter()
+                .map(named)
+                .chain(self.waves_instead(joint))
+                .collect(),
         }
     }
 
@@ -359,7 +385,9 @@ impl Positions {
         geometry.relevel();
         let turned = geometry.write_into(arm, &mut out);
         let names: Vec<String> = out.chain.iter().map(|e| e.name().to_string()).collect();
-        let own = effects.iter().filter(|f| f.at == "base" || names.contains(&f.at));
+        let own = effects.iter().filter(|f| {
+            ["base", Channel::Positions.word()].contains(&f.at.as_str()) || names.contains(&f.at)
+        });
         out.effects.extend(own.map(|f| as_effect(campaign, f)));
         let placement = self.placement(campaign, arm, shown, turned).to_json();
         match arm {
@@ -409,6 +437,7 @@ impl Positions {
             Number::SessionRotation(s, c) => format!("session_{s}.rotation_rad[{c}]"),
             Number::SessionPosition(s, c) => format!("session_{s}.position_m[{c}]"),
             Number::BaseRotation(c) => format!("base_rotation_rad[{c}]"),
+            Number::Drift(c) => format!("drift_m[{c}]"),
             Number::BasePosition(c) => format!("base_position_m[{c}]"),
             Number::Tool(p, c) => format!("{}.tool_m[{c}]", self.points[*p].label()),
         }
@@ -493,11 +522,18 @@ fn within(value: f64, deviation: f64) -> Estimate {
 /// Stiffness with its 95 % interval \[N m/rad\], as the reciprocal of a compliance with the standard deviation
 /// `deviation` \[rad/(N m)\]. An end is `None` where the compliance may be zero.
 fn stiffness(compliance: f64, deviation: f64) -> Estimate {
+    let end = |by: f64| Some(compliance + by * deviation);
+    reciprocal(Estimate { value: compliance, low: end(-Z_95), high: end(Z_95) })
+}
+
+/// Stiffness with its interval \[N m/rad\], as the reciprocal of a compliance. An end is `None` where the compliance may be
+/// zero.
+fn reciprocal(compliance: Estimate) -> Estimate {
     let end = |c: f64| (c > 0.0).then(|| 1.0 / c);
     Estimate {
-        value: end(compliance).unwrap_or(1e15),
-        low: end(compliance + Z_95 * deviation),
-        high: end(compliance - Z_95 * deviation),
+        value: end(compliance.value).unwrap_or(1e15),
+        low: compliance.high.and_then(end),
+        high: compliance.low.and_then(end),
     }
 }
 

@@ -51,11 +51,12 @@ impl<'a> Linearized<'a> {
     pub(crate) fn at(&mut self, sample: &Sample, further: Further) -> Vector3<f64> {
         let here = self.here;
         let at_m = self.placer.place_m(sample.placing());
-        let miss = sample.miss(&sample.error(at_m + self.from_level * here.displacement(sample)));
+        let miss = sample
+            .miss(&sample.error(at_m + self.from_level * here.displacement(sample) + here.drifted_m(sample)));
         self.columns.clear();
         self.placer.slopes(sample.placing(), self.numbers, &mut self.columns);
         for (column, number) in self.columns.iter_mut().zip(self.numbers) {
-            if let Some(by) = deflection_slope(here, &self.from_level, sample, number) {
+            if let Some(by) = slope_beyond_geometry(here, &self.from_level, sample, number) {
                 *column = by;
             }
         }
@@ -73,9 +74,9 @@ impl<'a> Linearized<'a> {
     }
 }
 
-/// Derivative of a sample's position with respect to a number that acts through the deflection, such as the direction of
-/// gravity \[m per unit\]; `None` for all other numbers.
-fn deflection_slope(
+/// Derivative of a sample's position with respect to a number that does not act through the geometry, such as the direction
+/// of gravity \[m per unit\]; `None` for all other numbers.
+fn slope_beyond_geometry(
     here: &Fitted,
     from_level: &Rotation3<f64>,
     sample: &Sample,
@@ -86,9 +87,10 @@ fn deflection_slope(
             Some(from_level * (here.leaning(sample, c) + sample.deflection.known_slopes_m[c]))
         }
         Number::Tolerance(k) | Number::Effect(k) => Some(from_level * sample.nominal_m[k]),
+        Number::Drift(c) => Some(Vector3::ith(c, sample.part)),
         _ => None,
     };
-    debug_assert_eq!(by.is_some(), number.acts_through_deflection(), "{number:?}");
+    debug_assert_eq!(by.is_some(), number.acts_beyond_geometry(), "{number:?}");
     by
 }
 
@@ -140,8 +142,8 @@ struct EightRows<'a> {
     from_level: Rotation3<f64>,
     /// For each arm the derivatives with respect to the numbers.
     slopes: Vec<Vec<Slope>>,
-    /// Indices of those numbers that act through the deflection.
-    deflecting: Vec<usize>,
+    /// Indices of those numbers that do not act through the geometry.
+    beyond_geometry: Vec<usize>,
 }
 
 impl<'a> EightRows<'a> {
@@ -153,7 +155,7 @@ impl<'a> EightRows<'a> {
             from_level: here.geometry.level_to_instrument(),
             slopes: (0..here.geometry.arms()).map(|arm| placer.prepare(arm, numbers)).collect(),
             placer,
-            deflecting: (0..numbers.len()).filter(|&j| numbers[j].acts_through_deflection()).collect(),
+            beyond_geometry: (0..numbers.len()).filter(|&j| numbers[j].acts_beyond_geometry()).collect(),
         }
     }
 
@@ -174,18 +176,18 @@ impl<'a> EightRows<'a> {
         self.placer.write_slopes(&asked, slopes, &scales, out, HEIGHT);
         for (lane, (sample, _)) in own.iter().enumerate() {
             let scales = Vector3::from(scales.map(|own| own[lane]));
-            self.put_deflection(sample, &scales, first + lane, products);
+            self.put_beyond_geometry(sample, &scales, first + lane, products);
         }
     }
 
-    /// Stores the derivatives of one sample that act through its deflection: with respect to some numbers, and to all
+    /// Stores the derivatives of one sample that do not follow from the geometry: with respect to some numbers, and to all
     /// compliances.
-    fn put_deflection(&self, sample: &Sample, scales: &Vector3<f64>, k: usize, products: &mut Products) {
+    fn put_beyond_geometry(&self, sample: &Sample, scales: &Vector3<f64>, k: usize, products: &mut Products) {
         let mut store = |j: usize, by: Vector3<f64>| {
             products.rows.fixed_view_mut::<3, 1>(3 * k, j).copy_from(&by.component_mul(scales));
         };
-        for &j in &self.deflecting {
-            let by = deflection_slope(self.here, &self.from_level, sample, &self.numbers[j]);
+        for &j in &self.beyond_geometry {
+            let by = slope_beyond_geometry(self.here, &self.from_level, sample, &self.numbers[j]);
             by.into_iter().for_each(|by| store(j, by));
         }
         let mut j = self.numbers.len();
@@ -275,8 +277,66 @@ impl Products {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arm::file::read_arm_document;
+    use crate::catalog::Catalogs;
+    use crate::input::json::Document;
+    use crate::reconcile::positions::fitted::misses;
+    use crate::reconcile::positions::kinematics::{Geometry, Pose, testing::ARM};
+    use crate::reconcile::positions::loads::Deflection;
+    use crate::reconcile::positions::tree::Tree;
+    use crate::reconcile::readings::campaign::{Campaign, read_statement};
     use rand_xoshiro::Xoshiro256PlusPlus;
     use rand_xoshiro::rand_core::{Rng, SeedableRng};
+    use std::sync::Arc;
+
+    /// Eleven samples of the arm of the tests, each in a pose of its own.
+    fn eleven() -> (Geometry, Vec<Sample>) {
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let file = folder.path().join("campaign.json");
+        std::fs::write(&file, "{}").expect("written");
+        let statement = read_statement(&file).expect("sound");
+        let arm =
+            read_arm_document(Document::parse("a", ARM).expect("JSON"), &Catalogs::default()).expect("sound");
+        let campaign = Campaign::of_positions(&statement, &[&arm], Vec::new()).expect("one trunk");
+        let sample = |k: usize| Sample {
+            pose: Arc::new(Pose::new(vec![0.3 * k as f64 - 1.0, 0.9 - 0.2 * k as f64])),
+            arm: 0,
+            point: 0,
+            station: 0,
+            part: 0.1 * k as f64,
+            index: k,
+            group: k,
+            measured_m: Vector3::new(0.1, 0.2, 0.3) * k as f64,
+            precision: Vector3::new(1.0, 0.5, 1.0),
+            deflection: Arc::new(Deflection::known(Vector3::new(0.0, 0.0, -1e-3 * k as f64))),
+            nominal_m: Vec::new(),
+            second_order_m: Vector3::zeros(),
+        };
+        (Geometry::nominal(&Tree::new(&campaign), 1), (0..11).map(sample).collect())
+    }
+
+    #[test]
+    fn equations_of_eight_samples_at_a_time_have_the_bits_of_each_alone() {
+        let (mut geometry, samples) = eleven();
+        let drift = (0..3).map(Number::Drift);
+        let numbers: Vec<Number> = (0..3).map(Number::BaseRotation).chain(drift.clone()).collect();
+        geometry.step(&numbers, &[0.2, -0.1, 0.3, 0.04, 0.05, 0.06]);
+        let mut here = Fitted::rigid(geometry, 0.01);
+        here.moved = vec![0.1; numbers.len()];
+        let samples: Vec<&Sample> = samples.iter().collect();
+        let drifted = misses(&samples, &here);
+        let [alone, eight] = [
+            normal(&samples, &numbers, &here, &mut |_, _, _| {}),
+            normal_of_fit(&samples, &drifted, &numbers, &here),
+        ];
+        assert_eq!((&alone.curvature, &alone.gradient), (&eight.curvature, &eight.gradient));
+        // without the drift each row is off by its part of it
+        here.geometry.step(&drift.collect::<Vec<_>>(), &[-0.04, -0.05, -0.06]);
+        for (k, (with, without)) in drifted.iter().zip(misses(&samples, &here)).enumerate() {
+            let moved_m = Vector3::new(0.04, 0.025, 0.06) * (0.1 * k as f64);
+            assert!((without.scaled_m - with.scaled_m - moved_m).norm() < 1e-15, "{k}");
+        }
+    }
 
     #[test]
     fn sums_of_blocks_are_the_products_of_all_rows_at_once() {

@@ -7,6 +7,8 @@ use super::fit::{fit, ln_likelihood, scale};
 use super::fitted::{Fitted, Miss, Sample, readings};
 use super::normal::Factor;
 use super::rows::{Further, normal};
+use super::sessions::telling_part;
+use super::shape::Shape;
 use super::structure::squares;
 use crate::arm::effect::kind::ElasticRotation;
 use crate::reconcile::readings::campaign::Campaign;
@@ -30,7 +32,11 @@ impl Positions {
     /// whether an effect was added.
     pub(crate) fn add(&mut self, campaign: &Campaign, class: ElasticRotation) -> bool {
         let base = &self.fitted;
-        let springs = self.best_additions(base, |c| self.candidates[c].rotation == class).into_iter();
+        let is_of_class = |c: usize| {
+            let candidate = &self.candidates[c];
+            candidate.rotation == class && candidate.shape.waves().is_none()
+        };
+        let springs = self.best_additions(base, is_of_class).into_iter();
         let springs = springs.map(|(c, f)| {
             let gain =
                 f.ln_likelihood - self.prices(&f.effects) - (base.ln_likelihood - self.prices(&base.effects));
@@ -60,9 +66,10 @@ impl Positions {
     /// model was replaced.
     pub(crate) fn take_if_confirmed(&mut self, campaign: &Campaign, mut next: Self, added: String) -> bool {
         next.settle(campaign);
-        if next.score() <= self.score() {
+        if next.score() - self.score() <= self.untelling_rise(&next) {
             return false;
         }
+        next.refine_thresholds();
         let dropped = |e: &&usize| !next.fitted.effects.contains(e);
         let mut dropped: Vec<String> =
             self.fitted.effects.iter().filter(dropped).map(|e| self.label(*e)).collect();
@@ -74,6 +81,20 @@ impl Positions {
             *self = next;
         }
         confirmed
+    }
+
+    /// The part of the rise of the logarithm of the likelihood from this model to `next` that tells nothing: with few readings
+    /// left over, the likelihood rises by chance with every further number. Only the first effect is asked for so much, since
+    /// it decides whether anything is missing at all.
+    fn untelling_rise(&self, next: &Self) -> f64 {
+        if !self.fitted.effects.is_empty() || !self.transmissions.is_empty() {
+            return 0.0;
+        }
+        let count =
+            |model: &Self| model.numbers.len() + model.fitted.compliances.iter().map(Vec::len).sum::<usize>();
+        let new = count(next).saturating_sub(count(self));
+        let telling = telling_part(&next.fitted, &next.numbers, &next.samples, new);
+        (1.0 - telling) * (next.fitted.ln_likelihood - self.fitted.ln_likelihood).max(0.0)
     }
 
     fn held_out_ln_likelihood(&self) -> f64 {
@@ -129,7 +150,7 @@ impl Positions {
         is_held || numbers.into_iter().all(is_small)
     }
 
-    fn dependence_label(&self, k: usize) -> String {
+    pub(super) fn dependence_label(&self, k: usize) -> String {
         self.dependences[k].effect().map_or_else(String::new, |(kind, at)| format!("{}@{at}", kind.name))
     }
 
@@ -146,31 +167,30 @@ impl Positions {
             - self.prices(&self.fitted.effects)
             - dependent
             - uneven
+            - if self.drifts() { self.drift_price() } else { 0.0 }
             - self.sessions_price()
     }
 
     /// Sum of the prices of several candidates \[ln of the likelihood\].
-    fn prices(&self, effects: &[usize]) -> f64 {
+    pub(super) fn prices(&self, effects: &[usize]) -> f64 {
         effects.iter().map(|effect| self.price_of(*effect)).sum()
     }
 
     /// Price of one candidate \[ln of the likelihood\]: the rise of the logarithm of the likelihood that it must
     /// bring to stay in the model.
     fn price_of(&self, candidate: usize) -> f64 {
-        let candidate = &self.candidates[candidate];
-        // the torque scale of play was chosen too
-        let numbers = candidate.count() + usize::from(candidate.play_nm.is_some());
-        self.price(numbers, self.springs().max(1))
+        // a torque scale or preload was chosen too
+        self.price(self.candidates[candidate].numbers(), self.springs().max(1))
     }
 
     /// Number of places where a spring may be named.
     pub(super) fn springs(&self) -> usize {
         let springs = self.candidates.iter().zip(&self.considered);
-        springs.filter(|(c, considered)| **considered && c.play_nm.is_none()).count()
+        springs.filter(|(c, considered)| **considered && c.shape == Shape::Spring).count()
     }
 
     /// Whether the candidates with the indices `a` and `b` are the same effect at the same place. They then differ in
-    /// the torque scale of play only.
+    /// torque scale, preload or waves only.
     fn is_same(&self, a: usize, b: usize) -> bool {
         let [a, b] = [a, b].map(|c| &self.candidates[c]);
         (a.effect, &a.at) == (b.effect, &b.at)
@@ -192,19 +212,27 @@ impl Positions {
         allowed: impl Fn(usize) -> bool,
     ) -> Vec<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
-        let mut gains = self.gains(base);
         let is_in = |c: usize| base.effects.iter().any(|e| self.is_same(*e, c));
-        let is_open = |c: usize| self.considered[c] && allowed(c) && !is_in(c);
-        gains.retain(|(c, gain)| is_open(*c) && *gain > 0.0);
-        gains.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        // of all torque scales of play in one joint only the best is kept
+        let is_open = |c: &usize| self.considered[*c] && allowed(*c) && !is_in(*c) && self.can_vary(base, *c);
+        let open: Vec<usize> = (0..self.candidates.len()).filter(is_open).collect();
+        let mut gains = self.gains(base, open);
+        gains.retain(|(_, gain)| *gain > 0.0);
+        let worth = |(c, gain): &(usize, f64)| gain - self.price_of(*c);
+        gains.sort_by(|a, b| worth(b).total_cmp(&worth(a)).then(a.0.cmp(&b.0)));
+        // of all torque scales, preloads or waves of one effect only the best is kept
         let mut seen: Vec<usize> = Vec::new();
         gains.retain(|(c, _)| {
             let is_first = !seen.iter().any(|s| self.is_same(*s, *c));
             seen.push(*c);
             is_first
         });
-        gains.truncate(FULL_FITS);
+        // what is no spring must not displace a spring
+        let (mut springs, mut others): (Vec<_>, Vec<_>) =
+            gains.into_iter().partition(|(c, _)| !matches!(self.candidates[*c].shape, Shape::Lift(_)));
+        springs.truncate(FULL_FITS);
+        others.truncate(1);
+        springs.append(&mut others);
+        let gains = springs;
         let models = gains.into_iter().flat_map(|(c, _)| self.with(base, c).into_iter().map(move |m| (c, m)));
         let models: Vec<(usize, Vec<usize>)> = models.collect();
         models.into_par_iter().map(|(c, effects)| (c, fit(&all, &self.numbers, &effects, base))).collect()
@@ -221,19 +249,22 @@ impl Positions {
         if instead.len() < both.len() { vec![both, instead] } else { vec![both] }
     }
 
-    /// For each candidate, its index and the rise of the logarithm of the likelihood that the linearized model `base`
-    /// expects from it.
-    fn gains(&self, base: &Fitted) -> Vec<(usize, f64)> {
+    /// For each of the candidates `open`, its index and the rise of the logarithm of the likelihood that the linearized
+    /// model `base` expects from it.
+    fn gains(&self, base: &Fitted, open: Vec<usize>) -> Vec<(usize, f64)> {
+        if open.is_empty() {
+            return Vec::new();
+        }
         let from_level = base.geometry.level_to_instrument();
-        let counts: Vec<usize> = self.candidates.iter().map(|c| c.count()).collect();
+        let counts: Vec<usize> = open.iter().map(|c| self.candidates[*c].count()).collect();
         let gains = self.linear_gains(base, &counts, false, &mut |sample, _, columns| {
-            for candidate in 0..self.candidates.len() {
+            for &candidate in &open {
                 sample.deflection.per_compliance(candidate, &base.geometry.gravity, |by| {
                     columns.push(from_level * by);
                 });
             }
         });
-        gains.into_iter().enumerate().collect()
+        open.iter().copied().zip(gains).collect()
     }
 
     /// Rise of the logarithm of the likelihood for each block of columns that is added to the linearized model `base`.
@@ -283,8 +314,7 @@ impl Positions {
     /// well in its place. `without` is the fit without this effect. Each competitor comes with its fit.
     pub(crate) fn competitors(&self, position: usize, without: &Fitted) -> Vec<(usize, Fitted)> {
         let own = self.fitted.effects[position];
-        let numbers =
-            |c: usize| self.candidates[c].count() + usize::from(self.candidates[c].play_nm.is_some());
+        let numbers = |c: usize| self.candidates[c].numbers();
         let is_other = |c: usize| !self.is_same(c, own) && numbers(c) <= numbers(own);
         let mut tried = self.best_additions(without, is_other);
         tried.retain(|(_, f)| f.ln_likelihood > self.fitted.ln_likelihood - TIE);

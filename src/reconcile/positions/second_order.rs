@@ -8,7 +8,9 @@
 
 use super::analysis::Positions;
 use super::loads::{CompliantPlace, Loads};
+use super::shape::Shape;
 use super::springs::frame_matrix;
+use super::waves::as_parameters;
 use crate::arm::effect::entry::Effect;
 use crate::arm::effect::kind::ElasticRotation;
 use crate::arm::effect::subject::Subject;
@@ -20,8 +22,11 @@ impl Positions {
     pub(super) fn hang(&mut self, campaign: &Campaign) {
         let fitted = &self.fitted;
         let named = fitted.effects.iter().zip(&fitted.compliances);
-        let effects: Vec<Effect> =
-            named.filter_map(|(&c, compliances)| self.candidates[c].as_effect(compliances)).collect();
+        let as_effect = |(&c, own): (&usize, &Vec<f64>)| {
+            let candidate = &self.candidates[c];
+            candidate.as_effect(own, self.mean_rad_per_nm(fitted, &candidate.at).unwrap_or_default())
+        };
+        let effects: Vec<Effect> = named.filter_map(as_effect).collect();
         let change = |subject: &mut Subject| {
             let dependent = self.dependences.iter().zip(&fitted.geometry.dependences);
             dependent.for_each(|(dependence, x)| dependence.change(*x, subject));
@@ -35,15 +40,22 @@ impl Positions {
 
 impl CompliantPlace {
     /// The candidate as an effect of an arm, with the compliances `compliances` \[rad/(N m)\], or the half width of its
-    /// play \[rad\]. `None` if it does not deflect.
-    fn as_effect(&self, compliances: &[f64]) -> Option<Effect> {
+    /// play \[rad\]. `mean` is the compliance of its joint, the mean over all angles \[rad/(N m)\]. `None` if it does not
+    /// deflect.
+    fn as_effect(&self, compliances: &[f64], mean: f64) -> Option<Effect> {
         let first = *compliances.first()?;
         let list = |name: &str, values: Vec<f64>| (name.to_string(), values);
-        let parameters = match (self.play_nm, self.rotation) {
-            (Some(torque_nm), _) => {
+        let parameters = match (self.shape, self.rotation) {
+            (Shape::Play(torque_nm), _) => {
                 vec![list("half_width_rad", vec![first]), list("torque_nm", vec![torque_nm])]
             }
-            (None, ElasticRotation::Frame) => {
+            (Shape::Lift(preload_nm), _) if first > 0.0 => {
+                vec![list("stiffness_nm_per_rad", vec![1.0 / first]), list("preload_nm", vec![preload_nm])]
+            }
+            (Shape::Waves(waves), _) if mean > 0.0 && compliances.iter().any(|c| *c != 0.0) => {
+                as_parameters(waves, compliances, mean)
+            }
+            (Shape::Spring, ElasticRotation::Frame) => {
                 let matrix = frame_matrix(compliances);
                 let entries = |of: [(usize, usize); 3]| of.map(|at| matrix[at]).to_vec();
                 vec![
@@ -51,8 +63,8 @@ impl CompliantPlace {
                     list("coupling_rad_per_nm", entries([(0, 1), (0, 2), (1, 2)])),
                 ]
             }
-            (None, _) if first > 0.0 => vec![list("stiffness_nm_per_rad", vec![1.0 / first])],
-            (None, _) => return None,
+            (Shape::Spring, _) if first > 0.0 => vec![list("stiffness_nm_per_rad", vec![1.0 / first])],
+            _ => return None,
         };
         Some(Effect { effect: self.effect.into(), at: self.at.clone(), parameters, source: None })
     }

@@ -162,7 +162,7 @@ impl Positions {
         let fitted = fit(&all, &numbers, &start.effects, &start);
         let price = self.session_price(new.numbers().len(), kinds);
         let rise = fitted.ln_likelihood - self.fitted.ln_likelihood;
-        let gain = telling_part(&fitted, &numbers, &samples, new) * rise - price;
+        let gain = telling_part(&fitted, &numbers, &samples, new.numbers().len()) * rise - price;
         Split { samples, numbers, fitted, moved, new, first, gain }
     }
 
@@ -183,16 +183,16 @@ impl Positions {
     }
 }
 
-/// The part of a rise of the logarithm of the likelihood that tells something, if the session `new` of the model `fitted`
+/// The part of a rise of the logarithm of the likelihood that tells something, if `new` further numbers of the model `fitted`
 /// caused the rise: `(n - p + k/2 - 1)/n` (Bartlett), at least 0. Here `n` is the number of readings, `p` how many
-/// numbers the readings determine, and `k` how many of them the session has.
+/// numbers the readings determine, and `k` how many of them are new.
 ///
 /// The scale of the errors is fitted. Where few readings are left over, it falls with every further number that is free,
 /// and the likelihood rises by more than half of chi-squared.
-pub(super) fn telling_part(fitted: &Fitted, numbers: &[Number], samples: &[Sample], new: Moved) -> f64 {
+pub(super) fn telling_part(fitted: &Fitted, numbers: &[Number], samples: &[Sample], new: usize) -> f64 {
     let count = readings(samples) as f64;
     let left = count - determined(fitted, numbers);
-    ((left + 0.5 * new.numbers().len() as f64 - 1.0) / count).max(0.0)
+    ((left + 0.5 * new as f64 - 1.0) / count).max(0.0)
 }
 
 /// How many numbers of the model `fitted` the readings determine. A number whose prior determines it hardly counts.

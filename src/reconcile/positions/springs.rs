@@ -295,6 +295,8 @@ impl Parabola<'_> {
 /// positive semidefinite.
 fn nearest_spring(compliances: &[f64]) -> Vec<f64> {
     match compliances.len() {
+        // the waves of a stiffness may have either sign
+        2 | 4 => compliances.to_vec(),
         1 => vec![compliances[0].max(0.0)],
         5 => nearest_base(compliances),
         _ => nearest_frame(compliances),

@@ -9,6 +9,7 @@ use super::analysis::Positions;
 use super::fitted::{Sample, readings};
 use super::normal::Factor;
 use super::rows::normal;
+use super::shape::Shape;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::kind::ElasticRotation;
 use crate::reconcile::fit::stats::{ln_chi_squared_tail, median};
@@ -153,7 +154,7 @@ impl<'a> Asker<'a> {
     fn new(found: &'a Positions, campaign: &Campaign) -> Self {
         let joint = |c: &usize| {
             let candidate = &found.candidates[*c];
-            candidate.rotation == ElasticRotation::AboutAxis && candidate.play_nm.is_none()
+            candidate.rotation == ElasticRotation::AboutAxis && candidate.shape == Shape::Spring
         };
         let torque =
             |c: usize| found.samples.iter().map(|s| s.deflection.lever(c).1.abs()).fold(1e-9, f64::max);

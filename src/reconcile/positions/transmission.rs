@@ -20,17 +20,21 @@ pub(crate) fn numbers(joint: usize) -> impl Iterator<Item = Number> {
 }
 
 impl Positions {
-    /// Adds the transmission error of the joint that raises the likelihood most, if the rise is worth its price and
-    /// held-out poses confirm it. Returns whether one was added.
-    pub(crate) fn add_transmission(&mut self, campaign: &Campaign) -> bool {
+    /// The driven joint whose transmission error raises the likelihood most, if the rise is worth its price: what it is
+    /// worth beyond its price \[ln of the likelihood\], and its index and fit.
+    pub(super) fn best_transmission(&self, campaign: &Campaign) -> Option<(f64, (usize, Fitted))> {
         if !campaign.statement.considers(EFFECT) {
-            return false;
+            return None;
         }
-        let tried = self.best_transmissions();
         let price = self.transmission_price();
-        let worth = tried.into_iter().filter(|(_, f)| f.ln_likelihood > self.fitted.ln_likelihood + price);
-        let best = worth.max_by(|a, b| a.1.ln_likelihood.total_cmp(&b.1.ln_likelihood));
-        let Some((joint, fitted)) = best else { return false };
+        let tried = self.best_transmissions().into_iter();
+        let gains = tried.map(|(j, f)| (f.ln_likelihood - self.fitted.ln_likelihood - price, (j, f)));
+        gains.filter(|(gain, _)| *gain > 0.0).max_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// Adds the transmission error of the driven joint `joint`, as it was fitted, if held-out poses confirm it. Returns
+    /// whether it was added.
+    pub(super) fn take_transmission(&mut self, campaign: &Campaign, joint: usize, fitted: Fitted) -> bool {
         let mut next = Self { fitted, ..self.clone() };
         next.numbers.extend(numbers(joint));
         next.transmissions.push(joint);
@@ -45,7 +49,7 @@ impl Positions {
 
     /// Fits in which one more joint has a transmission error, each with the index of this joint. All joints are
     /// screened with the linearized model, and the most promising are fitted in full.
-    fn best_transmissions(&self) -> Vec<(usize, Fitted)> {
+    pub(super) fn best_transmissions(&self) -> Vec<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let open: Vec<usize> =
             (0..self.tree.driven.len()).filter(|j| !self.transmissions.contains(j)).collect();

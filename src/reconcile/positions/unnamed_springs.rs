@@ -12,6 +12,7 @@ use super::fitted::Sample;
 use super::loads::CompliantPlace;
 use super::normal::Factor;
 use super::rows::normal;
+use super::shape::Shape;
 use crate::arm::effect::kind::ElasticRotation;
 use crate::arm::structure::Piece;
 use crate::reconcile::readings::declared::BASE;
@@ -47,7 +48,9 @@ impl Positions {
         };
         let is_spring = |c: &usize| {
             let candidate = &self.candidates[*c];
-            self.considered[*c] && candidate.play_nm.is_none() && candidate.rotation != ElasticRotation::Frame
+            self.considered[*c]
+                && candidate.shape == Shape::Spring
+                && candidate.rotation != ElasticRotation::Frame
         };
         (0..self.candidates.len()).filter(is_spring).filter(|c| !is_named(*c)).collect()
     }
@@ -56,7 +59,7 @@ impl Positions {
     /// compliance; `None` if there are none.
     fn stiffest_named(&self) -> Option<f64> {
         let named = self.fitted.effects.iter().zip(&self.fitted.compliances);
-        let springs = named.filter(|(e, own)| self.candidates[**e].play_nm.is_none() && own.len() == 1);
+        let springs = named.filter(|(e, own)| self.candidates[**e].shape == Shape::Spring && own.len() == 1);
         springs.map(|(_, own)| own[0]).filter(|c| *c > 0.0).reduce(f64::min)
     }
 

@@ -1,0 +1,190 @@
+//! The torque scale of a joint's play and the preload of a base that lifts off: the best value, and the intervals of it and of
+//! the half width or stiffness that depends on it.
+//!
+//! A few thresholds are tried in the search for effects. The best is refined, since a threshold that is off changes the half
+//! width with it and leaves a structure in the errors. The intervals are those of the profile likelihood: at each threshold `s`
+//! the likelihood falls from its best value `L(s)` like a parabola in the half width `h`, so the interval of `h` is the union
+//! of `h(s) ± σ(s) √(2 (1.92 - (L_max - L(s))))` over all `s`.
+
+use super::analysis::Positions;
+use super::fitted::Sample;
+use crate::reconcile::model::estimate::Estimate;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Fall of the logarithm of the likelihood at the ends of a 95 % interval: half of the 95 % quantile of chi-squared
+/// with one degree of freedom.
+const FALL: f64 = 1.92;
+/// Number of steps of the golden section search for the best threshold. They leave 0.3 % of it open.
+const STEPS: usize = 13;
+/// Part of an interval that the golden section leaves in each step.
+const GOLDEN: f64 = 0.618_033_988_749_895;
+/// A threshold is sought between the best of those that were tried divided by this factor, and multiplied by it: the ratio
+/// of neighbours that were tried.
+const BRACKET: f64 = 2.7;
+/// Ratios of thresholds to the best one at which the likelihood is computed for the intervals.
+const RATIOS: [f64; 8] = [1.05, 1.12, 1.25, 1.5, 2.0, 3.0, 6.0, 20.0];
+/// Parts of the way, in the logarithm of the threshold, from the best one to each end of its interval at which the size is
+/// computed for its own interval.
+const PARTS: [f64; 4] = [0.3, 0.6, 0.85, 0.97];
+/// A threshold above this multiple of the largest torque is that of a spring.
+const MOST: f64 = 3.0;
+
+/// A model with another threshold.
+struct Tried {
+    threshold_nm: f64,
+    size: f64,
+    deviation: f64,
+    /// By how much the logarithm of the likelihood is lower than with the best threshold. It is divided by the factor by which
+    /// heavy tails and compliances without a name increase the variance of the size.
+    fall: f64,
+}
+
+impl Tried {
+    /// Half of the width of the interval of the size at this threshold; `None` if no size is likely enough.
+    fn reach(&self) -> Option<f64> {
+        (self.fall < FALL).then(|| self.deviation * (2.0 * (FALL - self.fall.max(0.0))).sqrt())
+    }
+}
+
+impl Positions {
+    /// Replaces the thresholds of those effects of the model that have one by better ones, and fits the model again. Every
+    /// further effect changes which threshold is the best.
+    pub(super) fn refine_thresholds(&mut self) {
+        for position in 0..self.fitted.effects.len() {
+            let Some(from_nm) = self.threshold_nm(position) else { continue };
+            let most_nm = MOST * self.largest_torque_nm(position);
+            let [low, high] = [from_nm / BRACKET, (from_nm * BRACKET).min(most_nm)].map(libm::log);
+            let best = self.golden_section(position, low, high);
+            if best.fitted.ln_likelihood > self.fitted.ln_likelihood {
+                *self = best;
+            }
+        }
+    }
+
+    /// The model with the best threshold of effect number `position`, by the search of the golden section between two logarithms
+    /// of the threshold \[ln(N m)\].
+    fn golden_section(&self, position: usize, mut low: f64, mut high: f64) -> Self {
+        let at = |ln: f64| (ln, self.with_threshold(position, libm::exp(ln)));
+        let is_better = |a: &Self, b: &Self| a.fitted.ln_likelihood > b.fitted.ln_likelihood;
+        let mut left = at(high - GOLDEN * (high - low));
+        let mut right = at(low + GOLDEN * (high - low));
+        for _ in 0..STEPS {
+            if is_better(&left.1, &right.1) {
+                high = right.0;
+                right = left;
+                left = at(high - GOLDEN * (high - low));
+            } else {
+                low = left.0;
+                left = right;
+                right = at(low + GOLDEN * (high - low));
+            }
+        }
+        if is_better(&left.1, &right.1) { left.1 } else { right.1 }
+    }
+
+    /// Torque scale or preload of effect number `position` \[N m\]; `None` if it has none.
+    fn threshold_nm(&self, position: usize) -> Option<f64> {
+        self.candidates[self.fitted.effects[position]].shape.threshold_nm()
+    }
+
+    /// The largest torque on the place of effect number `position` in the campaign \[N m\].
+    fn largest_torque_nm(&self, position: usize) -> f64 {
+        let own = self.fitted.effects[position];
+        self.samples.iter().map(|s| s.deflection.torque_nm(own)).fold(0.0, f64::max)
+    }
+
+    /// The model with another torque scale or preload of effect number `position` \[N m\], fitted again.
+    fn with_threshold(&self, position: usize, nm: f64) -> Self {
+        let mut out = self.clone();
+        let own = self.fitted.effects[position];
+        out.candidates[own].shape = out.candidates[own].shape.with_threshold(nm);
+        let changed = |sample: &mut Sample| {
+            sample.deflection = Arc::new(sample.deflection.with_threshold(own, nm));
+        };
+        out.samples.iter_mut().for_each(changed);
+        out.refit();
+        out
+    }
+
+    /// The size (half width \[rad\] or compliance \[rad/(N m)\]) and the threshold \[N m\] of effect number `position`, with
+    /// their 95 % intervals; `None` if the effect has no threshold. An end is `None` if no threshold on this side lowers the
+    /// likelihood enough.
+    pub(super) fn profile(&self, position: usize) -> Option<[Estimate; 2]> {
+        let best_nm = self.threshold_nm(position)?;
+        let (size, deviation) = (self.fitted.compliances[position][0], self.fitted.deviations[position][0]);
+        let most_nm = MOST * self.largest_torque_nm(position);
+        let ratios = RATIOS.iter().flat_map(|ratio| [*ratio, 1.0 / ratio]);
+        let far_nm: Vec<f64> = ratios.map(|ratio| ratio * best_nm).filter(|nm| *nm < most_nm).collect();
+        let fitted_deviation = self.with_threshold(position, best_nm).fitted.deviations[position][0];
+        // compliances without a name widen the interval at every threshold by the same factor
+        let widened = (deviation / fitted_deviation).max(1.0);
+        let mut tried = vec![Tried { threshold_nm: best_nm, size, deviation, fall: 0.0 }];
+        tried.extend(self.tried(position, far_nm, widened));
+        let Estimate { low, high, .. } = threshold(&mut tried, best_nm);
+        let ends_nm = [low, high].into_iter().flatten();
+        let near = |end_nm: f64| PARTS.map(|part| best_nm * libm::pow(end_nm / best_nm, part));
+        tried.extend(self.tried(position, ends_nm.flat_map(near).collect(), widened));
+        let ends = tried.iter().filter_map(|t| Some((t.size - t.reach()?, t.size + t.reach()?)));
+        let (low, high) = ends.fold((size, size), |(low, high), (a, b)| (low.min(a), high.max(b)));
+        let size = Estimate { value: size, low: Some(low), high: Some(high).filter(|h| h.is_finite()) };
+        Some([size, threshold(&mut tried, best_nm)])
+    }
+
+    /// The model with each of the thresholds `thresholds_nm` of effect number `position`. Compliances without a name widen the
+    /// interval of its size by the factor `widened`.
+    fn tried(&self, position: usize, thresholds_nm: Vec<f64>, widened: f64) -> Vec<Tried> {
+        // what widens the interval of the size makes the likelihood fall more slowly along the thresholds
+        let flatter = (widened * self.fitted.robust_factor).max(1.0).powi(2);
+        let tried = thresholds_nm.into_par_iter().map(|threshold_nm| {
+            let other = self.with_threshold(position, threshold_nm).fitted;
+            Tried {
+                threshold_nm,
+                size: other.compliances[position][0],
+                deviation: widened * other.deviations[position][0],
+                fall: (self.fitted.ln_likelihood - other.ln_likelihood) / flatter,
+            }
+        });
+        tried.collect()
+    }
+}
+
+/// The threshold with its interval \[N m\]: between a threshold that is likely enough and one that is not, the root of the fall
+/// of the likelihood is taken as linear in the logarithm of the threshold (the likelihood falls like a parabola). Sorts `tried`
+/// by the threshold.
+fn threshold(tried: &mut [Tried], best_nm: f64) -> Estimate {
+    tried.sort_by(|a, b| a.threshold_nm.total_cmp(&b.threshold_nm));
+    let root = |fall: f64| fall.max(0.0).sqrt();
+    let crossing = |inside: &Tried, outside: &Tried| {
+        let part = (root(FALL) - root(inside.fall)) / (root(outside.fall) - root(inside.fall));
+        inside.threshold_nm * libm::pow(outside.threshold_nm / inside.threshold_nm, part)
+    };
+    let is_in = |t: &Tried| t.fall < FALL;
+    let crosses = |pair: &[Tried]| is_in(&pair[0]) != is_in(&pair[1]);
+    let low =
+        tried.windows(2).find(|pair| pair[1].threshold_nm <= best_nm && !is_in(&pair[0]) && crosses(pair));
+    let high =
+        tried.windows(2).rfind(|pair| pair[0].threshold_nm >= best_nm && !is_in(&pair[1]) && crosses(pair));
+    Estimate {
+        value: best_nm,
+        low: low.map(|pair| crossing(&pair[1], &pair[0])),
+        high: high.map(|pair| crossing(&pair[0], &pair[1])),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_end_lies_where_the_likelihood_has_fallen_enough() {
+        let at = |threshold_nm: f64, fall: f64| Tried { threshold_nm, size: 1.0, deviation: 0.1, fall };
+        let mut tried = [at(1.0, 7.68), at(10.0, 0.0), at(100.0, 0.96), at(1000.0, 1.0)];
+        let found = threshold(&mut tried, 10.0);
+        // a parabola has a quarter of its fall half of the way
+        assert!((found.low.expect("bounded") - 10.0 * libm::pow(0.1, 0.5)).abs() < 1e-12);
+        assert_eq!((found.value, found.high), (10.0, None));
+        assert!((at(1.0, 0.0).reach().expect("likely") - 0.196).abs() < 1e-3);
+        assert_eq!(at(1.0, 2.0).reach(), None);
+    }
+}
