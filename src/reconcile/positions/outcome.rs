@@ -62,13 +62,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     reasons.extend(found.remarks(campaign, &adjusted));
     let next_tests = found.next_tests(campaign, verdict, &lack_of_fit, &competitors);
     let helps = verdict == Verdict::Unexplained && found.helps(&findings);
-    if helps {
-        let [before, after] = found.before_and_after();
-        reasons.push(format!(
-            "{CORRECTED_FILE} has what predicts best, but not all that is missing: on poses held out of the fit the median error falls from {:.3} to {:.3} mm",
-            before.median_mm, after.median_mm
-        ));
-    }
+    reasons.extend(helps.then(|| found.help_words()));
     let drifts: Vec<Finding> = findings.iter().filter(|f| f.effect == drift::EFFECT).cloned().collect();
     let (shown, in_arm) = match verdict == Verdict::Explained || helps {
         true => (&found.fitted, findings.as_slice()),
@@ -76,13 +70,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         false => (&found.rigid, drifts.as_slice()),
     };
     let mut provenance = correct::provenance(campaign, verdict, found.calibrated(shown));
-    let corrected: Vec<Arm> = (0..campaign.arms().len())
-        .map(|i| {
-            let mut arm = found.corrected(campaign, i, shown, in_arm, &mut provenance);
-            found.adjust(shown, &mut arm);
-            arm
-        })
-        .collect();
+    let corrected = found.corrected_arms(campaign, shown, in_arm, &mut provenance);
     let (effects, suspects) = verdict.named_and_suspected(findings, Vec::new());
     let scale_mm = 1e3 * found.fitted.scale_m;
     let residuals = found.residuals(campaign);
@@ -115,6 +103,32 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
 }
 
 impl Positions {
+    /// What the corrected arm has, where its effects predict better and do not explain everything.
+    fn help_words(&self) -> String {
+        let [before, after] = self.before_and_after();
+        format!(
+            "{CORRECTED_FILE} has what predicts best, but not all that is missing: on poses held out of the fit the median error falls from {:.3} to {:.3} mm",
+            before.median_mm, after.median_mm
+        )
+    }
+
+    /// The arms of the campaign with what the fit `shown` calibrated, and with the effects `in_arm`. What was changed is
+    /// added to `provenance`.
+    fn corrected_arms(
+        &self,
+        campaign: &Campaign,
+        shown: &Fitted,
+        in_arm: &[Finding],
+        provenance: &mut Value,
+    ) -> Vec<Arm> {
+        let corrected = |i: usize| {
+            let mut arm = self.corrected(campaign, i, shown, in_arm, provenance);
+            self.adjust(shown, &mut arm);
+            arm
+        };
+        (0..campaign.arms().len()).map(corrected).collect()
+    }
+
     /// Findings for all effects of the model. For each compliance `without` has the fit without it, and `competitors` the
     /// candidates that would fit as well in its place.
     fn findings(
