@@ -244,6 +244,88 @@ fn an_industrial_robot_shows_a_shift_of_three_milliseconds_and_no_compliance_on_
     assert!(compliance.words.contains("times too soft"), "{}", compliance.words);
 }
 
+/// The record of a campaign with each row changed by `change`, which gets the number of the row and its cells; a row for which it
+/// is false is left out.
+fn rewrite(folder: &Path, change: impl Fn(usize, &mut [f64]) -> bool) {
+    let path = folder.join("record.csv");
+    let text = std::fs::read_to_string(&path).expect("text");
+    let mut lines = text.lines();
+    let mut out = vec![lines.next().expect("a head").to_string()];
+    for (row, line) in lines.enumerate() {
+        let mut cells: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
+        if change(row, &mut cells) {
+            out.push(cells.iter().map(f64::to_string).collect::<Vec<_>>().join(","));
+        }
+    }
+    std::fs::write(path, out.join("\n")).expect("written");
+}
+
+#[test]
+fn a_gap_in_time_does_not_hide_an_error_behind_noise() {
+    let joint = Joint { shift_s: 0.0, ..middling() };
+    let noise_rad = |has_gap: bool| {
+        let folder = campaign(&joint, &test(), Some(joint.stiffness_nm_per_rad), &mut Dice(51));
+        rewrite(folder.path(), |row, _| !(has_gap && (4000..4150).contains(&row)));
+        outcome(folder.path()).records[0].noise_rad
+    };
+    let (whole, with_gap) = (noise_rad(false), noise_rad(true));
+    assert!((with_gap / whole - 1.0).abs() < 0.05, "{with_gap} instead of {whole} rad");
+}
+
+#[test]
+fn an_encoder_that_counts_the_other_way_is_a_fault() {
+    let folder = campaign(&middling(), &test(), None, &mut Dice(52));
+    rewrite(folder.path(), |_, cells| {
+        cells[2] = -cells[2];
+        true
+    });
+    let faults = Campaign::read(folder.path(), &Catalogs::default()).expect_err("a fault").to_string();
+    assert!(faults.contains("j1_link_deg") && faults.contains("against the motor"), "{faults}");
+}
+
+#[test]
+fn an_encoder_of_one_turn_at_the_shaft_is_unwrapped() {
+    let joint = middling();
+    let folder = campaign(&joint, &test(), None, &mut Dice(53));
+    let whole = outcome(folder.path());
+    rewrite(folder.path(), |_, cells| {
+        cells[1] = (cells[1] * joint.ratio).rem_euclid(360.0);
+        true
+    });
+    let path = folder.path().join("record.csv");
+    let text = std::fs::read_to_string(&path).expect("text").replace("j1_motor_deg", "j1_motor_shaft_deg");
+    std::fs::write(&path, text).expect("written");
+    let wrapped = outcome(folder.path());
+    let of = |outcome: &Outcome| number(&outcome.records[0], "compliance").expect("a compliance").0;
+    assert!((of(&wrapped) / of(&whole) - 1.0).abs() < 1e-3, "{} and {}", of(&wrapped), of(&whole));
+}
+
+#[test]
+fn a_time_shift_does_not_explain_what_it_leaves() {
+    let joint = Joint { shift_s: 8e-3, ..middling() };
+    let folder = campaign(&joint, &test(), Some(joint.stiffness_nm_per_rad), &mut Dice(54));
+    // a wave of 1.2 mrad, nine times a turn of the output
+    rewrite(folder.path(), |_, cells| {
+        cells[2] += 1.2e-3f64.to_degrees() * libm::sin(9.3 * cells[1].to_radians());
+        true
+    });
+    let outcome = outcome(folder.path());
+    assert_eq!(outcome.verdict, Verdict::Unexplained, "{}", outcome.to_text());
+}
+
+#[test]
+fn a_torque_at_the_output_taken_for_one_at_the_shaft_is_not_explained_by_a_time_shift() {
+    let joint = middling();
+    let folder = campaign(&joint, &test(), Some(joint.stiffness_nm_per_rad), &mut Dice(55));
+    let path = folder.path().join("campaign.json");
+    let text = std::fs::read_to_string(&path).expect("text").replace("\"output\"", "\"shaft\"");
+    std::fs::write(&path, text).expect("written");
+    let outcome = outcome(folder.path());
+    let words = outcome.to_text().split_whitespace().collect::<Vec<_>>().join(" ");
+    assert_eq!(outcome.verdict, Verdict::Unexplained, "{words}");
+    assert!(words.contains("\"torque_at\": \"output\""), "{words}");
+}
+
 #[test]
 fn faults_of_a_record_are_listed_with_line_and_column() {
     let folder = tempfile::tempdir().expect("a folder");

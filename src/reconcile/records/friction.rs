@@ -14,7 +14,7 @@ use super::blocks::Fitted;
 use super::intervals::is_positive;
 use super::reading::Record;
 use super::signals::{JointRows, Sample};
-use super::smooth::{half_width, smooth};
+use super::smooth::{averaged, slope, smooth};
 use super::twist::CLEARLY;
 use crate::reconcile::model::estimate::Estimate;
 
@@ -160,16 +160,24 @@ fn motions(rows: &JointRows, records: &[Record]) -> Vec<Motion> {
     in_all
         .map(|name| {
             let signals = own.iter().filter_map(|r| Some((r, r.joints.iter().find(|j| j.joint == *name)?)));
-            let smoothed: Vec<_> = signals
-                .map(|(r, j)| smooth(&r.t_s, &j.motor_rad, half_width(&r.t_s, &j.motor_rad)))
+            let smoothed: Vec<[Vec<f64>; 3]> = signals
+                .enumerate()
+                .map(|(k, (r, j))| motion_of(&r.t_s, &j.motor_rad, rows.half(k)))
                 .collect();
             let at = |s: &Sample| {
-                let m = smoothed.get(s.record)?;
-                (!m.value[s.row].is_nan()).then(|| [m.value[s.row], m.slope[s.row], m.curvature[s.row]])
+                let m = smoothed.get(s.record)?.each_ref().map(|x| x[s.row]);
+                m.iter().all(|x| !x.is_nan()).then_some(m)
             };
             rows.samples.iter().map(at).collect()
         })
         .collect()
+}
+
+/// Angle \[rad\], speed \[rad/s\] and acceleration \[rad/s²\] of another joint, averaged with the window of this joint.
+fn motion_of(t_s: &[f64], motor_rad: &[f64], half: usize) -> [Vec<f64>; 3] {
+    let [angle_rad] = averaged(t_s, half, [motor_rad]);
+    let speed_rad_s = slope(t_s, &angle_rad);
+    [angle_rad, speed_rad_s, smooth(t_s, motor_rad, half).curvature]
 }
 
 /// Finds the friction of a joint from the balance of its torques. `shift_s` is the delay of the link's readings

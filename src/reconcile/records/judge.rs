@@ -122,6 +122,7 @@ impl<'a> Judged<'a> {
             range_rad: high - low,
             noise_rad: self.rows.noise_rad(),
             before_rad: self.model.steps.first().map_or(0.0, |s| s.1),
+            unshifted_rad: self.unshifted_rad(),
             after_rad: fitted.held_out_rms(),
             steps: steps.map(|(added, rad)| Step { added: added.clone(), held_out_rad: *rad }).collect(),
             trace: self.trace(),
@@ -129,6 +130,12 @@ impl<'a> Judged<'a> {
             undecided: self.undecided(),
             stated,
         }
+    }
+
+    /// Root mean square error of the twist on held-out blocks \[rad\] with an offset and, if it is in the model, the time shift.
+    fn unshifted_rad(&self) -> f64 {
+        let shift: Vec<Group> = self.model.groups.iter().copied().filter(|g| *g == Group::Shift).collect();
+        self.model.fit(&shift).map_or(0.0, |f| f.held_out_rms())
     }
 
     /// Lower and upper limit of the fraction of Coulomb friction that acts on the motor's side of the spring, from 0
@@ -178,12 +185,12 @@ impl<'a> Judged<'a> {
         // here
         let c = self.fitted().coefficient(self.model.places.torque());
         let Some(f) = self.friction.filter(|f| f.is_possible && is_positive(&f.viscous_nms_per_rad)) else {
-            let possible = self.friction.filter(|f| f.is_possible && self.compliance.state != State::Found);
+            let possible = self.friction.filter(|f| f.is_possible);
             let Some(f) = possible else { return (plain, String::new()) };
             let most = |e: &Estimate| e.low.unwrap_or(0.0).abs().max(e.high.unwrap_or(0.0).abs());
             let reach = most(&c) * most(&f.viscous_nms_per_rad).min(f.most_viscous_nms_per_rad);
             let words = format!(
-                "viscous friction may count for up to {:.2} ms of it: neither it nor the compliance is determined",
+                "viscous friction, which is not determined, may count for up to {:.2} ms of it",
                 1e3 * reach
             );
             return (widened(plain, half(&plain) + reach), words);
@@ -195,7 +202,11 @@ impl<'a> Judged<'a> {
         if self.compliance.state != State::Found && c.value <= 0.0 {
             most_compliant = most_compliant.max(self.model.largest_compliance());
         }
-        let (least, most) = if is_known { self.motor_part() } else { (0.0, 1.0) };
+        let (least, most) = match self.motor_part() {
+            // where a part of Coulomb friction is certainly behind the spring, any part of viscous friction may be
+            (least, most) if is_known && most >= 1.0 => (least, most),
+            _ => (0.0, 1.0),
+        };
         let viscous = f.viscous_nms_per_rad;
         let by_friction = |part: f64| part * compliance * viscous.value;
         let spread = |part: f64| {

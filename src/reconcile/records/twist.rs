@@ -23,7 +23,7 @@
 //! the same signal in the twist, and only the balance of torques (`friction`) separates them.
 
 use super::blocks::{Blocks, Fitted, rows_per_reading};
-use super::signals::JointRows;
+use super::signals::{JointRows, waves_of};
 use crate::arm::effect::{time_shift, transmission_error};
 
 /// Prior standard deviation of each amplitude of a transmission error \[rad\].
@@ -220,14 +220,8 @@ pub(crate) fn fill(rows: &JointRows, i: usize, shift_s: f64, row: &mut [f64]) ->
     row[places.sense()] = sample.sense;
     row[places.load_sense()] = sample.load_sense_nm;
     row[places.rate()] = sample.torque_rate_nm_s;
-    for (columns, ratio) in [(places.output(), 1.0), (places.input(), rows.ratio.unwrap_or_default())] {
-        let (sin, cos) = libm::sincos(ratio * sample.angle_rad);
-        // once and twice a turn; without a ratio the columns of the input are zero and get no coefficient
-        row[columns[0]] = sin;
-        row[columns[1]] = cos - 1.0;
-        row[columns[2]] = 2.0 * sin * cos;
-        row[columns[3]] = cos * cos - sin * sin - 1.0;
-    }
+    row[places.output()[0]..][..4].copy_from_slice(&waves_of(sample.angle_rad));
+    row[places.input()[0]..][..4].copy_from_slice(&sample.input_waves);
     // adds the shift of the Taylor series back, so that the coefficient of the speed is the whole time shift
     let last = row.len() - 1;
     row[last] = twist.twist_rad + shift_s * twist.link_speed_rad_s;
@@ -285,7 +279,7 @@ impl<'a> TwistModel<'a> {
         {
             out.fitted = beside.with.clone();
         }
-        out.judge_errors();
+        out.settle_prior()?;
         Some(out)
     }
 
@@ -300,6 +294,18 @@ impl<'a> TwistModel<'a> {
             is_filled.then(|| row[row.len() - 1] - modelled)
         };
         (0..self.rows.samples.len()).filter_map(error).collect()
+    }
+
+    /// Fits the chosen columns again until the prior of transmission errors follows the error that the fit itself leaves. The
+    /// prior of the search comes from a fit without these errors, whose larger error makes the amplitudes too small.
+    fn settle_prior(&mut self) -> Option<()> {
+        const ROUNDS: usize = 3;
+        for _ in 0..ROUNDS {
+            self.judge_errors();
+            self.fitted = self.fit_with(&self.fitted.columns.clone())?;
+        }
+        self.judge_errors();
+        Some(())
     }
 
     fn judge_errors(&mut self) {
