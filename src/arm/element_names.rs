@@ -77,10 +77,42 @@ pub(crate) const PART_HINT: &str = "give the element another name";
 
 #[cfg(test)]
 mod tests {
-    use crate::arm::read_arm_document;
+    use crate::arm::{Element, read_arm_document};
     use crate::catalog::Catalogs;
     use crate::input::Document;
     use serde_json::json;
+
+    fn arm(value: serde_json::Value) -> crate::arm::Arm {
+        let document = Document::parse("arm.json", &value.to_string()).expect("JSON");
+        read_arm_document(document, &Catalogs::builtin()).expect("a sound arm")
+    }
+
+    #[test]
+    fn base_and_world_mean_base_and_world_even_if_elements_have_these_names() {
+        let sprung = |from: &str, joint: &str| {
+            let chain = json!([{"type": "joint", "name": joint, "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e4},
+                {"type": "link", "name": "lever", "vector_m": [0.5, 0, 0], "mass_kg": 1}]);
+            let spring =
+                json!({"from": {"at": from, "point_m": [0, 0, 0.3]}, "to": {"at": "lever"}, "force_n": 5});
+            arm(json!({"name": "arm", "chain": chain, "springs": [spring]})).springs
+        };
+        for word in ["base", "world"] {
+            assert_eq!(sprung(word, word), sprung(word, "j1"), "{word}");
+        }
+        let driven = |first: &str| {
+            let chain = json!([{"type": "joint", "name": first, "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e4},
+                {"type": "link", "name": "upper", "vector_m": [0.5, 0, 0], "mass_kg": 1},
+                {"type": "joint", "name": "j2", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e4, "motor_at": "base",
+                 "motor_mass_kg": 3, "motor_point_m": [0.1, 0, 0], "gear_ratio": 50,
+                 "transmission": [{"ratio": 2, "efficiency": 0.95, "stiffness_nm_per_rad": 400, "mass_kg": 0.5}]},
+                {"type": "link", "name": "lower", "vector_m": [0.3, 0, 0], "mass_kg": 1}]);
+            match arm(json!({"name": "arm", "chain": chain})).chain.swap_remove(0) {
+                Element::Joint(joint) => joint.bodies,
+                _ => panic!("the first element is a joint"),
+            }
+        };
+        assert_eq!(driven("base"), driven("j1"));
+    }
 
     #[test]
     fn no_element_has_the_name_of_a_part_of_a_joint() {

@@ -19,7 +19,7 @@ use super::prismatic::Prismatic;
 use super::prismatic_keys::PRISMATIC;
 use super::section::LinkMaterial;
 use super::springs::Spring;
-use super::springs_file::{BodiesOf, Named, hang, read_counterweights, read_springs};
+use super::springs_file::{BodiesOf, Named, Values, hang, read_counterweights, read_springs};
 use super::transmission::{Seen, Transmission, gear_is_at_motor, read_turns_with};
 use super::transmissions::{Driven, place_all};
 use super::{Arm, Element, Joint};
@@ -100,7 +100,8 @@ fn place_transmissions(chain: &mut [Element], driven: &[Driven]) -> Option<()> {
 /// Reads the springs of an arm, and adds its counterweights to the bodies of the elements on which they sit.
 fn read_balance(root: &Object, chain: &mut [Element]) -> Option<Vec<Spring>> {
     let named: Vec<Named> = chain.iter().map(|e| (e.name(), matches!(e, Element::Joint(_)))).collect();
-    let (springs, counterweights) = (read_springs(root, &named), read_counterweights(root, &named));
+    let springs = read_springs(root, &named, Values::One);
+    let counterweights = read_counterweights(root, &named, Values::One);
     let bodies = chain.iter_mut().map(|element| match element {
         Element::Joint(joint) => BodiesOf::Joint(&mut joint.bodies),
         Element::Prismatic(joint) => BodiesOf::Joint(&mut joint.bodies),

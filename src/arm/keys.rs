@@ -331,45 +331,87 @@ pub(crate) const TRANSMISSION_RULES: [Rule; 4] = [
     ),
 ];
 
-/// Springs of an arm or a study.
+/// A list of springs of an arm.
 pub(crate) const SPRINGS: Kind =
     Kind::List(&Kind::Either(&[Kind::Object(&SPRING), Kind::Object(&TORSION_SPRING)]));
 
-/// A list of counterweights, of an arm or a study.
+/// A list of springs of a study.
+pub(crate) const OPEN_SPRINGS: Kind =
+    Kind::List(&Kind::Either(&[Kind::Object(&OPEN_SPRING), Kind::Object(&OPEN_TORSION_SPRING)]));
+
+/// A list of counterweights of an arm.
 pub(crate) const COUNTERWEIGHTS: Kind = Kind::List(&Kind::Object(&COUNTERWEIGHT));
+
+/// A list of counterweights of a study.
+pub(crate) const OPEN_COUNTERWEIGHTS: Kind = Kind::List(&Kind::Object(&OPEN_COUNTERWEIGHT));
+
+/// The kinds of the numbers of springs and counterweights: any number, a number that is not negative, and a positive
+/// one.
+struct BalanceNumbers {
+    any: Kind,
+    non_negative: Kind,
+    positive: Kind,
+}
+
+/// In an arm each number has one value.
+const ONE_VALUE: BalanceNumbers =
+    BalanceNumbers { any: Kind::Number, non_negative: Kind::NonNegative, positive: Kind::Positive };
+
+/// In a study each number may be a list of values to choose from.
+const CHOICES: BalanceNumbers = BalanceNumbers {
+    any: Kind::Either(&[Kind::Number, Kind::NonEmpty(&Kind::Number)]),
+    non_negative: Kind::Either(&[Kind::NonNegative, Kind::NonEmpty(&Kind::NonNegative)]),
+    positive: Kind::Either(&[Kind::Positive, Kind::NonEmpty(&Kind::Positive)]),
+};
 
 const SPRING_NAME: Key =
     optional("name", Kind::Name, "-", "spring 1, ...", "Name, unique among the springs.");
 
-/// The keys of a spring between two points.
-pub(crate) static SPRING: Shape = Shape::new(
-    "spring",
-    "A spring between two points: its force is force_n + stiffness (length - free length).",
-    &[
+const fn spring_keys(numbers: &BalanceNumbers) -> [Key; 6] {
+    [
         SPRING_NAME,
         required("from", Kind::Object(&SPRING_END), "-", "One end."),
         required("to", Kind::Object(&SPRING_END), "-", "The other end, on another part of the arm."),
-        optional("stiffness_n_per_m", Kind::NonNegative, "N/m", "none", "Stiffness, with free_length_m."),
+        optional("stiffness_n_per_m", numbers.non_negative, "N/m", "none", "Stiffness, with free_length_m."),
         optional(
             "free_length_m",
-            Kind::NonNegative,
+            numbers.non_negative,
             "m",
             "none",
             "Length at which the stiffness has no part in the force, with stiffness_n_per_m; 0 is allowed.",
         ),
         optional(
             "force_n",
-            Kind::Number,
+            numbers.any,
             "N",
             "0",
             "Constant part of the force; negative pushes the ends apart.",
         ),
-    ],
-    &[
-        Rule::Any(&["force_n", "stiffness_n_per_m"]),
-        Rule::Needs("stiffness_n_per_m", &["free_length_m"]),
-        Rule::Needs("free_length_m", &["stiffness_n_per_m"]),
-    ],
+    ]
+}
+
+static SPRING_KEYS: [Key; 6] = spring_keys(&ONE_VALUE);
+static OPEN_SPRING_KEYS: [Key; 6] = spring_keys(&CHOICES);
+const SPRING_RULES: &[Rule] = &[
+    Rule::Any(&["force_n", "stiffness_n_per_m"]),
+    Rule::Needs("stiffness_n_per_m", &["free_length_m"]),
+    Rule::Needs("free_length_m", &["stiffness_n_per_m"]),
+];
+
+/// The keys of a spring between two points.
+pub(crate) static SPRING: Shape = Shape::new(
+    "spring",
+    "A spring between two points: its force is force_n + stiffness (length - free length).",
+    &SPRING_KEYS,
+    SPRING_RULES,
+);
+
+/// The keys of a spring of a study, whose numbers may be open.
+static OPEN_SPRING: Shape = Shape::new(
+    "spring",
+    "A spring between two points: its force is force_n + stiffness (length - free length). A list of numbers is a choice.",
+    &OPEN_SPRING_KEYS,
+    SPRING_RULES,
 );
 
 /// The keys of an end of a spring.
@@ -389,24 +431,32 @@ pub(crate) static SPRING_END: Shape = Shape::new(
     &[],
 );
 
-/// The keys of a spring about a joint.
-pub(crate) static TORSION_SPRING: Shape = Shape::new(
-    "torsion spring",
-    "A spring that turns a joint.",
-    &[
+const fn torsion_spring_keys(numbers: &BalanceNumbers) -> [Key; 4] {
+    [
         SPRING_NAME,
         required("joint", Kind::Text, "-", "The joint."),
-        required("stiffness_nm_per_rad", Kind::Positive, "N m/rad", "Stiffness."),
-        required("free_deg", Kind::Number, "deg", "Angle of the joint at which it has no torque."),
-    ],
+        required("stiffness_nm_per_rad", numbers.positive, "N m/rad", "Stiffness."),
+        required("free_deg", numbers.any, "deg", "Angle of the joint at which it has no torque."),
+    ]
+}
+
+static TORSION_SPRING_KEYS: [Key; 4] = torsion_spring_keys(&ONE_VALUE);
+static OPEN_TORSION_SPRING_KEYS: [Key; 4] = torsion_spring_keys(&CHOICES);
+
+/// The keys of a spring about a joint.
+pub(crate) static TORSION_SPRING: Shape =
+    Shape::new("torsion spring", "A spring that turns a joint.", &TORSION_SPRING_KEYS, &[]);
+
+/// The keys of a spring about a joint of a study, whose numbers may be open.
+static OPEN_TORSION_SPRING: Shape = Shape::new(
+    "torsion spring",
+    "A spring that turns a joint. A list of numbers is a choice.",
+    &OPEN_TORSION_SPRING_KEYS,
     &[],
 );
 
-/// The keys of a counterweight.
-pub(crate) static COUNTERWEIGHT: Shape = Shape::new(
-    "counterweight",
-    "A point mass that balances the arm.",
-    &[
+const fn counterweight_keys(numbers: &BalanceNumbers) -> [Key; 4] {
+    [
         optional("name", Kind::Text, "-", "none", "Name, for people."),
         required("at", Kind::Text, "-", "The joint or link that carries it; of a joint the side that turns."),
         required(
@@ -415,8 +465,22 @@ pub(crate) static COUNTERWEIGHT: Shape = Shape::new(
             "m",
             "Where it is, from the start of the element in the frame that it carries.",
         ),
-        BODY_MASS,
-    ],
+        required("mass_kg", numbers.non_negative, "kg", "Mass."),
+    ]
+}
+
+static COUNTERWEIGHT_KEYS: [Key; 4] = counterweight_keys(&ONE_VALUE);
+static OPEN_COUNTERWEIGHT_KEYS: [Key; 4] = counterweight_keys(&CHOICES);
+
+/// The keys of a counterweight.
+pub(crate) static COUNTERWEIGHT: Shape =
+    Shape::new("counterweight", "A point mass that balances the arm.", &COUNTERWEIGHT_KEYS, &[]);
+
+/// The keys of a counterweight of a study, whose mass may be open.
+static OPEN_COUNTERWEIGHT: Shape = Shape::new(
+    "counterweight",
+    "A point mass that balances the arm. A list of masses is a choice.",
+    &OPEN_COUNTERWEIGHT_KEYS,
     &[],
 );
 

@@ -41,6 +41,10 @@ pub(crate) mod transmission;
 pub(crate) mod transmissions;
 pub(crate) mod write;
 
+/// The word for the base of an arm in files. Where the base is possible, the word means the base, even if an element has
+/// this name.
+pub(crate) const BASE: &str = "base";
+
 pub use bearing::{Bearing, BearingSource};
 pub use body::{JointBodies, RigidBody};
 pub use case_keys::CASES_FILE;

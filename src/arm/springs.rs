@@ -75,7 +75,7 @@ impl SpringPlace {
     fn word<'a>(self, names: &[&'a str]) -> &'a str {
         match self {
             SpringPlace::World => "world",
-            SpringPlace::Base => "base",
+            SpringPlace::Base => super::BASE,
             SpringPlace::Element(index) => names.get(index).copied().unwrap_or_default(),
         }
     }

@@ -378,8 +378,8 @@ impl Transmission {
         let Some(name) = &self.motor_at else { return Some((joint, HungOn::Start, Vector3::zeros())) };
         let inboard = &chain[..joint];
         match inboard.iter().rposition(|seen| seen.name == *name) {
+            _ if name == super::BASE => Some((0, HungOn::Start, self.motor_point_m)),
             Some(element) => Some((element, HungOn::Moving, self.motor_point_m)),
-            None if name == "base" => Some((0, HungOn::Start, self.motor_point_m)),
             None => {
                 let names: Vec<&str> = inboard.iter().map(|seen| seen.name.as_str()).collect();
                 node.fault_below(

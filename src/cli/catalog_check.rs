@@ -150,7 +150,11 @@ fn unchoosable(catalogs: &Catalogs) -> String {
         format!("  {file}:{} {}: {lacks}\n", parts[0].0, named(&parts))
     });
     let lines: String = lines.collect();
-    if lines.is_empty() { lines } else { format!("\nParts that cannot be used for a blank figure:\n{lines}") }
+    if lines.is_empty() {
+        lines
+    } else {
+        format!("\nParts that cannot be used because a rating is blank:\n{lines}")
+    }
 }
 
 /// The verbs that cannot use a part with the blank ratings `lacks`, and the checks for which the ratings are needed.
@@ -160,7 +164,7 @@ fn verbs(lacks: &[Lack]) -> String {
     let named = match of_arm.as_slice() {
         [] => String::new(),
         of_arm => {
-            format!("; cannot be named in an arm without a stiffness and a mass beside it: {}", words(of_arm))
+            format!("; an arm file that names one must also state its stiffness and mass: {}", words(of_arm))
         }
     };
     format!("cannot be chosen by size and run: {}{named}", words(lacks))

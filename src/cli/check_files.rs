@@ -148,7 +148,7 @@ fn look_at_file(path: &Path, catalogs: &Catalogs) -> Look {
         Some("study") => ("study", read_study(document, catalogs).map(drop).map_err(Problem::Faulty)),
         Some("stiffness") => ("stiffness of an import", check_stiffness(document, path, catalogs)),
         Some("limits") => ("limits of joints", check_limits(document).map_err(Problem::Faulty)),
-        Some(written @ ("export" | "import" | "run" | "shard" | "verdict")) => {
+        Some(written @ ("choices" | "export" | "import" | "run" | "shard" | "verdict")) => {
             (written, check_written(written, path, &document))
         }
         Some(_) => {

@@ -1,9 +1,11 @@
 //! Compares two folders of results, without the numbers that depend on the time and on the machine.
 
 use super::failure::Failure;
-use super::manifest::{MANIFESTS, RUN, SHARD, VERDICT};
+use super::manifest::{CHOICES, MANIFESTS, RUN, SHARD, VERDICT};
 use super::result_folder::complete;
+use crate::report::summary::TIMING;
 use crate::report::whole_file::folder_of;
+use minijinja::HtmlEscape;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -11,9 +13,6 @@ use std::path::{Path, PathBuf};
 /// Keys of run.json and shard.json that differ from run to run: times, the machine, and the hashes of files that contain
 /// times.
 const OF_A_RUN: [&str; 5] = ["elapsed_s", "designs_per_s", "threads", "platform", "files"];
-/// Marks around the text in summary.md and report.html that states how long a run took. The text between the marks is
-/// left out of the comparison, because it differs from run to run.
-const TIMING: [&str; 2] = ["<!-- timing -->", "<!-- /timing -->"];
 /// Commands in summary.md and report.html after which the folder of results is named. The name is left out of the
 /// comparison, because each result is in a folder of its own.
 const COMMANDS: [&str; 5] =
@@ -82,7 +81,7 @@ fn neutral(folder: &Path, name: &str) -> Result<Vec<u8>, Failure> {
     let inside = folder_of(&folder.join(name));
     // a folder of a campaign has results of studies in folders of their own
     Ok(match Path::new(name).file_name().and_then(|name| name.to_str()) {
-        Some(RUN | SHARD) => without_keys(bytes, &OF_A_RUN),
+        Some(RUN | SHARD | CHOICES) => without_keys(bytes, &OF_A_RUN),
         Some(VERDICT) => without_keys(bytes, &["files"]),
         Some("summary.md" | "report.html") => without_timing(bytes, typed_as(&inside).as_deref()),
         _ => bytes,
@@ -102,8 +101,10 @@ fn without_timing(bytes: Vec<u8>, folder: Option<&str>) -> Vec<u8> {
     {
         text.replace_range(start..start + length + TIMING[1].len(), "");
     }
-    for command in COMMANDS.iter().filter(|_| folder.is_some()) {
-        text = text.replace(&format!("{command}{}", folder.unwrap_or_default()), command);
+    for folder in folder.into_iter().flat_map(|plain| [plain.to_string(), HtmlEscape(plain).to_string()]) {
+        for command in COMMANDS {
+            text = text.replace(&format!("{command}{folder}"), command);
+        }
     }
     text.into_bytes()
 }

@@ -82,7 +82,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<String, Failure> {
     let mut out = if args.json { json_text(&comparison) } else { comparison.to_text() };
     if let Some(dir) = &args.out {
         let inputs: Vec<&Path> = args.results.iter().map(PathBuf::as_path).collect();
-        write_own(dir, &files(&comparison, &loaded.contenders), &inputs)?;
+        write_own(dir, &files_of_comparison(&comparison, &loaded.contenders), &inputs)?;
         if !args.json {
             out.push_str(&format!(
                 "\nwritten to {}: compare.md, compare.csv, compare.svg, report.html\n",
@@ -106,7 +106,11 @@ fn json_text(comparison: &Comparison) -> String {
     serde_json::to_string_pretty(comparison).expect("a comparison of numbers and strings serializes")
 }
 
-fn files(comparison: &Comparison, contenders: &[Contender]) -> Vec<(String, Vec<u8>)> {
+/// The files of a comparison of fronts.
+pub(super) fn files_of_comparison(
+    comparison: &Comparison,
+    contenders: &[Contender],
+) -> Vec<(String, Vec<u8>)> {
     let picture = FrontPicture {
         title: "Fronts side by side".into(),
         fronts: contenders

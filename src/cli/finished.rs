@@ -348,9 +348,7 @@ impl Finished<'_> {
         let mut page = study_page(self.study, self.problem, self.catalogs, summary);
         page.extras.extend(sections);
         page.extras.push(certificate_section(&summary.facts, self.exact.map(|exact| exact.boxes)));
-        let (timing, run) = facts_of(run)
-            .into_iter()
-            .partition(|(words, _)| OF_A_RUN.iter().any(|key| key_words(key) == *words));
+        let [run, timing] = facts_of(run);
         StudyPage { scatter_svg: picture, run, timing, ..page }.page()
     }
 
@@ -419,8 +417,9 @@ impl Finished<'_> {
 /// Facts about the run that differ from run to run.
 const OF_A_RUN: [&str; 4] = ["elapsed_s", "designs_per_s", "threads", "platform"];
 
-/// The facts of `run.json` that are a word or a number, as text for people.
-pub(super) fn facts_of(run: &Value) -> Vec<(String, String)> {
+/// The facts of `run.json` that are a word or a number, as text for people: first those that are equal in every run of
+/// the study, then those that differ from run to run.
+pub(super) fn facts_of(run: &Value) -> [Vec<(String, String)>; 2] {
     let plain = |value: &Value| match value {
         Value::String(text) => Some(text.clone()),
         Value::Number(number) if number.is_f64() => Some(significant(number.as_f64()?, 4)),
@@ -432,10 +431,11 @@ pub(super) fn facts_of(run: &Value) -> Vec<(String, String)> {
         _ => None,
     };
     let facts = run.as_object().into_iter().flatten();
-    facts
-        .filter(|(key, _)| !["schema_version", "study", "question"].contains(&key.as_str()))
-        .filter_map(|(key, value)| Some((key_words(key), plain(value)?)))
-        .collect()
+    let known = facts.filter(|(key, _)| !["schema_version", "study", "question"].contains(&key.as_str()));
+    let (timing, lasting): (Vec<_>, Vec<_>) = known.partition(|(key, _)| OF_A_RUN.contains(&key.as_str()));
+    [lasting, timing].map(|facts| {
+        facts.into_iter().filter_map(|(key, value)| Some((key_words(key), plain(value)?))).collect()
+    })
 }
 
 /// The picture of the front. Designs of mixed materials are grey, and each material has a colour. For each material its

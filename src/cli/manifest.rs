@@ -1,5 +1,5 @@
 //! The manifest of a result: a list of its files with a hash of each. It is the key `files` of `run.json`,
-//! `verdict.json` or `shard.json`. This file is written after all others, so that its presence shows that the result
+//! `verdict.json`, `shard.json` or `choices.json`. This file is written after all others, so that its presence shows that the result
 //! is complete.
 
 use super::failure::Failure;
@@ -13,8 +13,10 @@ pub(super) const RUN: &str = "run.json";
 pub(super) const VERDICT: &str = "verdict.json";
 /// Name of the file that lists the files of a shard of a search.
 pub(super) const SHARD: &str = "shard.json";
+/// Name of the file that lists the files of a study that was searched choice by choice.
+pub(super) const CHOICES: &str = "choices.json";
 /// Names of all files that may have a manifest.
-pub(super) const MANIFESTS: [&str; 3] = [RUN, VERDICT, SHARD];
+pub(super) const MANIFESTS: [&str; 4] = [RUN, VERDICT, SHARD, CHOICES];
 
 /// Names and contents of files. The names are relative to a folder of results.
 pub(super) type Files = Vec<(String, Vec<u8>)>;

@@ -13,6 +13,7 @@ pub(crate) mod check;
 mod check_files;
 mod check_kinds;
 mod check_same;
+pub(crate) mod choices;
 pub(crate) mod compare;
 mod compare_remarks;
 pub(crate) mod corrections;

@@ -7,7 +7,7 @@ use crate::input::schema::FileKind;
 use crate::interchange::keys::IMPORT_FILE;
 
 /// The kinds of JSON files that the program writes and other programs read.
-pub(super) const OUTPUTS: [FileKind; 5] = [
+pub(super) const OUTPUTS: [FileKind; 6] = [
     FileKind {
         name: "run",
         about: "`run.json`: what was searched, how it ended, and the files of a study's result.",
@@ -17,6 +17,11 @@ pub(super) const OUTPUTS: [FileKind; 5] = [
         name: "shard",
         about: "`shard.json`: one shard of a search, as `armwright merge` reads it.",
         root: Kind::Object(&SHARD),
+    },
+    FileKind {
+        name: "choices",
+        about: "`choices.json`: a study whose choices of springs and counterweights were searched one by one.",
+        root: Kind::Object(&CHOICES),
     },
     FileKind {
         name: "verdict",
@@ -142,6 +147,37 @@ static RUN: Shape = Shape::new(
             "Designs near the front, or null.",
         ),
         FILES,
+    ],
+    &[],
+);
+
+static CHOICES: Shape = Shape::new(
+    "choices",
+    "A study that was searched choice by choice, and its joint front.",
+    &[
+        SCHEMA_VERSION,
+        STUDY,
+        required("question", Kind::Text, "-", "Its question."),
+        required("choices", Kind::List(&Kind::Object(&CHOICE)), "-", "The choices."),
+        required("front_size", Kind::Whole(0), "-", "Rows of `front.csv`."),
+        STUDY_HASH,
+        CATALOGS_HASH,
+        VERSION,
+        FILES,
+    ],
+    &[],
+);
+
+static CHOICE: Shape = Shape::new(
+    "choice",
+    "One choice of springs and counterweights.",
+    &[
+        required("folder", Kind::Text, "-", "Folder with its result."),
+        required("words", Kind::Text, "-", "The choice in words."),
+        required("values", Kind::Map(&Kind::Number), "-", "Each number that was chosen, by its column."),
+        required("status", STATUS, "-", "How its search ended."),
+        required("gap", NUMBER_OR_NULL, "-", "The gap that an exact search proved; 0 for a whole front."),
+        required("front_size", Kind::Whole(0), "-", "Rows of its front."),
     ],
     &[],
 );

@@ -9,7 +9,6 @@ use super::log::Log;
 use super::manifest::{Files, RUN, sealed};
 use super::result_folder::unfinished_in;
 use super::search::{SearchArgs, With, search};
-use super::stop::stopped_by_signal;
 use super::supplements::SupplementArgs;
 use super::wrong_kind::study_of;
 use crate::catalog::Catalogs;
@@ -25,7 +24,6 @@ use crate::space::levels::OutwardIn;
 use crate::space::problem::ArmProblem;
 use serde_json::{Value, json};
 use std::path::Path;
-use std::sync::atomic::Ordering;
 
 /// Name of the file with all designs of both fronts under both models.
 pub(super) const CHANGES: &str = "study_changes.csv";
@@ -96,12 +94,14 @@ pub(super) fn rerun(
         let with = With { catalogs, overlay, dir: &results, keep, unfinished, how, supplements, record, log };
         match search(asked, &with) {
             Ok(written) => {
-                if written.exit == Exit::Interrupted {
-                    // only this run was stopped: the flag is cleared, so that the other run can be stopped by a new
-                    // signal
-                    stopped_by_signal().store(false, Ordering::Relaxed);
-                }
                 kept.extend(placed(&written.files, folder)?);
+                if written.exit == Exit::Interrupted {
+                    let words = format!(
+                        "the search with the {folder} model was stopped, so nothing is compared; the same command goes on"
+                    );
+                    let without = Rerun::without(&name, Status::Interrupted.word(), &words);
+                    return Ok(Rerun { files: kept, exit: Exit::Interrupted, ..without });
+                }
                 found.push(written);
             }
             Err(Failure::Infeasible(why)) => {

@@ -1,7 +1,7 @@
 //! Reads a folder of results: either it has one complete result, or a reason is given why it has none.
 
 use super::failure::Failure;
-use super::manifest::{RUN, hash, listed};
+use super::manifest::{CHOICES, RUN, hash, listed};
 use super::result_folder::complete;
 use super::version::refuse_earlier;
 use crate::report::front_table::FrontTable;
@@ -60,9 +60,7 @@ impl Results {
     fn read_run(folder: &Path) -> Result<Self, Failure> {
         let path = folder.join(RUN);
         if !path.exists() {
-            let what = if folder.is_dir() { "has no run.json, so it is no result" } else { "is no folder" };
-            let hint = "give a result folder of `armwright run`";
-            return Err(Failure::File(format!("{} {what}; {hint}", folder.display())));
+            return Err(Failure::File(no_result(folder)));
         }
         let text = fs_err::read_to_string(&path).map_err(|e| Failure::File(e.to_string()))?;
         let run: Value = serde_json::from_str(&text)
@@ -159,6 +157,19 @@ impl Results {
     fn has_earlier_ids(&self) -> bool {
         self.files.is_none()
     }
+}
+
+/// Why a folder without `run.json` is no result, and what to give instead.
+fn no_result(folder: &Path) -> String {
+    let shown = folder.display();
+    if folder.join(CHOICES).is_file() {
+        return format!(
+            "{shown} has a result for each choice of springs and counterweights; give the folder of one, or of several to \
+             compare, as {shown}/choice-*"
+        );
+    }
+    let what = if folder.is_dir() { "has no run.json, so it is no result" } else { "is no folder" };
+    format!("{shown} {what}; give a result folder of `armwright run`")
 }
 
 fn mixture(folder: &Path, names: &[&str]) -> Failure {

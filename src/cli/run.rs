@@ -2,10 +2,11 @@
 
 use super::asked::Asked;
 use super::beside::{another_stands, say_missing};
+use super::choices::{Each, run_choices};
 use super::corrections;
 use super::exit::Answer;
 use super::failure::Failure;
-use super::finished::{catalogs_hash, facts_of, front_of_material, is_front_of_material, pretty};
+use super::finished::{Written, catalogs_hash, facts_of, front_of_material, is_front_of_material, pretty};
 use super::log::Log;
 use super::manifest::{RUN, SHARD};
 use super::progress::Record;
@@ -49,7 +50,8 @@ use std::time::Instant;
 pub(crate) struct RunArgs {
     /// A built-in study (see `armwright studies`) or a study file
     study: String,
-    /// Folder for the results; default results/<study>, or results/<study>-with-effects
+    /// Folder for the results; default results/<study>, or results/<study>-with-effects, and with -choices at the end if
+    /// the study leaves springs or counterweights open
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Arm file, such as the arm.corrected.json of `reconcile`: its effects are applied to the study's joints
@@ -164,6 +166,11 @@ impl RunArgs {
     }
 }
 
+/// The folder `name` among all results.
+fn in_results(name: &str) -> PathBuf {
+    Path::new("results").join(name)
+}
+
 /// Names of the files of a study's result, without those in `plots`.
 pub(super) fn planned(study: &Study) -> Vec<String> {
     let materials = study.space.material_names();
@@ -219,21 +226,57 @@ pub(super) fn run(
     if let Some(shard) = args.shard {
         return run_part(args, shard, &asked, (catalogs, overlay), log);
     }
-    let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(args.folder(&asked.study)));
-    let planned = args.planned(&dir, &asked)?;
-    // if the folder cannot be written, the run fails now and not after the search
-    let folder = ResultFolder::open(&dir, RUN, &planned)?;
-    let unfinished = &unfinished_in(&dir, "search");
-    let record = args.record(&dir, &planned, unfinished)?;
-    let (how, supplements, record) = (&args.search, &args.supplements, record.as_ref());
-    let keep = |files: &[(String, Vec<u8>)]| folder.publish(files);
-    let with = With { catalogs, overlay, dir: &dir, keep: &keep, unfinished, how, supplements, record, log };
-    let written = search(&asked, &with);
-    folder.settle(written.as_ref().map(|written| written.exit))?;
-    let written = written?;
+    if asked.study.balance_choices > 1 {
+        return run_each_choice(args, &asked, (catalogs, overlay), log);
+    }
+    let dir = args.out.clone().unwrap_or_else(|| in_results(&args.folder(&asked.study)));
+    let written = search_into(args, &args.search, (&dir, &asked), (catalogs, overlay), log)?;
     let applied = corrections::to_text(&asked.corrections);
     let text = format!("{}{applied}\n{}{}", written.terminal, told(&dir, &written.files), written.timing);
     Ok(Answer { text, exit: written.exit })
+}
+
+/// Runs a study that leaves values of springs or counterweights open.
+fn run_each_choice(
+    args: &RunArgs,
+    asked: &Asked,
+    (catalogs, overlay): (&Catalogs, Option<&Path>),
+    log: Log,
+) -> Result<Answer, Failure> {
+    if args.progress.is_some() {
+        let why = "each choice of springs and counterweights is a search of its own";
+        return Err(Failure::Usage(format!("--progress does not go with this study: {why}")));
+    }
+    let name = format!("{}-choices", args.folder(&asked.study));
+    let dir = args.out.clone().unwrap_or_else(|| in_results(&name));
+    // the text of each choice comes from the text of the study, which has the effects that the user gives
+    let search = |how: &SearchArgs, dir: &Path, study: Study, text: String| {
+        let asked = Asked { study, text, corrections: asked.corrections.clone() };
+        search_into(args, how, (dir, &asked), (catalogs, overlay), log)
+    };
+    let further = format!("{:?} {:?}", args.supplements, args.effects);
+    run_choices(asked, &dir, &Each { how: &args.search, further, search: &search }, catalogs, log)
+}
+
+/// Searches a study in the way `how` and writes its result to a folder.
+fn search_into(
+    args: &RunArgs,
+    how: &SearchArgs,
+    (dir, asked): (&Path, &Asked),
+    (catalogs, overlay): (&Catalogs, Option<&Path>),
+    log: Log,
+) -> Result<Written, Failure> {
+    let planned = args.planned(dir, asked)?;
+    // if the folder cannot be written, the run fails now and not after the search
+    let folder = ResultFolder::open(dir, RUN, &planned)?;
+    let unfinished = &unfinished_in(dir, "search");
+    let record = args.record(dir, &planned, unfinished)?;
+    let (supplements, record) = (&args.supplements, record.as_ref());
+    let keep = |files: &[(String, Vec<u8>)]| folder.publish(files);
+    let with = With { catalogs, overlay, dir, keep: &keep, unfinished, how, supplements, record, log };
+    let written = search(asked, &with);
+    folder.settle(written.as_ref().map(|written| written.exit))?;
+    written
 }
 
 /// Searches one part of the designs.
@@ -258,7 +301,7 @@ fn run_part(
     words.extend(args.search.words());
     words.extend(args.incumbents.iter().flat_map(|dir| ["--incumbents".into(), dir.display().to_string()]));
     words.extend(overlay.into_iter().flat_map(|dir| ["--catalogs".into(), dir.display().to_string()]));
-    let shards = Path::new("results").join(args.folder(&asked.study)).join("shards");
+    let shards = in_results(&args.folder(&asked.study)).join("shards");
     let dir = args.out.clone().unwrap_or_else(|| folder_of(&shards, shard));
     args.refuse_record_over_input()?;
     let planned = [SHARD, CANDIDATES, STUDY].map(String::from);
@@ -275,7 +318,7 @@ fn run_part(
 
 /// Runs one of the studies of the paper, which are computed without a search.
 fn run_paper(args: &RunArgs, catalogs: &Catalogs, log: Log) -> Result<String, Failure> {
-    let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(&args.study));
+    let dir = args.out.clone().unwrap_or_else(|| in_results(&args.study));
     let planned = [RUN, "summary.md", "report.html"];
     let folder = ResultFolder::open(&dir, RUN, &planned)?;
     let started = Instant::now();
@@ -318,6 +361,7 @@ fn header_words(column: &str) -> String {
 /// The page, for a browser, of one of the paper's studies, with the pictures and tables of the study.
 fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> DocumentPage {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let [facts, timing] = facts_of(run);
     let ending = |end: &'static str| files.iter().filter_map(move |(n, b)| Some((n.strip_suffix(end)?, b)));
     DocumentPage {
         title: study.to_string(),
@@ -334,7 +378,8 @@ fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> Document
                 (caption, table.rounded(PAGE_DIGITS))
             })
             .collect(),
-        facts: facts_of(run),
+        facts,
+        timing,
     }
 }
 

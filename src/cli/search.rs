@@ -123,6 +123,21 @@ impl SearchArgs {
         method.chain(gap).collect()
     }
 
+    /// The time after which the user wants the exact search to stop; `None` if the user gives none.
+    pub(super) fn time_limit(&self) -> Option<Duration> {
+        self.time_limit
+    }
+
+    /// These options without the wish to discard an earlier state.
+    pub(super) fn without_fresh(&self) -> Self {
+        Self { fresh: false, ..*self }
+    }
+
+    /// These options with another time limit.
+    pub(super) fn limited_to(&self, time_limit: Option<Duration>) -> Self {
+        Self { time_limit, ..*self }
+    }
+
     /// Whether a state that an earlier process saved is to be discarded.
     pub(super) fn is_fresh(&self) -> bool {
         self.fresh
@@ -147,7 +162,8 @@ impl SearchArgs {
 pub(super) fn part_or_none(text: &str) -> Result<f64, String> {
     match text.trim_end_matches('%').trim_end().parse::<f64>() {
         Ok(0.0) => Ok(0.0),
-        _ => part(text),
+        _ => part(text)
+            .map_err(|_| format!("\"{text}\" is not a percentage from 0 % to below 100 %, such as 2%")),
     }
 }
 

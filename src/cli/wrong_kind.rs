@@ -48,7 +48,9 @@ fn with_article(kind: &str) -> String {
         "study" => "a study".into(),
         "cases" => "a list of load cases".into(),
         "campaign" => "the campaign.json of a campaign".into(),
-        "run" | "verdict" | "shard" | "export" | "import" => format!("the {kind}.json of a result"),
+        "run" | "verdict" | "shard" | "choices" | "export" | "import" => {
+            format!("the {kind}.json of a result")
+        }
         kind => format!("a file of the kind {kind}"),
     }
 }

@@ -15,8 +15,9 @@ use crate::arm::LinkModel;
 use crate::arm::load::Water;
 use crate::arm::springs::{EndLoad, Side};
 use crate::arm::structure::LinkPiece;
+use crate::mechanics::across;
 use crate::mechanics::beam::{PreparedBeam, pull_on, section_frame};
-use crate::mechanics::chain::{across, wrench_of};
+use crate::mechanics::chain::wrench_of;
 use crate::mechanics::{
     Twist, Wrench, angular, body_inertia, displacement_at, linear, rotation_twist, stack,
 };

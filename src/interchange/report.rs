@@ -139,10 +139,8 @@ impl ImportReport {
                 by.name
             ));
         } else if held.at != 0.0 {
-            self.guessed.push(format!(
-                "{}: beside the way to the tip, held at {held_at}, the constant of its <mimic>",
-                by.name
-            ));
+            self.guessed
+                .push(format!("{}: on a side branch; held at {held_at}, the offset of its <mimic>", by.name));
         }
         let limits = &by.limit;
         let has_range = limits.lower != limits.upper;

@@ -5,7 +5,7 @@
 //! the displacement fields of its beam are added. The elements come in the same order as in
 //! [`Chain::pose_rad`](super::chain::Chain::pose_rad).
 
-use super::chain::{ElasticElement, Posed, Prepared};
+use super::chain::{ElasticElement, Owner, Posed, Prepared};
 use super::{Twist, displacement_at};
 use crate::arm::prismatic::Moves;
 use nalgebra::{DVector, Rotation3, Vector3};
@@ -34,22 +34,18 @@ impl Posed<'_> {
         let mut elements = self.elements().zip(coordinates).peekable();
         let mut walk = Walk::default();
         let mut out = Vec::new();
-        if elements.peek().is_some_and(|(e, _)| e.name == "base") {
-            walk.deflects(elements.next());
+        while let Some(element) = elements.next_if(|(e, _)| e.owner == Owner::Base) {
+            walk.deflects(Some(element));
         }
-        let is_frame = |e: &ElasticElement| e.name.ends_with(".frame_compliance");
-        if elements.peek().is_some_and(|(e, _)| is_frame(e)) {
-            walk.deflects(elements.next());
-        }
-        for piece in &self.chain.pieces {
+        for (index, piece) in self.chain.pieces.iter().enumerate() {
+            let is_own = |e: &ElasticElement| e.owner == Owner::Piece(index);
             match piece {
                 Prepared::Joint(joint) => {
                     let axis = walk.rotation * joint.axis.into_inner();
                     out.push(walk.station(&joint.name, walk.at_m, Some(axis)));
-                    if joint.tilts() {
-                        walk.deflects(elements.next());
+                    while let Some(element) = elements.next_if(|(e, _)| is_own(e)) {
+                        walk.deflects(Some(element));
                     }
-                    walk.deflects(elements.next());
                     walk.rotation *= Rotation3::from_axis_angle(&joint.axis, joint.angle.of(pose_rad));
                 }
                 Prepared::Prismatic(joint) => {
@@ -59,18 +55,18 @@ impl Posed<'_> {
                     if joint.moves == Moves::Carriage {
                         out.push(walk.station(&joint.name, walk.at_m + travel, None));
                     }
-                    if !joint.guide_is_rigid() {
-                        walk.deflects(elements.next());
+                    while let Some(element) = elements.next_if(|(e, _)| is_own(e)) {
+                        walk.deflects(Some(element));
                     }
-                    walk.deflects(elements.next());
                     walk.at_m += travel;
                     out.push(walk.station(&joint.name, walk.at_m, None));
                 }
                 Prepared::Link(link, beam) => {
-                    if elements.peek().is_some_and(|(e, _)| is_frame(e)) {
-                        walk.deflects(elements.next());
+                    let is_frame = |e: &ElasticElement| is_own(e) && e.own.is_none();
+                    while let Some(element) = elements.next_if(|(e, _)| is_frame(e)) {
+                        walk.deflects(Some(element));
                     }
-                    let element = if beam.is_some() { elements.next() } else { None };
+                    let element = elements.next_if(|(e, _)| is_own(e));
                     let vector = walk.rotation * link.vector_m;
                     for point in 0..POINTS {
                         let xi = point as f64 / (POINTS - 1) as f64;
@@ -130,6 +126,7 @@ impl Walk {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arm::effect::subject::Subject;
     use crate::arm::file::read_arm_document;
     use crate::arm::load::Payload;
     use crate::arm::{JointModel, LinkModel};
@@ -160,6 +157,42 @@ mod tests {
         assert!((last.at_m - posed.tip_m).norm() < 1e-12);
         assert!((last.moved_m - tip).norm() < 1e-12 * tip.norm().max(1.0), "{} {tip}", last.moved_m);
         assert_eq!(line[0].moved_m, Vector3::zeros());
+    }
+
+    /// Stations of the arm in a pose with these effects, where the first joint has the name `first`, and the
+    /// displacement of the tip.
+    fn stations(first: &str, effects: &str) -> (Vec<Station>, Vector3<f64>) {
+        let text = ARM.replace("\"j1\"", &format!("\"{first}\""));
+        let text = text.replacen("\"name\": \"a\"", &format!("\"name\": \"a\", \"effects\": [{effects}]"), 1);
+        let arm = read_arm_document(Document::parse("a.json", &text).expect("JSON"), &Catalogs::default());
+        let arm = arm.expect("an arm");
+        let mut subject = Subject::new(arm.structure(JointModel::ThreeSegment));
+        arm.effects.iter().for_each(|effect| subject.apply(effect));
+        let chain = Chain::new(&subject.structure, LinkModel::Full);
+        let pose = [0.3, -0.4];
+        let payload = Payload { mass_kg: 4.0, ..Payload::default() };
+        let posed = chain.pose_rad(&pose, &payload, Vector3::new(0.0, 30.0, 0.0));
+        let statics = posed.statics();
+        (posed.centre_line(&pose, &statics.deformations), statics.tip_displacement_m)
+    }
+
+    #[test]
+    fn the_centre_line_follows_every_compliance_of_the_base_and_no_name() {
+        let lift = r#"{"effect": "base_lift", "at": "base", "parameters": {"stiffness_nm_per_rad": 2e5, "preload_nm": 5}}"#;
+        let tilt =
+            r#"{"effect": "base_compliance", "at": "base", "parameters": {"stiffness_nm_per_rad": 3e5}}"#;
+        let frame = r#"{"effect": "frame_compliance", "at": "base",
+            "parameters": {"diagonal_rad_per_nm": [1e-5, 2e-5, 0], "coupling_rad_per_nm": [0, 0, 0]}}"#;
+        let all = format!("{lift}, {tilt}, {frame}");
+        for effects in ["", lift, tilt, frame, all.as_str()] {
+            let (line, tip) = stations("j1", effects);
+            let last = line.last().expect("stations");
+            assert!((last.moved_m - tip).norm() < 1e-12, "{effects}: {} {tip}", last.moved_m);
+            let (named, _) = stations("base", effects);
+            for (one, other) in line.iter().zip(&named) {
+                assert_eq!(one.moved_m, other.moved_m, "{effects}: {}", one.piece);
+            }
+        }
     }
 
     #[test]

@@ -5,19 +5,18 @@
 
 use super::beam::{PreparedBeam, pull_on};
 use super::deflections::{Deflections, screw};
-use super::{Twist, Wrench, body_inertia, force_wrench, rotation_twist, stack};
-use crate::arm::LinkModel;
+use super::{Twist, Wrench, across, body_inertia, force_wrench, rotation_twist, stack};
 use crate::arm::base_lift::BaseLift;
 use crate::arm::body::RigidBody;
 use crate::arm::effect::base_lift;
 use crate::arm::joint_law::JointLaw;
 use crate::arm::linkage::{Linkage, linkages};
-use crate::arm::load::Water;
-use crate::arm::load::{LoadCase, Payload};
+use crate::arm::load::{LoadCase, Payload, Water};
 use crate::arm::pose::{DrivenJoint, pose_si};
 use crate::arm::prismatic::PrismaticPiece;
 use crate::arm::springs::{Drawn, ElementFrame, EndLoad, Side, Spring, end_loads};
 use crate::arm::structure::{FrameCompliance, JointPiece, LinkPiece, Piece, Structure};
+use crate::arm::{BASE, LinkModel};
 use nalgebra::{DMatrix, Matrix3, Matrix6, Matrix6xX, Rotation3, Vector3};
 
 /// An arm prepared for many poses and loads.
@@ -85,12 +84,23 @@ pub enum Compliance {
     Lift(BaseLift),
 }
 
+/// The part of the arm to which an elastic element belongs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Owner {
+    /// The base of the arm.
+    Base,
+    /// The piece of the chain with this index.
+    Piece(usize),
+}
+
 /// One elastic element of an arm in a pose.
 #[derive(Debug, Clone)]
 pub struct ElasticElement {
     /// Name of the element: the name of the joint or link, `NAME.bearing`, `NAME.guide`, `NAME.frame_compliance`, or
-    /// `base`.
+    /// `base`. It is `base.ground` if a joint or a tube has the name `base`.
     pub name: String,
+    /// The part of the arm to which the element belongs.
+    pub owner: Owner,
     /// Position of the element in the world \[m\]. For a link it is the position of its root.
     pub at_m: Vector3<f64>,
     /// Motion of everything outboard per unit of each strain coordinate, as a vector of velocity and angular velocity
@@ -252,12 +262,12 @@ impl Chain {
         };
         if self.base_tilt_rad_per_nm > 0.0 {
             walk.tilt(
-                "base".into(),
+                (Owner::Base, self.base_name()),
                 [Vector3::x(), Vector3::y()].map(|axis| (axis, self.base_tilt_rad_per_nm)),
             );
         }
         walk.lift(self.base_lift);
-        walk.frame("base", &self.base_frame);
+        walk.frame(Owner::Base, BASE, &self.base_frame);
         walk.load(Side::Base);
         for (index, piece) in self.pieces.iter().enumerate() {
             match piece {
@@ -267,6 +277,18 @@ impl Chain {
             }
         }
         walk
+    }
+
+    /// Name of the elastic element of a base that tilts. Results have a row for each name, so it differs from the names
+    /// of all joints and tubes.
+    fn base_name(&self) -> String {
+        let is_taken = self.pieces.iter().any(|piece| match piece {
+            Prepared::Joint(JointPiece { name, .. }) | Prepared::Prismatic(PrismaticPiece { name, .. }) => {
+                name == BASE
+            }
+            Prepared::Link(link, beam) => beam.is_some() && link.name == BASE,
+        });
+        if is_taken { format!("{BASE}.ground") } else { BASE.into() }
     }
 
     /// Forces of the springs on the arm in a pose. The forces depend on the positions of the springs' ends, so a first
@@ -340,9 +362,10 @@ impl Walk {
         self.bodies(&joint.bodies.fixed);
         self.load(Side::Fixed(index));
         let axis = self.rotation * joint.axis;
-        self.bearing(joint);
+        self.bearing(index, joint);
         self.elastic(ElasticElement {
             name: joint.name.clone(),
+            owner: Owner::Piece(index),
             at_m: self.at_m,
             twists: vec![rotation_twist(&axis, &self.at_m)],
             compliance: Compliance::Joint(joint.law.at_angle(angle_rad)),
@@ -359,7 +382,7 @@ impl Walk {
     /// Adds a link; the compliance of the frame at its root comes before it. `piece` is the index of the link in the
     /// chain.
     fn link(&mut self, piece: usize, link: &LinkPiece, beam: Option<&PreparedBeam>) {
-        self.frame(&link.name, &link.root_frame);
+        self.frame(Owner::Piece(piece), &link.name, &link.root_frame);
         let vector = self.rotation * link.vector_m;
         self.point_mass(link.point_mass_kg, self.at_m + vector / 2.0);
         let end_m = self.at_m + vector;
@@ -406,6 +429,7 @@ impl Walk {
             .collect();
         ElasticElement {
             name: link.name.clone(),
+            owner: Owner::Piece(piece),
             at_m: self.at_m,
             twists,
             compliance: Compliance::Linear(beam.compliances.clone()),
@@ -435,25 +459,32 @@ impl Walk {
     }
 
     /// Adds the springs of a joint's bearing and housing. Their axes stand still in the housing.
-    fn bearing(&mut self, joint: &JointPiece) {
+    fn bearing(&mut self, index: usize, joint: &JointPiece) {
         let axes = across(&joint.axis).map(|axis| self.rotation * axis);
         let springs = axes.into_iter().zip(joint.lean_rad_per_nm.map(|lean| joint.tilt_rad_per_nm + lean));
-        self.tilt(format!("{}.bearing", joint.name), springs);
+        self.tilt((Owner::Piece(index), format!("{}.bearing", joint.name)), springs);
     }
 
     /// Adds rotational springs about axes through the position that the walk has reached. Each is an axis in the world
     /// and the compliance about it \[rad/(N m)\]; those without compliance are left out.
-    fn tilt(&mut self, name: String, springs: impl IntoIterator<Item = (Vector3<f64>, f64)>) {
+    fn tilt(&mut self, named: (Owner, String), springs: impl IntoIterator<Item = (Vector3<f64>, f64)>) {
         let present = springs.into_iter().filter(|(_, compliance)| *compliance > 0.0);
         let (axes, compliances): (Vec<Vector3<f64>>, Vec<f64>) = present.unzip();
         if axes.is_empty() {
             return;
         }
+        self.rotations(named, &axes, Compliance::Linear(compliances));
+    }
+
+    /// Adds an elastic element that rotates about `axes`, unit vectors in the world, through the position that the walk
+    /// has reached. It has one strain coordinate for each axis.
+    fn rotations(&mut self, (owner, name): (Owner, String), axes: &[Vector3<f64>], compliance: Compliance) {
         self.elastic(ElasticElement {
             name,
+            owner,
             at_m: self.at_m,
             twists: axes.iter().map(|axis| rotation_twist(axis, &self.at_m)).collect(),
-            compliance: Compliance::Linear(compliances),
+            compliance,
             torque_nm: 0.0,
             own: None,
         });
@@ -462,31 +493,23 @@ impl Walk {
     /// Adds the feet of a base that can lift off, which tilt about world x and y; nothing for `None`.
     fn lift(&mut self, lift: Option<BaseLift>) {
         let Some(lift) = lift else { return };
-        self.elastic(ElasticElement {
-            name: base_lift::KIND.name.into(),
-            at_m: self.at_m,
-            twists: [Vector3::x(), Vector3::y()].map(|axis| rotation_twist(&axis, &self.at_m)).to_vec(),
-            compliance: Compliance::Lift(lift),
-            torque_nm: 0.0,
-            own: None,
-        });
+        let name = base_lift::KIND.name.into();
+        self.rotations((Owner::Base, name), &[Vector3::x(), Vector3::y()], Compliance::Lift(lift));
     }
 
     /// Adds the springs of a compliant frame at the position that the walk has reached; nothing if the frame is rigid.
-    fn frame(&mut self, name: &str, frame: &FrameCompliance) {
+    /// The name `base.frame_compliance` is the base's, even if a link is named `base`.
+    fn frame(&mut self, owner: Owner, name: &str, frame: &FrameCompliance) {
         let (axes, compliances): (Vec<_>, Vec<_>) = frame.springs().into_iter().unzip();
         if axes.is_empty() {
             return;
         }
-        let turn = |axis: &Vector3<f64>| rotation_twist(&(self.rotation * axis), &self.at_m);
-        self.elastic(ElasticElement {
-            name: format!("{name}.frame_compliance"),
-            at_m: self.at_m,
-            twists: axes.iter().map(turn).collect(),
-            compliance: Compliance::Linear(compliances),
-            torque_nm: 0.0,
-            own: None,
-        });
+        let axes: Vec<Vector3<f64>> = axes.iter().map(|axis| self.rotation * axis).collect();
+        let name = match owner {
+            Owner::Piece(_) if name == BASE => format!("{BASE}.link.frame_compliance"),
+            _ => format!("{name}.frame_compliance"),
+        };
+        self.rotations((owner, name), &axes, Compliance::Linear(compliances));
     }
 
     /// Adds rigid bodies. Their centres of gravity are given from the position that the walk has reached, in the
@@ -521,14 +544,6 @@ impl Walk {
 /// Force and moment of a spring at its end, as a wrench about the world's origin.
 pub(crate) fn wrench_of(load: &EndLoad) -> Wrench {
     force_wrench(&load.force_n, &load.at_m) + stack(&Vector3::zeros(), &load.moment_nm)
-}
-
-/// Two unit vectors perpendicular to `axis` and to each other.
-pub(crate) fn across(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
-    // the cross product is best conditioned with the world axis that is least parallel to `axis`
-    let least = axis.iamin();
-    let first = axis.cross(&Vector3::ith(least, 1.0)).normalize();
-    [first, axis.cross(&first)]
 }
 
 /// The distributed mass and weight of a link in the world, computed from those in its section frame. `root_m` is the

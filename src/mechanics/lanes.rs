@@ -62,6 +62,26 @@ pub(crate) fn splat_all<V: Lanes, const K: usize>(numbers: [f64; K]) -> [V; K] {
     out
 }
 
+/// Loads several sets of eight numbers from memory.
+#[inline(always)]
+pub(crate) fn load_all<V: Lanes, const K: usize>(from: &[Eight; K]) -> [V; K] {
+    let mut out = [V::zero(); K];
+    for k in 0..K {
+        out[k] = V::load(&from[k]);
+    }
+    out
+}
+
+/// Stores several sets of eight numbers in memory.
+#[inline(always)]
+pub(crate) fn store_all<V: Lanes, const K: usize>(from: [V; K]) -> [Eight; K] {
+    let mut out = [[0.0; LANES]; K];
+    for k in 0..K {
+        out[k] = from[k].store();
+    }
+    out
+}
+
 /// Subtracts `factor` times each number of `list` from the number of `from` at the same place. Both lists have the same
 /// length.
 #[inline(always)]

@@ -7,7 +7,7 @@
 //! matrix becomes `Tᵀ M T`. `T` is the unit matrix, with the factor in the row of the passive joint and the column of
 //! the driver.
 
-use super::chain::{Item, Posed};
+use super::chain::{Compliance, ElasticElement, Item, Posed};
 use super::{Twist, Wrench};
 use crate::arm::linkage::Linkage;
 use nalgebra::{DMatrix, DVector};
@@ -57,6 +57,13 @@ impl LinkedCoordinates {
     }
 }
 
+impl ElasticElement {
+    /// Whether the element is the torsion spring of the revolute joint `name`. A base has a name that joints may have.
+    fn is_joint(&self, name: &str) -> bool {
+        matches!(self.compliance, Compliance::Joint(_)) && self.name == name
+    }
+}
+
 impl Posed<'_> {
     /// For each linkage, the motion and the torque that it transfers to the driving joint under weight and tip force.
     pub fn transferred(&self) -> Vec<Transferred> {
@@ -71,7 +78,7 @@ impl Posed<'_> {
                 Item::Body(body) => wrench += body.weight(),
                 Item::Load(load) => wrench += load,
                 Item::Elastic(element) => {
-                    out.extend(linkages.iter().filter(|l| l.passive == element.name).map(|l| {
+                    out.extend(linkages.iter().filter(|l| element.is_joint(&l.passive)).map(|l| {
                         let twist = element.twists[0] * l.factor;
                         let torque_nm = twist.dot(&wrench) + element.torque_nm * l.factor;
                         Transferred { driver: l.driver.clone(), twist, torque_nm }
@@ -117,7 +124,7 @@ impl Posed<'_> {
     /// The coupled strain coordinates of each linkage.
     pub(super) fn linked_coordinates(&self) -> Vec<LinkedCoordinates> {
         let coordinate = |name: &str| {
-            let before = self.elements().take_while(|e| e.name != name);
+            let before = self.elements().take_while(|e| !e.is_joint(name));
             before.map(|e| e.twists.len()).sum::<usize>()
         };
         let of = |l: &Linkage| LinkedCoordinates {
@@ -168,5 +175,28 @@ mod tests {
         let by_hand = (1e4 / (5.0 * lever_m * lever_m)).sqrt() / std::f64::consts::TAU;
         assert!((frequency_hz / by_hand - 1.0).abs() < 1e-9, "{frequency_hz} {by_hand}");
         assert!(posed.modes(&statics, 1)[0].tip_shape_m.z.abs() > 0.0);
+    }
+
+    /// A lever whose second joint turns against the first, which has the name `first`, on a base that tilts.
+    fn lowest_hz_on_a_compliant_base(first: &str) -> f64 {
+        let text = format!(
+            r#"{{"name": "a", "effects": [
+                {{"effect": "base_compliance", "at": "base", "parameters": {{"stiffness_nm_per_rad": 2e4}}}}], "chain": [
+                {{"type": "joint", "name": "{first}", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e4, "mass_kg": 1}},
+                {{"type": "link", "name": "upper", "vector_m": [0.5, 0, 0], "mass_kg": 2}},
+                {{"type": "joint", "name": "j2", "axis": [0, 1, 0], "stiffness_nm_per_rad": 2e4, "mass_kg": 1,
+                  "coupled": {{"{first}": -1}}}},
+                {{"type": "link", "name": "lower", "vector_m": [0.3, 0, 0], "mass_kg": 2}}]}}"#
+        );
+        let document = Document::parse("a.json", &text).expect("JSON");
+        let arm = read_arm_document(document, &Catalogs::default()).expect("an arm");
+        let chain = Chain::new(&arm.structure(JointModel::ThreeSegment), LinkModel::Full);
+        let posed = chain.pose_rad(&[0.35], &Payload::default(), Vector3::zeros());
+        posed.modes(&posed.statics(), 1)[0].frequency_hz
+    }
+
+    #[test]
+    fn a_linkage_turns_its_driving_joint_and_not_a_base_of_the_same_name() {
+        assert_eq!(lowest_hz_on_a_compliant_base("base"), lowest_hz_on_a_compliant_base("j1"));
     }
 }

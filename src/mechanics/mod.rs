@@ -82,6 +82,14 @@ pub(crate) fn angular(six: &Vector6<f64>) -> Vector3<f64> {
     six.fixed_rows::<3>(3).into_owned()
 }
 
+/// Two unit vectors perpendicular to `axis` and to each other.
+pub(crate) fn across(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
+    // the cross product is best conditioned with the world axis that is least parallel to `axis`
+    let least = axis.iamin();
+    let first = axis.cross(&Vector3::ith(least, 1.0)).normalize();
+    [first, axis.cross(&first)]
+}
+
 /// Inertia matrix (6x6) of a rigid body about the world's origin. It turns the twist of the body into its momentum.
 pub fn body_inertia(
     mass_kg: f64,

@@ -7,7 +7,7 @@
 //! the carriage; if a ram moves, it stays where the joint begins.
 
 use super::beam::section_frame;
-use super::chain::{Compliance, ElasticElement, Walk};
+use super::chain::{Compliance, ElasticElement, Owner, Walk};
 use super::{Wrench, angular, linear, rotation_twist, stack};
 use crate::arm::prismatic::{Moves, PrismaticPiece};
 use crate::arm::springs::{ElementFrame, Side};
@@ -54,10 +54,11 @@ impl Walk {
         };
         self.at_m = moved_m;
         if !joint.guide_is_rigid() {
-            self.elastic(guide(joint, &frame, &springs_m));
+            self.elastic(guide(index, joint, &frame, &springs_m));
         }
         self.elastic(ElasticElement {
             name: joint.name.clone(),
+            owner: Owner::Piece(index),
             at_m: springs_m,
             twists: vec![stack(&frame.column(0).into(), &Vector3::zeros())],
             compliance: Compliance::Slide { m_per_n: joint.m_per_n, frame },
@@ -73,8 +74,13 @@ impl Walk {
 }
 
 /// The springs of a guide as an elastic element. `frame` has the axes of the guide and `springs_m` is the point of the
-/// springs, in the world. Axes about which the guide is rigid are left out.
-fn guide(joint: &PrismaticPiece, frame: &Matrix3<f64>, springs_m: &Vector3<f64>) -> ElasticElement {
+/// springs, in the world; `index` is the place of the joint in the chain. Axes about which the guide is rigid are left out.
+fn guide(
+    index: usize,
+    joint: &PrismaticPiece,
+    frame: &Matrix3<f64>,
+    springs_m: &Vector3<f64>,
+) -> ElasticElement {
     let axes = frame.column_iter().zip(joint.guide_rad_per_nm.iter());
     let (twists, compliances) = axes
         .filter(|(_, compliance)| **compliance > 0.0)
@@ -82,6 +88,7 @@ fn guide(joint: &PrismaticPiece, frame: &Matrix3<f64>, springs_m: &Vector3<f64>)
         .unzip();
     ElasticElement {
         name: guide_name(&joint.name),
+        owner: Owner::Piece(index),
         at_m: *springs_m,
         twists,
         compliance: Compliance::Linear(compliances),

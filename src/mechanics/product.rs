@@ -73,17 +73,38 @@ impl Panels {
             let columns: Vec<_> = b.column_iter().collect();
             let columns: Vec<&[f64]> = columns.iter().map(|column| column.as_slice()).collect();
             let stride = out.nrows();
-            in_lanes(Sums { out: out.as_mut_slice(), stride, a: self, columns: &columns });
+            in_lanes(Sums { out: out.as_mut_slice(), stride, a: self, columns: &columns, is_lower: false });
         }
+    }
+
+    /// The lower triangle of the product of this left factor with its own transpose, whose columns are `columns`. Above
+    /// the diagonal of the result are some other entries of the product, and zeros.
+    ///
+    /// # Panics
+    /// If `columns` are not as many and as long as the left factor's rows.
+    pub(crate) fn lower_square(&self, columns: &[&[f64]]) -> DMatrix<f64> {
+        assert_eq!(self.rows, columns.len(), "a column for each row");
+        let mut out = DMatrix::zeros(self.rows, self.rows);
+        if self.terms > 0 && !out.is_empty() {
+            in_lanes(Sums { out: out.as_mut_slice(), stride: self.rows, a: self, columns, is_lower: true });
+        }
+        out
     }
 
     /// Stores the matrix A so that its transpose can be the left factor of a product AᵀB.
     pub(crate) fn of_columns(a: DMatrixView<f64>) -> Self {
-        let (terms, rows) = a.shape();
+        let columns: Vec<_> = a.column_iter().collect();
+        let columns: Vec<&[f64]> = columns.iter().map(|column| column.as_slice()).collect();
+        Self::of_slices(&columns, a.nrows())
+    }
+
+    /// The same for a matrix A that is given by its columns, each with `terms` entries.
+    pub(crate) fn of_slices(columns: &[&[f64]], terms: usize) -> Self {
+        let rows = columns.len();
         let mut eights = vec![[0.0; LANES]; rows.div_ceil(LANES) * terms];
-        for (row, column) in a.column_iter().enumerate() {
+        for (row, column) in columns.iter().enumerate() {
             let panel = &mut eights[row / LANES * terms..][..terms];
-            panel.iter_mut().zip(column.as_slice()).for_each(|(eight, x)| eight[row % LANES] = *x);
+            panel.iter_mut().zip(*column).for_each(|(eight, x)| eight[row % LANES] = *x);
         }
         Self { eights, rows, terms }
     }
@@ -95,6 +116,8 @@ struct Sums<'a> {
     stride: usize,
     a: &'a Panels,
     columns: &'a [&'a [f64]],
+    /// Whether only the sums from the diagonal down are asked for.
+    is_lower: bool,
 }
 
 impl LaneWork for Sums<'_> {
@@ -106,13 +129,14 @@ impl LaneWork for Sums<'_> {
         for (panel, terms) in self.a.eights.chunks_exact(self.a.terms).enumerate() {
             let first = panel * LANES;
             let count = LANES.min(self.a.rows - first);
+            let end = if self.is_lower { first + count } else { self.columns.len() };
             let mut j = 0;
-            while j + COLUMNS <= self.columns.len() {
+            while j + COLUMNS <= end {
                 let to = &mut self.out[j * stride + first..];
                 add_block::<V, COLUMNS>(to, stride, count, terms, &self.columns[j..j + COLUMNS]);
                 j += COLUMNS;
             }
-            while j < self.columns.len() {
+            while j < end {
                 let to = &mut self.out[j * stride + first..];
                 add_block::<V, 1>(to, stride, count, terms, &self.columns[j..j + 1]);
                 j += 1;
@@ -177,6 +201,16 @@ mod tests {
             assert_eq!(longer.rows(rows, 3), DMatrix::from_element(3, columns, 2.0));
             let within = longer.rows(0, rows) - direct;
             assert!(within.iter().all(|x| (x - 2.0).abs() < 1e-14), "{within}");
+        }
+    }
+
+    #[test]
+    fn the_lower_triangle_of_a_square_is_that_of_the_whole_product() {
+        for (terms, count) in [(1, 1), (5, 8), (40, 23), (192, 70)] {
+            let a = numbers(terms, count, 4);
+            let columns: Vec<&[f64]> = a.as_slice().chunks(terms).collect();
+            let own = Panels::of_slices(&columns, terms).lower_square(&columns);
+            assert_eq!(own.lower_triangle(), transposed_product(&a, &a).lower_triangle());
         }
     }
 

@@ -5,6 +5,7 @@ pub(crate) mod braille;
 pub mod budget;
 pub mod caveats;
 pub(crate) mod certificate;
+pub(crate) mod choice_fronts;
 pub mod compare;
 pub(crate) mod divided;
 pub mod facts;

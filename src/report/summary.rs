@@ -200,7 +200,7 @@ impl Found {
 }
 
 /// Marks before and after the timing in a summary. They allow a comparison of all other text between runs.
-const TIMING: [&str; 2] = ["<!-- timing -->", "<!-- /timing -->"];
+pub(crate) const TIMING: [&str; 2] = ["<!-- timing -->", "<!-- /timing -->"];
 
 /// The answer to the study's question in two sentences.
 fn answer(input: &SummaryInput, found: &Found) -> String {

@@ -17,7 +17,7 @@ use super::row_case::{AtJoint, Hinge};
 use super::row_chunk::{Chunk, StressEight};
 use super::row_drives::DriveAttributes;
 use super::row_modes::Question;
-use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, splat_all};
+use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, load_all, splat_all};
 use crate::sizing::eight::EightDemands;
 use crate::space::levels::{DesignRow, Finished, Keep, OutwardIn};
 use crate::space::problem::{ArmProblem, Partial};
@@ -496,16 +496,6 @@ impl RowChunk<'_, '_> {
 #[inline(always)]
 fn add<V: Lanes>(to: &mut Eight, more: V) {
     *to = (V::load(to) + more).store();
-}
-
-/// Loads several sets of eight numbers from memory.
-#[inline(always)]
-fn load_all<V: Lanes, const K: usize>(from: &[Eight; K]) -> [V; K] {
-    let mut out = [V::zero(); K];
-    for k in 0..K {
-        out[k] = V::load(&from[k]);
-    }
-    out
 }
 
 /// Whether all eight arms have the same drive. This is frequent, because the drives of neighbouring designs are

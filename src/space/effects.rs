@@ -16,8 +16,8 @@ use crate::arm::prismatic::{Moves, PrismaticPiece};
 use crate::arm::springs::{Side, SpringKind, SpringPlace};
 use crate::arm::structure::{JointAngle, JointPiece, LinkPiece, Piece, Structure, link_piece};
 use crate::arm::{Link, LinkBody};
+use crate::mechanics::across;
 use crate::mechanics::beam::section_frame;
-use crate::mechanics::chain::across;
 use nalgebra::{Rotation3, Vector3};
 
 /// A layer: what the search adds to an arm in one step. Each layer becomes one slot.

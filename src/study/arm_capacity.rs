@@ -22,10 +22,10 @@ use crate::sizing::bearing::BearingLimits;
 use crate::space::bearing_loads::{at_centre, bearings_of};
 
 /// The remark that says what is checked and what is not.
-const AT_REST: &str = "Judged are torques, forces and output bearings at rest, as far as their limits are known. Motion, heat and strength are not checked.";
+const AT_REST: &str = "Torques, forces and output bearings are judged at rest, as far as their limits are known. Motion, heat and strength are not checked.";
 
 /// The remark on an arm for which no cases are given.
-const ONE_POSE: &str = "Asked is one pose only, with every joint at zero and the payload at the tip: give your poses with --cases FILE.";
+const ONE_POSE: &str = "Only one pose was judged: every joint at zero, the payload at the tip. Give your poses with --cases FILE.";
 
 /// Whether a document is an arm file. It then has a chain and, in contrast to a study file, no poses.
 pub fn is_arm_file(document: &Document) -> bool {

@@ -1,14 +1,16 @@
 //! Springs and counterweights of a study, and remarks on them.
 
+use super::balance_choices::{MOST_CHOICES, number_of_choices};
 use crate::arm::springs::Spring;
-use crate::arm::springs_file::{BodiesOf, Named, hang, read_counterweights, read_springs};
+use crate::arm::springs_file::{BodiesOf, Named, Values, hang, read_counterweights, read_springs};
 use crate::input::json::Object;
 use crate::space::design_space::{DesignSpace, SpacePiece};
 
 /// Reads the springs of a study from `root`, and adds its counterweights as bodies to the pieces on which they sit.
 pub(super) fn read_balance(root: &Object, pieces: &mut [SpacePiece]) -> Option<Vec<Spring>> {
     let named: Vec<Named> = pieces.iter().map(|p| (p.name(), matches!(p, SpacePiece::Joint(_)))).collect();
-    let (springs, counterweights) = (read_springs(root, &named), read_counterweights(root, &named));
+    let springs = read_springs(root, &named, Values::Choices);
+    let counterweights = read_counterweights(root, &named, Values::Choices);
     let bodies = pieces.iter_mut().map(|piece| match piece {
         SpacePiece::Joint(joint) => BodiesOf::Joint(&mut joint.bodies),
         SpacePiece::Prismatic(slide) => BodiesOf::Joint(&mut slide.joint.bodies),
@@ -22,6 +24,17 @@ pub(super) fn read_balance(root: &Object, pieces: &mut [SpacePiece]) -> Option<V
         }
     });
     springs
+}
+
+/// Reads the number of choices of springs and counterweights that a study leaves open; 1 if it leaves none open.
+pub(super) fn read_number_of_choices(root: &Object) -> Option<usize> {
+    match root.node().value().as_object().map_or(1, number_of_choices) {
+        many if many > MOST_CHOICES => root.node().fault(
+            format!("has {many} choices of springs and counterweights"),
+            &format!("leave at most {MOST_CHOICES}, because each is searched by itself"),
+        ),
+        choices => Some(choices),
+    }
 }
 
 /// Remarks that results print with the numbers of an arm with springs; empty without springs.

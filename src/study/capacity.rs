@@ -182,7 +182,7 @@ fn limits_remark(space: &DesignSpace, built: &Arm, own: &[usize]) -> Option<Stri
         (too_far || too_low).then(|| Overload { piece: "tip".into(), check })
     };
     let stated_kg = varied.iter().map(|&case| cases[case].payload.mass_kg).fold(0.0, f64::max);
-    let judged = "Judged are drives, output bearings and the stress in links.";
+    let judged = "Drives, output bearings and the stress in links are judged.";
     Some(match breaks(stated_kg) {
         Some(broken) => format!(
             "{judged} The limits of the study are not met even at {} kg: {} in a judged pose.",

@@ -140,7 +140,10 @@ pub fn resume_check(
             let missing = missing(study, &judge, catalogs, &front, (&problem, &rows), &look.designs);
             list(&mut faults, missing, "designs are missing");
             if *ties_listed && look.lacks_ties {
-                faults.push("it says that all ties are rows of it, and they are more than its rows".into());
+                faults.push(
+                    "the run claims that its rows include all ties, but there are ties that are not rows"
+                        .into(),
+                );
             }
             look.completeness
         }

@@ -4,7 +4,7 @@
 use super::definition::Study;
 use super::gear_remarks::life_remarks;
 use super::joint_obstacle::{first_fit_at, obstacle_at};
-use super::load::refuse_empty;
+use super::load::{refuse_choices, refuse_empty};
 use super::refusal::Refusal;
 use super::table::sizing_rows;
 use crate::arm::Arm;
@@ -72,12 +72,13 @@ const MOST_OPTIONS: u32 = 4096;
 /// `design_id` given as `id`, or without an id a design with links of median mass.
 ///
 /// # Errors
-/// The study has no design with this id.
+/// The study has no design with this id, or leaves values of springs or counterweights open.
 pub(crate) fn chosen_design(
     study: &Study,
     id: Option<&str>,
     catalogs: &Catalogs,
 ) -> Result<(DesignSpace, Vec<u32>), Refusal> {
+    refuse_choices(study)?;
     let Some(id) = id else {
         let space = study.space.middle(MOST_OPTIONS);
         let chosen = middle(&ArmProblem::new(&space, catalogs));

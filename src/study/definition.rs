@@ -16,6 +16,9 @@ pub struct Study {
     pub gap: f64,
     /// Indices of the cases whose pose states a payload of its own.
     pub own_payloads: Vec<usize>,
+    /// Number of choices of springs and counterweights that the study leaves open; 1 if it states one value for each
+    /// number. The space has the first choice. [`balance_choices`](super::balance_choices) lists all of them.
+    pub balance_choices: usize,
     /// Messages on options that were left out because a rating that a check needs is blank.
     pub not_checked: Vec<String>,
     /// Remarks on the question that a reader of the result should know, as sentences.

@@ -186,8 +186,8 @@ fn unknown_sizes(asking: &[&SpaceJoint], catalogs: &Catalogs) -> Option<String> 
     });
     let (gears, motors) = (gears.count(), motors.count());
     let counts = format!(
-        "A size that the catalogs do not give is not checked: that is so of {gears} gears and {motors} motors that these joints \
-         may have."
+        "{gears} gears and {motors} motors that these joints may have lack a size in the catalogs, and that size is not \
+         checked."
     );
     (gears + motors > 0).then_some(counts)
 }
@@ -244,7 +244,7 @@ mod tests {
             "Fit is checked: gear no wider than 1.2 times the link that the joint carries (shoulder, elbow); length of the gear \
              and of the motor behind it at most 150.0 mm (shoulder); motor in the hollow of that link (elbow)",
             "not compared with a link in elbow: there is none before the next joint",
-            "A size that the catalogs do not give is not checked",
+            "lack a size in the catalogs, and that size is not checked",
             "Sizes that were recalled and not seen in a document count like others",
         ] {
             assert!(remarks.contains(words), "{words}\n{remarks}");

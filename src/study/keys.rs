@@ -9,8 +9,9 @@ use crate::arm::case_keys::{
 };
 use crate::arm::file_keys::{EFFECT_LIST, GIVEN_LINK_RULES};
 use crate::arm::keys::{
-    COUNTERWEIGHTS, EXTRAS, GEAR_AT, GEAR_RATIO, GRAVITY, MASS_FACTOR, MOTOR_AT, MOTOR_MASS, MOTOR_POINT,
-    POSITIVE_OR_NULL, SPRINGS, STIFFNESS_FACTOR, TRANSMISSION, TRANSMISSION_RULES, TURNS_WITH,
+    EXTRAS, GEAR_AT, GEAR_RATIO, GRAVITY, MASS_FACTOR, MOTOR_AT, MOTOR_MASS, MOTOR_POINT,
+    OPEN_COUNTERWEIGHTS, OPEN_SPRINGS, POSITIVE_OR_NULL, STIFFNESS_FACTOR, TRANSMISSION, TRANSMISSION_RULES,
+    TURNS_WITH,
 };
 use crate::arm::shared_keys::{
     AXIS, BODIES_OF_JOINT, BODIES_OF_LINK, COUPLED, GEAR, IS_JOINT, IS_LINK, LINK_MASS, LINK_PIECES,
@@ -106,8 +107,8 @@ pub(super) static STUDY: Shape = Shape::new(
             "[]",
             "Physics beyond the nominal model that every design has.",
         ),
-        optional("springs", SPRINGS, "-", "[]", "Springs that balance every design."),
-        optional("counterweights", COUNTERWEIGHTS, "-", "[]", "Point masses that balance every design."),
+        optional("springs", OPEN_SPRINGS, "-", "[]", "Springs that balance every design."),
+        optional("counterweights", OPEN_COUNTERWEIGHTS, "-", "[]", "Point masses that balance every design."),
         optional(
             "gap_percent",
             Kind::Below(100.0),

@@ -42,13 +42,27 @@ pub fn load_study(name: &str, catalogs: &Catalogs) -> Result<(Study, String), Re
     Ok((read_study(Document::parse(&file, &text)?, catalogs)?, text))
 }
 
-/// Refuses a study in which some link or joint has nothing to choose from, or which is too large. It is called before
-/// designs are built.
+/// Refuses a study that leaves values of springs or counterweights open, because its space has the first choice alone.
+pub(super) fn refuse_choices(study: &Study) -> Result<(), Refusal> {
+    match study.balance_choices {
+        1 => Ok(()),
+        choices => Err(Refusal::Unknown(format!(
+            "the study \"{}\" leaves {choices} choices of springs and counterweights open, which `armwright run` without \
+             --shard searches one by one; here, state one value in place of each list, or give the study.json of one choice \
+             from the folder of its results",
+            study.name
+        ))),
+    }
+}
+
+/// Refuses a study in which some link or joint has nothing to choose from, which is too large, or which leaves values of
+/// springs or counterweights open. It is called before designs are built.
 ///
 /// # Errors
 /// [`Refusal::EmptySpace`] with every link and joint without options; [`Refusal::Unknown`] with the limit on size
-/// that is exceeded.
+/// that is exceeded, or with the number of choices that are open.
 pub fn refuse_empty(study: &Study, catalogs: &Catalogs) -> Result<(), Refusal> {
+    refuse_choices(study)?;
     if let Some(why) = too_large(&study.space, catalogs) {
         return Err(Refusal::Unknown(format!("the study \"{}\": {why}", study.name)));
     }

@@ -4,6 +4,7 @@ pub(crate) mod alternatives;
 pub(crate) mod arm_capacity;
 pub(crate) mod arm_remarks;
 mod balance;
+pub(crate) mod balance_choices;
 pub(crate) mod ballast;
 pub(crate) mod bearing_remarks;
 pub(crate) mod bodies;
@@ -70,6 +71,7 @@ pub(crate) mod worst_pose;
 
 pub use arm_capacity::{capacity_of_arm, is_arm_file};
 pub use arm_remarks::{arm_remarks, ignored_words};
+pub use balance_choices::{BalanceChoice, balance_choices};
 pub use ballast::{BallastFlags, ballast_flags};
 pub use budget::budgets;
 pub use capacity::{AtPose, Capacity, capacity_of};

@@ -3,7 +3,7 @@
 //! In the file, lengths of sections and limits on lengths are in millimetres, because profiles are sold in
 //! millimetres. Everything else is in SI units. The resolved [`DesignSpace`] is entirely in SI units.
 
-use super::balance::{balance_remarks, read_balance};
+use super::balance::{balance_remarks, read_balance, read_number_of_choices};
 use super::bodies::impossible_bodies_remark;
 use super::cases::{Cases, read_cases};
 use super::choose_keys::CHOOSE;
@@ -110,6 +110,7 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     let motion = under_gravity(&root, gravity_m_s2, motion)?;
     let (mut chain, mut effects, harness_kg_per_m) = (chain?, effects?, harness_kg_per_m?);
     let springs = read_balance(&root, &mut chain);
+    let balance_choices = read_number_of_choices(&root);
     effects.extend(harness_effects(&chain, harness_kg_per_m, &effects));
     let space = DesignSpace {
         name: name.clone()?,
@@ -130,7 +131,16 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     in_range?;
     let Aside { not_checked, mut remarks, .. } = aside;
     remarks.extend(remarks_on(&space, harness_kg_per_m, catalogs));
-    Some(Study { name: name?, question: question?, space, gap: gap?, own_payloads, not_checked, remarks })
+    Some(Study {
+        name: name?,
+        question: question?,
+        space,
+        gap: gap?,
+        own_payloads,
+        balance_choices: balance_choices?,
+        not_checked,
+        remarks,
+    })
 }
 
 /// Reads the name of a study. It must have a letter or a digit, because the folder of results is named after it.

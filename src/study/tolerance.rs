@@ -37,7 +37,7 @@ use std::f64::consts::TAU;
 use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Number of samples that are computed between two checks for a stop.
+/// Number of samples that are computed before they are counted.
 const BATCH: u32 = 256;
 /// Number of standard deviations within which 95 % of a normal distribution lie.
 const SIGMAS_95: f64 = 1.959_963_984_540_054;
@@ -92,7 +92,7 @@ pub fn part(text: &str) -> Result<f64, String> {
     let (number, scale) = text.strip_suffix('%').map_or((text, 1.0), |n| (n.trim_end(), 0.01));
     match number.parse::<f64>() {
         Ok(x) if x > 0.0 && x * scale < 1.0 => Ok(x * scale),
-        _ => Err(format!("\"{text}\" is not a percentage between 0 % and 100 %, such as 20%")),
+        _ => Err(format!("\"{text}\" is not a percentage above 0 % and below 100 %, such as 20%")),
     }
 }
 
@@ -229,15 +229,13 @@ pub fn scatter_front(
     let mut tally = Tally::new(designs.len(), picks.len());
     let mut left = sampling.samples;
     while left > 0 {
-        if stop.load(Ordering::Relaxed) {
-            return None;
-        }
         let batch = left.min(BATCH);
         left -= batch;
         let draw = |_| streams.iter_mut().map(|(figure, s)| (figure.clone(), s.factor())).collect();
         let factors: Vec<Factors> = (0..batch).map(draw).collect();
-        let samples: Vec<Sample> = factors.par_iter().map(|factors| trial.sample(factors)).collect();
-        samples.into_iter().for_each(|sample| tally.add(sample));
+        let unless_stopped = |factors| (!stop.load(Ordering::Relaxed)).then(|| trial.sample(factors));
+        let samples: Option<Vec<Sample>> = factors.par_iter().map(unless_stopped).collect();
+        samples?.into_iter().for_each(|sample| tally.add(sample));
     }
     Some(tally.told(designs, &nominal, sampling))
 }

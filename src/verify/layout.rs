@@ -10,8 +10,8 @@ use crate::arm::body::RigidBody;
 use crate::arm::load::LoadCase;
 use crate::arm::prismatic::{Moves, PrismaticPiece};
 use crate::arm::structure::{LinkPiece, Piece, Structure};
+use crate::mechanics::across;
 use crate::mechanics::beam::section_frame;
-use crate::mechanics::chain::across;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 /// Rank of the springs on which the arm stands. No piece has a lower rank.

@@ -198,3 +198,20 @@ fn a_study_of_very_many_designs_is_not_searched_design_by_design() {
     assert_eq!(rerun["picks"].as_array().expect("picks").len(), 4);
     assert!(said.contains("Not all designs are listed"), "{said}");
 }
+
+#[test]
+fn a_stop_in_the_first_search_ends_the_second_too_and_nothing_is_compared() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let study = format!("{}/study.json", example());
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_armwright"));
+    command.args(["reconcile", &example(), "--study", &study, "--out", word(dir.path())]);
+    // the program is stopped when the first front is found
+    let output = command.env("ARMWRIGHT_FAULT", "stop:front").output().expect("it runs");
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(8), "{said}");
+    assert!(said.contains("the search with the nominal model was stopped, so nothing is compared"), "{said}");
+    assert!(!said.contains("no design is missing"), "{said}");
+    assert_eq!(read_json(&dir.path().join("verdict.json"))["study"]["status"], "interrupted");
+    assert!(dir.path().join("study/nominal/front.csv").is_file());
+    assert!(!dir.path().join("study/corrected").exists());
+}

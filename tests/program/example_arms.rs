@@ -149,3 +149,31 @@ fn the_gantry_is_as_stiff_as_its_guides_and_its_wrist() {
     let (run, summary) = run("gantry.json", None);
     answers("A gantry with a wrist", &run, &summary, 48);
 }
+
+#[test]
+fn each_spring_of_the_palletizer_is_a_choice() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/arms");
+    let out = tempfile::tempdir().expect("a folder");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_armwright"));
+    let output =
+        command.arg("run").arg(root.join("palletizer-springs.json")).arg("--out").arg(out.path()).output();
+    let output = output.expect("the program starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let summary = std::fs::read_to_string(out.path().join("summary.md")).expect("written");
+    let picks: Vec<&str> = summary.lines().filter(|line| line.contains(" with gas spring: force ")).collect();
+    let force_kg_mm = |line: &str| {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let before = |unit: &str| words[words.iter().position(|word| *word == unit).expect("a unit") - 1];
+        [
+            before("N,").trim_start_matches('-').to_string(),
+            before("kg,").to_string(),
+            before("mm,").to_string(),
+        ]
+    };
+    assert_eq!(picks.len(), 3, "{summary}");
+    for line in picks {
+        for word in force_kg_mm(line) {
+            assert!(page().contains(&word), "{word} of \"{line}\" is not on the page");
+        }
+    }
+}

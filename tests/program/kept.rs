@@ -38,7 +38,7 @@ fn a_run_whose_standard_error_is_full_or_closed_keeps_its_result() {
 }
 
 #[test]
-fn standard_output_that_cannot_be_written_is_an_error_of_every_verb() {
+fn standard_output_that_cannot_be_written_is_an_error_of_verbs_that_print_much_or_little() {
     let here = folder_with_study();
     let verbs: [&[&str]; 7] = [
         &["size", "study.json", "--json"],

@@ -3,6 +3,7 @@
 
 mod architecture;
 mod bad_input;
+mod balance_choices;
 mod bearings;
 mod book;
 mod browser;

@@ -80,6 +80,11 @@ fn results_are_the_same_outside_of_their_timings_for_any_number_of_threads() {
         }
         let same = armwright(here.path(), &["check", "--same", "one", "two"]);
         assert!(same.status.success(), "{}", String::from_utf8_lossy(&same.stderr));
+        // the page names its folder, and a path in HTML is written otherwise than in Markdown
+        let words = ["run", "study.json", "--search", search, "--out", "in a folder/one & only"];
+        assert!(armwright(here.path(), &words).status.success());
+        let same = armwright(here.path(), &["check", "--same", "one", "in a folder/one & only"]);
+        assert!(same.status.success(), "{}", String::from_utf8_lossy(&same.stderr));
         let [one, two] =
             ["one", "two"].map(|out| std::fs::read(here.path().join(out).join("run.json")).expect("a run"));
         assert_ne!(one, two, "threads and time differ");
@@ -88,6 +93,11 @@ fn results_are_the_same_outside_of_their_timings_for_any_number_of_threads() {
     let other = armwright(here.path(), &["check", "--same", "one", "two"]);
     assert_eq!(other.status.code(), Some(9));
     assert!(String::from_utf8_lossy(&other.stderr).contains("budget.csv is only in one"));
+    for out in ["paper-one", "paper-two"] {
+        assert!(armwright(here.path(), &["run", "paper-table1", "--out", out]).status.success());
+    }
+    let same = armwright(here.path(), &["check", "--same", "paper-one", "paper-two"]);
+    assert!(same.status.success(), "{}", String::from_utf8_lossy(&same.stderr));
 }
 
 #[test]

@@ -58,6 +58,11 @@ fn runs_shards_and_fronts_are_what_their_schemas_say() {
     let files =
         |name: &str| ["exhaustive", "exact"].map(|search| read(&here.join(search.to_string() + name)));
     hold("run", &files("/run.json"), &[]);
+    let mut study: Value = serde_json::from_str(STUDY).expect("JSON");
+    study["counterweights"] = json!([{"at": "upper", "point_m": [-0.1, 0, 0], "mass_kg": [0, 1]}]);
+    std::fs::write(here.join("open.json"), study.to_string()).expect("written");
+    done(&["run", "open.json", "--out", "open"]);
+    hold("choices", &[read(&here.join("open/choices.json"))], &[]);
     hold("shard", &files("-1/shard.json"), &[]);
     columns_hold("front", &std::fs::read_to_string(here.join("exact/front.csv")).expect("a front"));
 }

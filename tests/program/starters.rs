@@ -161,7 +161,7 @@ fn check_reads_readings_with_their_campaign_and_cases_with_their_arm() {
 }
 
 /// Verbs and verbs of verbs, as the help lists them.
-fn verbs(here: &Path, words: &[&str]) -> Vec<String> {
+pub fn verbs(here: &Path, words: &[&str]) -> Vec<String> {
     let (code, help) = armwright(here, &[words, &["--help"]].concat());
     assert_eq!(code, 0, "{help}");
     let list = help.split("Commands:\n").nth(1).unwrap_or_default().split("\n\n").next().unwrap_or_default();

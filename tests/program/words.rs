@@ -1,6 +1,7 @@
 //! Standard words: those that docs/glossary.md has replaced do not come back in the documents, in help, or in public
 //! names.
 
+use crate::starters::verbs;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -74,23 +75,15 @@ fn help(words: &[&str]) -> String {
 fn replaced_words_stay_away_from_documents_and_help() {
     let mut texts = documents();
     assert!(texts.len() > 40, "the documents are not where this test looks");
-    let verbs = [
-        "studies",
-        "run",
-        "size",
-        "analyze",
-        "design",
-        "front",
-        "compare",
-        "reconcile",
-        "predict",
-        "catalog",
-    ];
-    texts.extend(verbs.map(|verb| (format!("armwright {verb} --help"), help(&[verb]))));
-    texts.extend(
-        [vec!["front", "check"], vec!["catalog", "show"], vec!["catalog", "check"]]
-            .map(|words| (words.join(" "), help(&words))),
-    );
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let of_all = verbs(here, &[]);
+    assert!(of_all.len() >= 18, "{of_all:?}");
+    for verb in &of_all {
+        texts.push((format!("armwright {verb} --help"), help(&[verb])));
+        for inner in verbs(here, &[verb]) {
+            texts.push((format!("armwright {verb} {inner} --help"), help(&[verb, &inner])));
+        }
+    }
     let mut found = Vec::new();
     for (name, text) in &texts {
         for line in text.lines() {

@@ -30,13 +30,14 @@ pub(crate) const KIND: Kind = Kind {
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
     let added = matrix(numbers);
-    match subject.structure.link_mut(at) {
-        Some(link) => link.root_frame = FrameCompliance(link.root_frame.0 + added),
-        None if at == "base" => {
-            subject.structure.base_frame = FrameCompliance(subject.structure.base_frame.0 + added);
-        }
+    let structure = &mut subject.structure;
+    let frame = match structure.place(at, KIND.places) {
+        Some(Place::Base) => Some(&mut structure.base_frame),
         // a structure may be only a part of the arm and lack this link; then nothing changes
-        None => {}
+        _ => structure.link_mut(at).map(|link| &mut link.root_frame),
+    };
+    if let Some(frame) = frame {
+        *frame = FrameCompliance(frame.0 + added);
     }
 }
 

@@ -58,3 +58,14 @@ fn alike_about_x_and_y_it_is_the_base_compliance() {
     let base = statics.shares_m.iter().find(|(n, _)| *n == "base").expect("share").1;
     assert!((frame - base).norm() < 1e-15);
 }
+
+#[test]
+fn the_base_is_meant_where_a_link_has_its_name_too() {
+    let numbers = [3e-6, 5e-6, 4e-6, 0.0, 0.0, 0.0];
+    let mut subject = two_link_subject();
+    let link = subject.structure.links().next().expect("a link").name.clone();
+    subject.structure.link_mut(&link).expect("a link").name = "base".into();
+    apply(&numbers, "base", &mut subject);
+    assert_eq!(subject.structure.base_frame.0, matrix(&numbers));
+    assert_eq!(subject.structure.links().next().expect("a link").root_frame.0, Matrix3::zeros());
+}

@@ -1,19 +1,23 @@
 //! Finds the pieces of an arm by name, and the places where an effect can be.
 
 use super::kind::Place;
+use crate::arm::BASE;
 use crate::arm::prismatic::PrismaticPiece;
 use crate::arm::structure::{JointPiece, LinkPiece, Piece, Structure};
 
 impl Structure {
     /// Which kind of place the name `at` denotes in this arm. Only the kinds in `allowed` are tried; `None` if `at`
-    /// denotes none of them.
+    /// denotes none of them. Where the base is allowed, `base` denotes the base, even if a piece has this name.
     pub fn place(&self, at: &str, allowed: &[Place]) -> Option<Place> {
+        if at == BASE && allowed.contains(&Place::Base) {
+            return Some(Place::Base);
+        }
         allowed.iter().copied().find(|place| match place {
             Place::Joint => self.joints().any(|j| j.name == at),
             Place::Prismatic => self.prismatics().any(|j| j.name == at),
             Place::Link => self.links().any(|l| l.name == at),
             Place::Tube => self.links().any(|l| l.name == at && l.beam.is_some()),
-            Place::Base => at == "base",
+            Place::Base => false, // decided above
             Place::Payload => at == "payload",
             Place::Arm => at == "arm",
             Place::Channel(channel) => at == channel.word(),
@@ -27,7 +31,7 @@ impl Structure {
             Place::Prismatic => self.prismatics().map(|j| j.name.clone()).collect(),
             Place::Link => self.links().map(|l| l.name.clone()).collect(),
             Place::Tube => self.links().filter(|l| l.beam.is_some()).map(|l| l.name.clone()).collect(),
-            Place::Base => vec!["base".into()],
+            Place::Base => vec![BASE.into()],
             Place::Payload => vec!["payload".into()],
             Place::Arm => vec!["arm".into()],
             Place::Channel(channel) => vec![channel.word().into()],

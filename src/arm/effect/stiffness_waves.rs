@@ -57,10 +57,8 @@ fn starts(setting: &Setting) -> Vec<Vec<f64>> {
 
 fn contradiction(numbers: &[f64]) -> Option<(&'static str, &'static str)> {
     let is_whole = (1e-12..0.95).contains(&(numbers[0] + numbers[1]));
-    (!is_whole).then_some((
-        "once and twice together are nothing, or more than the joint has",
-        "give a sum below 0.95",
-    ))
+    (!is_whole)
+        .then_some(("the sum of `once` and `twice` is zero, or at least 0.95", "give a sum below 0.95"))
 }
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {

@@ -3,7 +3,7 @@
 
 use super::analysis::Positions;
 use super::fit::fit;
-use super::fitted::Sample;
+use super::fitted::{Fitted, Sample};
 use super::kinematics::Placing;
 use super::moved::{Boundary, Kind, Moved};
 use super::sessions::telling_part;
@@ -185,16 +185,13 @@ impl Positions {
         out
     }
 
-    /// Whether an undeclared session would fit as well as the effect `effect` does. If so, returns the row, counted
-    /// from 1, at which this session would begin; otherwise `None`. Two fits are taken as equally good if the
-    /// logarithms of their likelihoods differ by at most `tie`.
-    pub(crate) fn session_instead(&self, campaign: &Campaign, effect: usize, tie: f64) -> Option<usize> {
+    /// Whether an undeclared session would fit as well as an effect of the model does. `fitted` is the fit without this
+    /// effect. If so, returns the row, counted from 1, at which this session would begin; otherwise `None`. Two fits are
+    /// taken as equally good if the logarithms of their likelihoods differ by at most `tie`.
+    pub(crate) fn session_instead(&self, campaign: &Campaign, fitted: &Fitted, tie: f64) -> Option<usize> {
         let spec = &campaign.statement.positions;
         let kinds = self.kinds(spec.tool_offset, spec.base_placement);
-        let mut without = self.clone();
-        let rest: Vec<usize> = self.fitted.effects.iter().copied().filter(|e| *e != effect).collect();
-        let samples: Vec<&Sample> = self.samples.iter().collect();
-        without.fitted = fit(&samples, &self.numbers, &rest, &self.fitted);
+        let without = Self { fitted: fitted.clone(), ..self.clone() };
         let missing = self.fitted.ln_likelihood - tie - without.fitted.ln_likelihood;
         let whole = without.whole()?;
         let best = kinds.iter().filter_map(|&moved| {

@@ -8,7 +8,7 @@
 
 use super::fitted::{Fitted, Miss, NU, Sample, misses, weight};
 use super::kinematics::Number;
-use super::rows::normal;
+use super::rows::normal_of_fit;
 use super::springs::{Best, best_springs};
 
 const MOST_STEPS: usize = 40;
@@ -20,7 +20,14 @@ const MOST_TURN_RAD: f64 = 0.3;
 impl Fitted {
     /// The model after the fraction `part` of a step from this model to `goal`: the geometry's `numbers` change by
     /// this fraction of `step`, and the compliances go this fraction of the way to those of `goal`.
-    fn towards(&self, goal: &Self, part: f64, numbers: &[Number], step: &[f64], samples: &[&Sample]) -> Self {
+    fn towards(
+        &self,
+        goal: &Self,
+        part: f64,
+        numbers: &[Number],
+        step: &[f64],
+        samples: &[&Sample],
+    ) -> (Self, Vec<Miss>) {
         let mut out = goal.clone();
         let step: Vec<f64> = step.iter().map(|s| part * s).collect();
         out.geometry.step(numbers, &step);
@@ -30,12 +37,12 @@ impl Fitted {
         out.judged(samples)
     }
 
-    /// This model with the scale of its position errors and its likelihood computed for the samples.
-    fn judged(mut self, samples: &[&Sample]) -> Self {
+    /// This model with the scale of its position errors and its likelihood computed for the samples, and these errors.
+    fn judged(mut self, samples: &[&Sample]) -> (Self, Vec<Miss>) {
         let misses = misses(samples, &self);
         self.scale_m = scale(&misses, self.scale_m);
         self.ln_likelihood = ln_likelihood(&misses, self.scale_m);
-        self
+        (self, misses)
     }
 
     /// Stores the standard deviations `deviations` in this model. The first `numbers` of them belong to the numbers of
@@ -73,25 +80,27 @@ pub(crate) fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], st
     here.effects = effects.to_vec();
     here.moved.resize(numbers.len(), 0.0);
     // kept for comparison: the start can be better than where a first bad step leads
-    let begin = here.clone().judged(samples);
+    let (begin, first_misses) = here.clone().judged(samples);
+    // the errors of the samples with the present model
+    let mut misses = first_misses.clone();
     // The first step is taken even if it makes the fit worse, because the quadratic approximation is poor far from the
     // best fit.
     let mut merit = f64::NEG_INFINITY;
     let mut last: Option<Best> = None;
     for _ in 0..MOST_STEPS {
         let before = here.clone();
-        let best = step(samples, numbers, &mut here);
+        let best = step(samples, &misses, numbers, &mut here);
         let step = best.as_ref().map_or(vec![0.0; numbers.len()], |b| b.step[..numbers.len()].to_vec());
         last = best.or(last);
         let step = shortened(numbers, step);
         let goal = here;
         let parts = (0..MOST_HALVINGS).map(|n| 0.5f64.powi(n));
         let mut tried = parts.map(|part| before.towards(&goal, part, numbers, &step, samples));
-        let Some(better) = tried.find(|t| t.merit(numbers) >= merit - 1e-9 * merit.abs()) else {
+        let Some(better) = tried.find(|(t, _)| t.merit(numbers) >= merit - 1e-9 * merit.abs()) else {
             here = before;
             break;
         };
-        here = better;
+        (here, misses) = better;
         merit = here.merit(numbers);
         let largest = step.iter().map(|s| s.abs()).fold(0.0, f64::max);
         if (here.scale_m / before.scale_m - 1.0).abs() < 1e-6 && largest < 1e-6 {
@@ -99,12 +108,11 @@ pub(crate) fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], st
         }
     }
     if here.merit(numbers) < begin.merit(numbers) {
-        here = begin;
+        (here, misses) = (begin, first_misses);
     }
     if let Some(best) = last {
         here.set_deviations(numbers.len(), &best.deviations());
     }
-    let misses = misses(samples, &here);
     let free = numbers.len() + here.compliances.iter().map(Vec::len).sum::<usize>();
     let factor = sandwich_factor(&misses, here.scale_m, free);
     here.deviations.iter_mut().flatten().chain(&mut here.number_deviations).for_each(|d| *d *= factor);
@@ -161,10 +169,11 @@ pub(crate) fn ln_likelihood(misses: &[Miss], scale_m: f64) -> f64 {
     misses.iter().map(one).sum()
 }
 
-/// Takes one weighted Gauss-Newton step from the model `here`. Sets its compliances to the best values that are
-/// physically possible, and returns the step of all numbers and compliances; `None` if the equations are singular.
-fn step(samples: &[&Sample], numbers: &[Number], here: &mut Fitted) -> Option<Best> {
-    let normal = normal(samples, numbers, here, &mut |_, _, _| {});
+/// Takes one weighted Gauss-Newton step from the model `here`, with which the samples have the errors `misses`. Sets its
+/// compliances to the best values that are physically possible, and returns the step of all numbers and compliances;
+/// `None` if the equations are singular.
+fn step(samples: &[&Sample], misses: &[Miss], numbers: &[Number], here: &mut Fitted) -> Option<Best> {
+    let normal = normal_of_fit(samples, misses, numbers, here);
     let best = best_springs(&normal, numbers.len(), &here.compliances)?;
     let compliances = here.compliances.iter_mut().flatten();
     compliances.zip(&best.step[numbers.len()..]).for_each(|(c, by)| *c += by);

@@ -1,7 +1,9 @@
 //! A measured position with the effect of gravity on it, and a fitted model of geometry and compliances.
 
+use super::eight_places::EightPlacer;
 use super::kinematics::{Geometry, Placer, Placing, Pose};
 use super::loads::Deflection;
+use crate::mechanics::lanes::LANES;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
@@ -170,8 +172,30 @@ impl Fitted {
 
 /// Errors of the samples with the model `fitted`, each coordinate multiplied by its weight for the fit.
 pub(crate) fn misses(samples: &[&Sample], fitted: &Fitted) -> Vec<Miss> {
-    let mut placer = fitted.geometry.placer();
-    samples.iter().map(|s| s.miss(&s.error(fitted.predicted_by(&mut placer, s)))).collect()
+    let mut placer = EightPlacer::new(&fitted.geometry);
+    let from_level = fitted.geometry.level_to_instrument();
+    let mut out = vec![Miss { scaled_m: Vector3::zeros(), readings: 0.0 }; samples.len()];
+    for eight in eights(&by_arm(samples), samples) {
+        let asked: Vec<Placing> = eight.iter().map(|&i| samples[i].placing()).collect();
+        for (&i, rigid_m) in eight.iter().zip(placer.place_m(&asked)) {
+            let sample = samples[i];
+            out[i] = sample.miss(&sample.error(rigid_m + from_level * fitted.displacement(sample)));
+        }
+    }
+    out
+}
+
+/// The indices of the samples arm by arm, because the numbers of one arm move no point of another.
+pub(crate) fn by_arm(samples: &[&Sample]) -> Vec<usize> {
+    let mut out: Vec<usize> = (0..samples.len()).collect();
+    out.sort_by_key(|&i| samples[i].arm);
+    out
+}
+
+/// Divides the indices `order` of samples into groups of up to eight samples of one arm each, in their order.
+pub(crate) fn eights<'a>(order: &'a [usize], samples: &'a [&Sample]) -> impl Iterator<Item = &'a [usize]> {
+    let arms = order.chunk_by(|a, b| samples[*a].arm == samples[*b].arm);
+    arms.flat_map(|own| own.chunks(LANES))
 }
 
 /// Weight of a sample with the error `miss` in the fit, without unit. It is more than 1 for errors well below the

@@ -9,7 +9,7 @@ use crate::reconcile::readings::campaign::PositionsSpec;
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
 /// The amplitudes of a joint's transmission error if the joint has none.
-const EVEN: [f64; 4] = [0.0; 4];
+pub(super) const EVEN: [f64; 4] = [0.0; 4];
 
 /// One number of the geometry that a fit can change. Rotations, tilts and shifts are counted from the nominal geometry.
 /// The indices say to which part of the geometry a number belongs.
@@ -68,6 +68,11 @@ impl Number {
             Number::Gravity(_) | Number::SessionPosition(..) => 0.05,
             Number::SessionRotation(..) => 0.02,
         }
+    }
+
+    /// Whether the number moves a point through the deflection of the arm and not through its geometry.
+    pub(crate) fn acts_through_deflection(&self) -> bool {
+        matches!(self, Number::Gravity(_) | Number::Tolerance(_) | Number::Effect(_))
     }
 
     /// Whether the number is a rotation that may be large, as for a placement. The fit shortens a step in which such a
@@ -167,17 +172,17 @@ pub(crate) struct Geometry {
     pub level: Rotation3<f64>,
     /// Direction of gravity in the level frame. It is -z, unless it was fitted after the frame was last levelled.
     pub gravity: Vector3<f64>,
-    zeros_rad: Vec<f64>,
+    pub(super) zeros_rad: Vec<f64>,
     /// Transmission error of each driven joint: sine and cosine, once and twice a turn \[rad\].
     pub transmissions_rad: Vec<[f64; 4]>,
-    axes: Vec<Unit<Vector3<f64>>>,
-    vectors_m: Vec<Vector3<f64>>,
-    mounts: Vec<Rotation3<f64>>,
-    angles: Vec<Option<JointAngle>>,
+    pub(super) axes: Vec<Unit<Vector3<f64>>>,
+    pub(super) vectors_m: Vec<Vector3<f64>>,
+    pub(super) mounts: Vec<Rotation3<f64>>,
+    pub(super) angles: Vec<Option<JointAngle>>,
     /// How far the arm is from its nominal state: one number for each
     /// [`Dependence`](super::dependence::Dependence) of the nominal deflection. All are 0 for the nominal arm.
     pub dependences: Vec<f64>,
-    arms: Vec<Vec<usize>>,
+    pub(super) arms: Vec<Vec<usize>>,
 }
 
 /// Angles of the driven joints in a pose, with their sines and cosines. These are computed once, because the geometry
@@ -187,7 +192,7 @@ pub(crate) struct Pose {
     /// Angles \[rad\].
     pub angles_rad: Vec<f64>,
     /// Sine and cosine of each angle.
-    sin_cos: Vec<(f64, f64)>,
+    pub(super) sin_cos: Vec<(f64, f64)>,
 }
 
 impl Pose {
@@ -360,6 +365,11 @@ impl Geometry {
         }
     }
 
+    /// Number of arms.
+    pub(crate) fn arms(&self) -> usize {
+        self.arms.len()
+    }
+
     /// Position of the point `asked`, in the instrument's frame \[m\]. For many points, a [`placer`](Self::placer) is
     /// faster.
     pub(crate) fn place_m(&self, asked: Placing) -> Vector3<f64> {
@@ -370,15 +380,15 @@ impl Geometry {
 /// Computes positions of points for one geometry. The memory for the frames of a pose is used again for each pose, so
 /// that nothing is allocated for each point.
 pub(crate) struct Placer<'a> {
-    geometry: &'a Geometry,
+    pub(super) geometry: &'a Geometry,
     /// For each piece, the two unit axes perpendicular to the joint's axis.
-    across: Vec<[Vector3<f64>; 2]>,
+    pub(super) across: Vec<[Vector3<f64>; 2]>,
     /// For each driven joint, the joints whose angle depends on it: the joint itself and its passive joints.
-    turned_by: Vec<Vec<usize>>,
+    pub(super) turned_by: Vec<Vec<usize>>,
     /// For each arm and piece, the index of the piece in the arm's chain; `None` for pieces of other arms.
-    along: Vec<Vec<Option<usize>>>,
+    pub(super) along: Vec<Vec<Option<usize>>>,
     /// Sine and cosine of each driven joint's zero.
-    zero_sin_cos: Vec<(f64, f64)>,
+    pub(super) zero_sin_cos: Vec<(f64, f64)>,
     /// Angles of the driven joints in the pose, with zeros and transmission errors added \[rad\].
     turned_rad: Vec<f64>,
     /// The frames along the chain: frame `k` is inboard of the chain's piece `k`, frame `k + 1` outboard of it.
@@ -497,7 +507,7 @@ impl Placer<'_> {
 
 /// Derivative of a joint's angle with respect to the angle of the driven joint with index `driven`: 1 for the driven
 /// joint itself, the coupling factor for a passive joint, otherwise 0.
-fn rate(angle: &JointAngle, driven: usize) -> f64 {
+pub(super) fn rate(angle: &JointAngle, driven: usize) -> f64 {
     match angle {
         JointAngle::Driven(index) => f64::from(u8::from(*index == driven)),
         JointAngle::Coupled(terms) => terms.iter().filter(|(i, _)| *i == driven).map(|(_, f)| f).sum(),
@@ -529,15 +539,9 @@ fn across(axis: &Unit<Vector3<f64>>) -> [Unit<Vector3<f64>>; 2] {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::arm::file::read_arm_document;
-    use crate::catalog::Catalogs;
-    use crate::input::json::Document;
-    use crate::reconcile::readings::campaign::Campaign;
-    use crate::reconcile::readings::campaign::read_statement;
-
-    const ARM: &str = r#"{"name": "a", "chain": [
+pub(crate) mod testing {
+    /// An arm with two driven joints and a passive one that both turn.
+    pub(crate) const ARM: &str = r#"{"name": "a", "chain": [
         {"type": "joint", "name": "j1", "axis": [0, 0, 1], "stiffness_nm_per_rad": null},
         {"type": "link", "name": "l1", "vector_m": [0.1, 0, 0.4]},
         {"type": "joint", "name": "j2", "axis": [0, 1, 0], "stiffness_nm_per_rad": null},
@@ -545,6 +549,17 @@ mod tests {
         {"type": "joint", "name": "j3", "axis": [0, 1, 0], "stiffness_nm_per_rad": null,
          "coupled": {"j2": -1, "j1": 0.2}},
         {"type": "link", "name": "l3", "vector_m": [0.2, 0.1, 0]}]}"#;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::testing::ARM;
+    use super::*;
+    use crate::arm::file::read_arm_document;
+    use crate::catalog::Catalogs;
+    use crate::input::json::Document;
+    use crate::reconcile::readings::campaign::Campaign;
+    use crate::reconcile::readings::campaign::read_statement;
 
     #[test]
     fn slopes_are_differences_of_places_passive_and_uneven_joints_included() {

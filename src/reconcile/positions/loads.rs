@@ -308,14 +308,13 @@ impl<'a> Loads<'a> {
     /// How the point with index `point` deflects in the pose and with the payload of `row`. The derivatives with
     /// respect to the direction of gravity are not computed and stay zero.
     pub(crate) fn deflection(&self, row: &PositionRow, point: usize) -> Deflection {
-        let pose_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
-        let own = &self.ready[row.arm][point];
-        let mut unit = own.pose(&own.unit, &self.tree.pose_of(row.arm, &pose_rad), &row.payload);
-        self.load_trunk(&mut unit, self.trunk[0], row, &pose_rad);
+        let hung = self.hung(row, point);
+        let mut unit = hung.own.pose(&hung.own.unit, &hung.pose_rad, &row.payload);
+        hung.load_trunk(&mut unit, self.trunk[0]);
         Deflection {
-            known_m: self.known_m(row, point),
+            known_m: self.known_of(&hung, row).statics().tip_displacement_m,
             known_slopes_m: [Vector3::zeros(); 2],
-            swings: own.swings(&unit, &self.slots),
+            swings: hung.own.swings(&unit, &self.slots),
             slots: Arc::clone(&self.slots),
         }
     }
@@ -323,39 +322,65 @@ impl<'a> Loads<'a> {
     /// Displacement of a point under gravity by the compliances that the arm file already has, in the level frame
     /// \[m\].
     pub(crate) fn known_m(&self, row: &PositionRow, point: usize) -> Vector3<f64> {
-        let pose_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
-        let own = &self.ready[row.arm][point];
-        let mut known = own.pose(&own.known, &self.tree.pose_of(row.arm, &pose_rad), &row.payload);
-        self.load_trunk(&mut known, self.trunk[1], row, &pose_rad);
-        known.statics().tip_displacement_m
+        self.known_of(&self.hung(row, point), row).statics().tip_displacement_m
     }
 
     /// What the linear displacement of [`known_m`](Self::known_m) lacks: displacement of the point as the arm hangs, with
     /// the levers of the deflected pose, less the linear one \[m\]. The bodies of other arms stay where they are without
     /// deflection.
     pub(crate) fn second_order_m(&self, row: &PositionRow, point: usize) -> Vector3<f64> {
-        let pose_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
-        let own = &self.ready[row.arm][point];
-        let own_rad = self.tree.pose_of(row.arm, &pose_rad);
-        let payload = seen_from_tool(&row.payload, &own.point_m);
+        let hung = self.hung(row, point);
+        let payload = seen_from_tool(&row.payload, &hung.own.point_m);
         let hanging_m = hanging_tip_m(|deflections| {
-            let mut posed = own.known.pose_with(&own_rad, &payload, Vector3::zeros(), deflections);
-            self.load_trunk(&mut posed, self.trunk[1], row, &pose_rad);
+            let mut posed = hung.own.known.pose_with(&hung.pose_rad, &payload, Vector3::zeros(), deflections);
+            hung.load_trunk(&mut posed, self.trunk[1]);
             posed
         });
-        let straight_m = own.pose(&own.known, &own_rad, &row.payload).tip_m;
-        hanging_m - straight_m - self.known_m(row, point)
+        let straight = self.known_of(&hung, row);
+        hanging_m - straight.tip_m - straight.statics().tip_displacement_m
     }
 
+    /// The arm as it is in the file, in the pose and with the payload of `row`, without deflection.
+    fn known_of<'b>(&self, hung: &Hung<'b>, row: &PositionRow) -> Posed<'b> {
+        let mut known = hung.own.pose(&hung.own.known, &hung.pose_rad, &row.payload);
+        hung.load_trunk(&mut known, self.trunk[1]);
+        known
+    }
+
+    /// The arm that ends at the point with the index `point`, its pose in `row`, and the bodies of the other arms.
+    fn hung(&self, row: &PositionRow, point: usize) -> Hung<'_> {
+        let pose_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
+        let others = (0..self.ready.len()).filter(|&other| other != row.arm);
+        let outboard = others.map(|other| {
+            let neighbour = &self.ready[other][0];
+            let pose = self.tree.pose_of(other, &pose_rad);
+            let hanging = neighbour.pose(&neighbour.unit, &pose, &Payload::default());
+            let outboard = hanging.items.into_iter().skip(self.trunk[0]);
+            outboard.filter(|item| matches!(item, Item::Body(_))).collect()
+        });
+        Hung {
+            neighbours: outboard.collect(),
+            own: &self.ready[row.arm][point],
+            pose_rad: self.tree.pose_of(row.arm, &pose_rad),
+        }
+    }
+}
+
+/// An arm in a pose, and the bodies of the other arms that hang on its trunk.
+struct Hung<'a> {
+    own: &'a Ready,
+    /// Angles of the arm's own joints \[rad\].
+    pose_rad: Vec<f64>,
+    /// For each other arm, its bodies outboard of the trunk.
+    neighbours: Vec<Vec<Item>>,
+}
+
+impl Hung<'_> {
     /// Adds the bodies of the other arms to the trunk of a posed arm. Their weight deflects the trunk and so moves
     /// the point too. The trunk ends after `items` items of the posed arm.
-    fn load_trunk(&self, posed: &mut Posed, items: usize, row: &PositionRow, pose_rad: &[f64]) {
-        for other in (0..self.ready.len()).filter(|&other| other != row.arm) {
-            let neighbour = &self.ready[other][0];
-            let pose = self.tree.pose_of(other, pose_rad);
-            let hanging = neighbour.pose(&neighbour.unit, &pose, &Payload::default());
-            let outboard = hanging.items[self.trunk[0]..].iter().filter(|item| matches!(item, Item::Body(_)));
-            posed.items.splice(items..items, outboard.cloned());
+    fn load_trunk(&self, posed: &mut Posed, items: usize) {
+        for bodies in &self.neighbours {
+            posed.items.splice(items..items, bodies.iter().cloned());
         }
     }
 }

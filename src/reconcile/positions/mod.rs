@@ -2,7 +2,8 @@
 //! Compliances are then found effect by effect. Each stage is judged on poses held out of the fit.
 //!
 //! - `tree` joins the arms that stand on one trunk; `points` lists the points on their tools.
-//! - [`kinematics`] computes where a point is, and [`loads`] how gravity moves it.
+//! - [`kinematics`] computes where a point is, `eight_places` where eight points are, and [`loads`] how gravity moves
+//!   a point.
 //! - `align` finds a first placement of the arm. [`fit`](mod@fit) fits a model (`fitted`). `rows` sums up its normal
 //!   equations (`normal`), and `springs` keeps the compliances physically possible.
 //! - [`analysis`] is the whole analysis. `sessions` finds sessions, `boundary` judges each boundary between two of them
@@ -23,6 +24,7 @@ pub(crate) mod boundary;
 pub(crate) mod convention_changes;
 pub(crate) mod conventions;
 pub(crate) mod dependence;
+pub(crate) mod eight_places;
 pub(crate) mod far_geometry;
 pub(crate) mod fit;
 pub(crate) mod fitted;

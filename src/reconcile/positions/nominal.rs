@@ -124,14 +124,10 @@ impl Positions {
         true
     }
 
-    /// Names and places of effects on the nominal deflection that would fit as well in the place of effect number
-    /// `position` of the model.
-    pub(super) fn dependences_instead(&self, position: usize) -> Vec<(String, String)> {
-        let mut without = self.clone();
-        without.fitted.effects.remove(position);
-        without.fitted.compliances.remove(position);
-        without.fitted.deviations.remove(position);
-        without.refit();
+    /// Names and places of effects on the nominal deflection that would fit as well in the place of an effect of the
+    /// model. `without` is the fit without this effect.
+    pub(super) fn dependences_instead(&self, without: &Fitted) -> Vec<(String, String)> {
+        let without = Self { fitted: without.clone(), ..self.clone() };
         self.as_good(without.best_dependences())
     }
 

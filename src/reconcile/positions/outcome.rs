@@ -27,6 +27,7 @@ use crate::reconcile::verdict::outcome::{Calibrated, Evidence, Located, Outcome,
 use crate::reconcile::verdict::stage::Stage;
 use crate::reconcile::verdict::{caution, correct};
 use crate::report::number::significant;
+use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::collections::{HashMap, HashSet};
 
@@ -47,9 +48,12 @@ const WORST_POSES: usize = 3;
 pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let found = analyze(campaign);
     let lack_of_fit = found.lack_of_fit(campaign);
+    // the model without each of its effects
+    let without: Vec<Fitted> =
+        (0..found.fitted.effects.len()).into_par_iter().map(|i| found.without_effect(i)).collect();
     let competitors: Vec<Vec<(usize, Fitted)>> =
-        (0..found.fitted.effects.len()).map(|i| found.competitors(i)).collect();
-    let findings = found.findings(campaign, &competitors);
+        without.iter().enumerate().map(|(i, without)| found.competitors(i, without)).collect();
+    let findings = found.findings(campaign, &without, &competitors);
     let adjusted = found.adjusted(&found.fitted);
     let (verdict, mut reasons) = found.verdict(campaign, &lack_of_fit, &findings, &adjusted);
     reasons.extend(found.remarks(campaign, &adjusted));
@@ -106,12 +110,18 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
 }
 
 impl Positions {
-    /// Findings for all effects of the model. `competitors` has, for each compliance, the candidates that would fit as
-    /// well in its place.
-    fn findings(&self, campaign: &Campaign, competitors: &[Vec<(usize, Fitted)>]) -> Vec<Finding> {
-        let compliant = competitors.iter().enumerate();
-        let compliant =
-            compliant.map(|(i, own)| self.with_session_instead(campaign, i, self.finding(i, own)));
+    /// Findings for all effects of the model. For each compliance `without` has the fit without it, and `competitors` the
+    /// candidates that would fit as well in its place.
+    fn findings(
+        &self,
+        campaign: &Campaign,
+        without: &[Fitted],
+        competitors: &[Vec<(usize, Fitted)>],
+    ) -> Vec<Finding> {
+        let compliant = without.iter().zip(competitors).enumerate();
+        let compliant = compliant.map(|(i, (without, own))| {
+            self.with_session_instead(campaign, without, self.finding(i, without, own))
+        });
         let dependent = self.named_dependences.iter().map(|&k| self.dependence_finding(k));
         let uneven = self.transmissions.iter().map(|&joint| self.transmission_finding(joint));
         compliant.chain(dependent).chain(uneven).collect()
@@ -251,8 +261,8 @@ impl Positions {
 
     /// Adds to the alternatives of the finding `finding` (effect number `i` of the model) the session that would
     /// explain the readings as well, if there is one.
-    fn with_session_instead(&self, campaign: &Campaign, i: usize, mut finding: Finding) -> Finding {
-        let row = self.session_instead(campaign, self.fitted.effects[i], TIE);
+    fn with_session_instead(&self, campaign: &Campaign, without: &Fitted, mut finding: Finding) -> Finding {
+        let row = self.session_instead(campaign, without, TIE);
         finding.indistinguishable_from.extend(row.map(|row| (SESSION.into(), format!("before row {row}"))));
         finding
     }
@@ -292,7 +302,7 @@ impl Positions {
         }
     }
 
-    fn finding(&self, i: usize, competitors: &[(usize, Fitted)]) -> Finding {
+    fn finding(&self, i: usize, without: &Fitted, competitors: &[(usize, Fitted)]) -> Finding {
         let candidate = &self.candidates[self.fitted.effects[i]];
         let (c, sd) = (&self.fitted.compliances[i], &self.fitted.deviations[i]);
         let parameters = match candidate.rotation {
@@ -314,7 +324,7 @@ impl Positions {
             effect: candidate.effect.into(),
             at: candidate.at.clone(),
             parameters,
-            indistinguishable_from: springs.chain(self.dependences_instead(i)).collect(),
+            indistinguishable_from: springs.chain(self.dependences_instead(without)).collect(),
         }
     }
 

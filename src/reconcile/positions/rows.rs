@@ -1,12 +1,18 @@
 //! The model of positions, linearized: for each sample its weighted error and the derivatives of its position with
 //! respect to every number, and the normal equations of all samples.
 //!
+//! A fit asks for these equations in every step, without further columns. [`normal_of_fit`] computes them for eight
+//! samples at a time.
+//!
 //! The computing time grows in proportion to the number of samples. The memory is fixed: the rows of the equations are
 //! computed in blocks, and only their products are kept.
 
-use super::fitted::{Fitted, Sample};
-use super::kinematics::{Number, Placer};
+use super::eight_places::{EightPlacer, Slope};
+use super::fitted::{Fitted, Miss, Sample, by_arm, eights};
+use super::kinematics::{Number, Placer, Placing};
 use super::normal::Normal;
+use crate::mechanics::lanes::LANES;
+use crate::mechanics::product::Panels;
 use nalgebra::{DMatrix, DVector, Rotation3, Vector3};
 
 /// Prior standard deviation of a compliance \[rad/(N m)\]. It is far larger than the compliance of any real part.
@@ -15,9 +21,8 @@ const PRIOR_RAD_PER_NM: f64 = 0.1;
 /// Number of samples (measured positions) whose rows of the equations are computed together. The rows then stay in
 /// the processor's cache until their products are taken.
 const BLOCK: usize = 64;
-
-/// Number of columns of the product matrix that are computed together.
-const STRIPE: usize = 32;
+/// Number of rows for which a block has room. The last eight samples of a block may be fewer.
+const HEIGHT: usize = 3 * (BLOCK + LANES);
 
 /// A function that appends further columns to the equations: derivatives of a sample's position with respect to
 /// whatever the caller tests \[m per unit\]. These columns belong to no number of the model.
@@ -50,13 +55,8 @@ impl<'a> Linearized<'a> {
         self.columns.clear();
         self.placer.slopes(sample.placing(), self.numbers, &mut self.columns);
         for (column, number) in self.columns.iter_mut().zip(self.numbers) {
-            match *number {
-                Number::Gravity(c) => {
-                    let pulled = here.leaning(sample, c);
-                    *column = self.from_level * (pulled + sample.deflection.known_slopes_m[c]);
-                }
-                Number::Tolerance(k) | Number::Effect(k) => *column = self.from_level * sample.nominal_m[k],
-                _ => {}
+            if let Some(by) = deflection_slope(here, &self.from_level, sample, number) {
+                *column = by;
             }
         }
         for &effect in &here.effects {
@@ -73,40 +73,136 @@ impl<'a> Linearized<'a> {
     }
 }
 
+/// Derivative of a sample's position with respect to a number that acts through the deflection, such as the direction of
+/// gravity \[m per unit\]; `None` for all other numbers.
+fn deflection_slope(
+    here: &Fitted,
+    from_level: &Rotation3<f64>,
+    sample: &Sample,
+    number: &Number,
+) -> Option<Vector3<f64>> {
+    let by = match *number {
+        Number::Gravity(c) => {
+            Some(from_level * (here.leaning(sample, c) + sample.deflection.known_slopes_m[c]))
+        }
+        Number::Tolerance(k) | Number::Effect(k) => Some(from_level * sample.nominal_m[k]),
+        _ => None,
+    };
+    debug_assert_eq!(by.is_some(), number.acts_through_deflection(), "{number:?}");
+    by
+}
+
 /// Builds the normal equations of all samples, linearized about the model `here`. `further` adds columns that belong
 /// to no number of the model.
 pub(crate) fn normal(samples: &[&Sample], numbers: &[Number], here: &Fitted, further: Further) -> Normal {
-    let own = numbers.len() + here.compliances.iter().map(Vec::len).sum::<usize>();
     let mut linearized = Linearized::new(here, numbers);
     let mut products: Option<Products> = None;
-    // arm by arm, because the numbers of one arm move no point of another
-    let mut samples: Vec<&Sample> = samples.to_vec();
-    samples.sort_by_key(|sample| sample.arm);
-    for block in samples.chunks(BLOCK) {
-        for (k, sample) in block.iter().enumerate() {
-            let error = linearized.at(sample, further);
+    for block in by_arm(samples).chunks(BLOCK) {
+        for (k, &i) in block.iter().enumerate() {
+            let error = linearized.at(samples[i], further);
             let columns = &linearized.columns;
             products.get_or_insert_with(|| Products::new(columns.len())).put(k, columns, &error);
         }
         products.iter_mut().for_each(|p| p.add(block.len()));
     }
-    let (mut curvature, mut gradient) = products.unwrap_or_else(|| Products::new(own)).into_whole();
-    let priors = numbers.iter().map(Number::prior).zip(&here.moved);
-    // a weak prior keeps the equations regular for a compliance that no weight loads
-    let compliances = here.compliances.iter().flatten().map(|c| (PRIOR_RAD_PER_NM, c));
-    for (i, (prior, moved)) in priors.chain(compliances).enumerate() {
-        let precision = prior.powi(-2);
-        curvature[(i, i)] += precision;
-        gradient[i] -= precision * moved;
+    let own = numbers.len() + here.compliances.iter().map(Vec::len).sum::<usize>();
+    products.unwrap_or_else(|| Products::new(own)).into_normal(numbers, here)
+}
+
+/// Builds the normal equations of a fit, without further columns. `misses` are the errors of the samples with the model
+/// `here`. The result is that of [`normal`] to the last bit; eight samples are computed at a time.
+pub(crate) fn normal_of_fit(
+    samples: &[&Sample],
+    misses: &[Miss],
+    numbers: &[Number],
+    here: &Fitted,
+) -> Normal {
+    let own = numbers.len() + here.compliances.iter().map(Vec::len).sum::<usize>();
+    let mut products = Products::new(own);
+    let mut rows = EightRows::new(here, numbers);
+    for block in by_arm(samples).chunks(BLOCK) {
+        let mut first = 0;
+        for eight in eights(block, samples) {
+            let own: Vec<(&Sample, &Miss)> = eight.iter().map(|&i| (samples[i], &misses[i])).collect();
+            rows.put(&own, first, &mut products);
+            first += eight.len();
+        }
+        products.add(block.len());
     }
-    Normal { curvature, gradient, own }
+    products.into_normal(numbers, here)
+}
+
+/// Computes the rows of the equations for up to eight samples of one arm at a time.
+struct EightRows<'a> {
+    here: &'a Fitted,
+    numbers: &'a [Number],
+    placer: EightPlacer<'a>,
+    from_level: Rotation3<f64>,
+    /// For each arm the derivatives with respect to the numbers.
+    slopes: Vec<Vec<Slope>>,
+    /// Indices of those numbers that act through the deflection.
+    deflecting: Vec<usize>,
+}
+
+impl<'a> EightRows<'a> {
+    fn new(here: &'a Fitted, numbers: &'a [Number]) -> Self {
+        let placer = EightPlacer::new(&here.geometry);
+        Self {
+            here,
+            numbers,
+            from_level: here.geometry.level_to_instrument(),
+            slopes: (0..here.geometry.arms()).map(|arm| placer.prepare(arm, numbers)).collect(),
+            placer,
+            deflecting: (0..numbers.len()).filter(|&j| numbers[j].acts_through_deflection()).collect(),
+        }
+    }
+
+    /// Stores the rows of the samples `own`, each given with its error, in the present block of `products`, from the
+    /// block's sample number `first` on.
+    fn put(&mut self, own: &[(&Sample, &Miss)], first: usize, products: &mut Products) {
+        let asked: Vec<Placing> = own.iter().map(|(sample, _)| sample.placing()).collect();
+        self.placer.place_m(&asked);
+        let mut scales = [[0.0; LANES]; 3];
+        for (lane, (sample, miss)) in own.iter().enumerate() {
+            // products of rows that are scaled by the root of the weight contain the weight
+            let root = self.here.weight(miss).sqrt();
+            let own = sample.precision * root;
+            (0..3).for_each(|c| scales[c][lane] = own[c]);
+            products.right.fixed_view_mut::<3, 1>(3 * (first + lane), 0).copy_from(&(miss.scaled_m * root));
+        }
+        let (slopes, out) = (&self.slopes[asked[0].arm], &mut products.rows.as_mut_slice()[3 * first..]);
+        self.placer.write_slopes(&asked, slopes, &scales, out, HEIGHT);
+        for (lane, (sample, _)) in own.iter().enumerate() {
+            let scales = Vector3::from(scales.map(|own| own[lane]));
+            self.put_deflection(sample, &scales, first + lane, products);
+        }
+    }
+
+    /// Stores the derivatives of one sample that act through its deflection: with respect to some numbers, and to all
+    /// compliances.
+    fn put_deflection(&self, sample: &Sample, scales: &Vector3<f64>, k: usize, products: &mut Products) {
+        let mut store = |j: usize, by: Vector3<f64>| {
+            products.rows.fixed_view_mut::<3, 1>(3 * k, j).copy_from(&by.component_mul(scales));
+        };
+        for &j in &self.deflecting {
+            let by = deflection_slope(self.here, &self.from_level, sample, &self.numbers[j]);
+            by.into_iter().for_each(|by| store(j, by));
+        }
+        let mut j = self.numbers.len();
+        for &effect in &self.here.effects {
+            sample.deflection.per_compliance(effect, &self.here.geometry.gravity, |by| {
+                store(j, self.from_level * by);
+                j += 1;
+            });
+        }
+    }
 }
 
 /// Sums of the products of the equations' rows, to which one block of rows is added after another.
 struct Products {
-    /// Rows of the equations of one block of samples. Each row of the equations is a column of this matrix.
+    /// Rows of the equations of one block of samples: x, y and z of the first sample, then of the second, and so on.
     rows: DMatrix<f64>,
-    right: DVector<f64>,
+    right: DMatrix<f64>,
     curvature: DMatrix<f64>,
     gradient: DVector<f64>,
 }
@@ -114,8 +210,8 @@ struct Products {
 impl Products {
     fn new(width: usize) -> Self {
         Self {
-            rows: DMatrix::zeros(width, 3 * BLOCK),
-            right: DVector::zeros(3 * BLOCK),
+            rows: DMatrix::zeros(HEIGHT, width),
+            right: DMatrix::zeros(HEIGHT, 1),
             curvature: DMatrix::zeros(width, width),
             gradient: DVector::zeros(width),
         }
@@ -123,34 +219,33 @@ impl Products {
 
     /// Stores the three rows of a sample (x, y, z) in the present block, as the block's sample number `k`.
     fn put(&mut self, k: usize, columns: &[Vector3<f64>], error: &Vector3<f64>) {
-        for c in 0..3 {
-            let mut row = self.rows.column_mut(3 * k + c);
-            row.iter_mut().zip(columns).for_each(|(to, column)| *to = column[c]);
+        for (j, column) in columns.iter().enumerate() {
+            self.rows.fixed_view_mut::<3, 1>(3 * k, j).copy_from(column);
         }
-        self.right.fixed_rows_mut::<3>(3 * k).copy_from(error);
+        self.right.fixed_view_mut::<3, 1>(3 * k, 0).copy_from(error);
     }
 
     /// Adds the products of the present block, which has `samples` samples, to the sums. Columns that are zero in the
     /// whole block are left out.
     fn add(&mut self, samples: usize) {
-        let rows = self.rows.columns(0, 3 * samples);
-        let own: Vec<usize> = (0..rows.nrows()).filter(|i| rows.row(*i).iter().any(|x| *x != 0.0)).collect();
-        let mut transposed = DMatrix::zeros(own.len(), 3 * samples);
-        for (mut to, from) in transposed.column_iter_mut().zip(rows.column_iter()) {
-            to.iter_mut().zip(&own).for_each(|(to, i)| *to = from[*i]);
-        }
-        // products with an explicit transpose are faster
-        let columns = transposed.transpose();
-        let gradient = &transposed * self.right.rows(0, 3 * samples);
+        let count = 3 * samples;
+        let columns: Vec<&[f64]> =
+            self.rows.as_slice().chunks_exact(HEIGHT).map(|own| &own[..count]).collect();
+        let own: Vec<usize> = (0..columns.len()).filter(|&j| columns[j].iter().any(|x| *x != 0.0)).collect();
+        let columns: Vec<&[f64]> = own.iter().map(|&j| columns[j]).collect();
+        let panels = Panels::of_slices(&columns, count);
+        let gradient = panels.times(self.right.view((0, 0), (count, 1)));
         own.iter().zip(gradient.iter()).for_each(|(i, x)| self.gradient[*i] += x);
-        // the product is symmetric: in each stripe only the entries from the diagonal on are needed
-        for first in (0..own.len()).step_by(STRIPE) {
-            let count = STRIPE.min(own.len() - first);
-            let product = transposed.rows_range(first..) * columns.columns(first, count);
-            for (j, column) in product.column_iter().enumerate() {
-                for (i, x) in column.iter().enumerate().skip(j) {
-                    self.curvature[(own[first + i], own[first + j])] += x;
-                }
+        let product = panels.lower_square(&columns);
+        for (j, column) in product.column_iter().enumerate() {
+            let mut sums = self.curvature.column_mut(own[j]);
+            let (sums, column) = (sums.as_mut_slice(), &column.as_slice()[j..]);
+            // neighbours are added together
+            let mut first = j;
+            for run in own[j..].chunk_by(|a, b| a + 1 == *b) {
+                let to = &mut sums[run[0]..][..run.len()];
+                to.iter_mut().zip(&column[first - j..]).for_each(|(sum, x)| *sum += x);
+                first += run.len();
             }
         }
     }
@@ -159,6 +254,21 @@ impl Products {
     fn into_whole(mut self) -> (DMatrix<f64>, DVector<f64>) {
         self.curvature.fill_upper_triangle_with_lower_triangle();
         (self.curvature, self.gradient)
+    }
+
+    /// The normal equations of the model `here` with these sums and with its priors.
+    fn into_normal(self, numbers: &[Number], here: &Fitted) -> Normal {
+        let (mut curvature, mut gradient) = self.into_whole();
+        let priors = numbers.iter().map(Number::prior).zip(&here.moved);
+        // a weak prior keeps the equations regular for a compliance that no weight loads
+        let compliances = here.compliances.iter().flatten().map(|c| (PRIOR_RAD_PER_NM, c));
+        for (i, (prior, moved)) in priors.chain(compliances).enumerate() {
+            let precision = prior.powi(-2);
+            curvature[(i, i)] += precision;
+            gradient[i] -= precision * moved;
+        }
+        let own = numbers.len() + here.compliances.iter().map(Vec::len).sum::<usize>();
+        Normal { curvature, gradient, own }
     }
 }
 
@@ -172,8 +282,8 @@ mod tests {
     fn sums_of_blocks_are_the_products_of_all_rows_at_once() {
         let mut dice = Xoshiro256PlusPlus::seed_from_u64(3);
         let mut next = || (dice.next_u64() >> 11) as f64 / (1u64 << 53) as f64 - 0.5;
-        // more than a stripe of columns; the last block is short, and some columns are zero in some blocks
-        let (samples, width) = (2 * BLOCK + 7, STRIPE + 9);
+        // the last block is short, and some columns are zero in some blocks
+        let (samples, width) = (2 * BLOCK + 7, 41);
         let is_on = |i: usize, j: usize| j % 3 != i / BLOCK;
         let rows = DMatrix::from_fn(3 * samples, width, |r, j| if is_on(r / 3, j) { next() } else { 0.0 });
         let errors = DVector::from_fn(3 * samples, |_, _| next());

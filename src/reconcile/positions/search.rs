@@ -271,17 +271,22 @@ impl Positions {
         counts.iter().map(gain).collect()
     }
 
-    /// Candidates that compete with effect number `position` of the model: they have no more parameters and fit as
-    /// well in its place. Each comes with its fit.
-    pub(crate) fn competitors(&self, position: usize) -> Vec<(usize, Fitted)> {
+    /// The fit of the model without its effect number `position`.
+    pub(crate) fn without_effect(&self, position: usize) -> Fitted {
         let all: Vec<&Sample> = self.samples.iter().collect();
+        let own = self.fitted.effects[position];
+        let rest: Vec<usize> = self.fitted.effects.iter().copied().filter(|e| *e != own).collect();
+        fit(&all, &self.numbers, &rest, &self.fitted)
+    }
+
+    /// Candidates that compete with effect number `position` of the model: they have no more parameters and fit as
+    /// well in its place. `without` is the fit without this effect. Each competitor comes with its fit.
+    pub(crate) fn competitors(&self, position: usize, without: &Fitted) -> Vec<(usize, Fitted)> {
         let own = self.fitted.effects[position];
         let numbers =
             |c: usize| self.candidates[c].count() + usize::from(self.candidates[c].play_nm.is_some());
-        let rest: Vec<usize> = self.fitted.effects.iter().copied().filter(|e| *e != own).collect();
-        let without = fit(&all, &self.numbers, &rest, &self.fitted);
         let is_other = |c: usize| !self.is_same(c, own) && numbers(c) <= numbers(own);
-        let mut tried = self.best_additions(&without, is_other);
+        let mut tried = self.best_additions(without, is_other);
         tried.retain(|(_, f)| f.ln_likelihood > self.fitted.ln_likelihood - TIE);
         tried
     }

@@ -28,9 +28,8 @@ const LOWER: [(usize, usize); FRAME_ENTRIES.len()] = [(0, 0), (1, 0), (1, 1), (2
 pub(crate) struct Best {
     /// Change of each number of the model. The numbers of the geometry come first, then the compliances.
     pub step: Vec<f64>,
-    /// Derivatives of every number of the model (rows) with respect to every free variable of the minimization
-    /// (columns).
-    slopes: DMatrix<f64>,
+    /// Derivatives of the numbers of the model with respect to every free variable of the minimization.
+    slopes: Vec<Slope>,
     /// The factorized curvature of half of chi-squared over the free variables.
     factor: Factor,
 }
@@ -39,13 +38,41 @@ impl Best {
     /// Standard deviations of the model's numbers, in their units; infinite for a number that is fixed at its
     /// constraint.
     pub(crate) fn deviations(&self) -> Vec<f64> {
-        let variance = |row: usize| {
-            let row = self.slopes.row(row).transpose();
-            row.dot(&self.factor.solve(&row))
+        let deviation = |number: usize| {
+            let slopes = DVector::from_iterator(self.slopes.len(), self.slopes.iter().map(|s| s.of(number)));
+            match slopes.iter().any(|s| *s != 0.0) {
+                true => slopes.dot(&self.factor.solve(&slopes)).max(0.0).sqrt(),
+                false => f64::INFINITY,
+            }
         };
-        let is_open = |row: usize| self.slopes.row(row).iter().any(|s| *s != 0.0);
-        let deviation = |row: usize| if is_open(row) { variance(row).max(0.0).sqrt() } else { f64::INFINITY };
         (0..self.step.len()).map(deviation).collect()
+    }
+}
+
+/// Derivatives of the numbers of the model with respect to one free variable of the minimization: a number itself, or an
+/// entry of the `L` of a frame, on which only the compliances of this frame depend.
+struct Slope {
+    /// Index of the first number that depends on the variable. Those that follow it are the next ones.
+    first: usize,
+    /// Number of these numbers.
+    count: usize,
+    entries: [f64; FRAME_ENTRIES.len()],
+}
+
+impl Slope {
+    /// The variable is the number with the index `at`.
+    fn unit(at: usize) -> Self {
+        Self { first: at, count: 1, entries: std::array::from_fn(|k| if k == 0 { 1.0 } else { 0.0 }) }
+    }
+
+    /// The derivatives that are not zero, each with the index of its number.
+    fn entries(&self) -> impl Iterator<Item = (usize, f64)> {
+        (self.first..).zip(self.entries[..self.count].iter().copied())
+    }
+
+    /// Derivative of the number with the index `number`.
+    fn of(&self, number: usize) -> f64 {
+        self.entries().find(|(at, _)| *at == number).map_or(0.0, |(_, entry)| entry)
     }
 }
 
@@ -135,7 +162,9 @@ impl Parabola<'_> {
         for _ in 0..MOST_STEPS {
             let slopes = self.slopes();
             let factor = self.factor(&slopes)?;
-            let right = slopes.transpose() * self.gradient_at(&step);
+            let gradient = self.gradient_at(&step);
+            let along = |slope: &Slope| slope.entries().map(|(at, entry)| entry * gradient[at]).sum::<f64>();
+            let right = DVector::from_iterator(slopes.len(), slopes.iter().map(along));
             let move_by = factor.solve(&right);
             let (value, from, blocks) = (self.value(&step), linear.clone(), self.blocks.clone());
             let is_better = (0..MOST_HALVINGS).any(|halving| {
@@ -187,13 +216,23 @@ impl Parabola<'_> {
     /// Factorizes the curvature of half of chi-squared over the free variables: free numbers and entries of `L`.
     /// `slopes` are the derivatives of the numbers with respect to these variables. `None` if the curvature is
     /// singular.
-    fn factor(&self, slopes: &DMatrix<f64>) -> Option<Factor> {
+    fn factor(&self, slopes: &[Slope]) -> Option<Factor> {
         let all_free = self.blocks.iter().all(|block| matches!(block, Block::Free));
-        let curvature = match all_free {
-            true => self.curvature.clone(),
-            false => slopes.transpose() * &self.curvature * slopes,
-        };
-        Factor::new(&curvature, &(0..curvature.nrows()).collect::<Vec<_>>())
+        let all: Vec<usize> = (0..slopes.len()).collect();
+        match all_free {
+            true => Factor::new(&self.curvature, &all),
+            false => Factor::new(&self.curvature_along(slopes), &all),
+        }
+    }
+
+    /// The curvature of half of chi-squared over the variables with the derivatives `slopes`.
+    fn curvature_along(&self, slopes: &[Slope]) -> DMatrix<f64> {
+        let half = DMatrix::from_fn(slopes.len(), self.gradient.len(), |i, j| {
+            slopes[i].entries().map(|(at, entry)| entry * self.curvature[(at, j)]).sum::<f64>()
+        });
+        DMatrix::from_fn(slopes.len(), slopes.len(), |i, j| {
+            slopes[j].entries().map(|(at, entry)| half[(i, at)] * entry).sum::<f64>()
+        })
     }
 
     /// The step of every number of the model. `linear` gives the steps of the free numbers. The steps of the others
@@ -217,31 +256,24 @@ impl Parabola<'_> {
         step
     }
 
-    /// Derivatives of every number of the model (rows) with respect to every free variable (columns). A free variable
-    /// is a number without constraint, or an entry of `L`.
-    fn slopes(&self) -> DMatrix<f64> {
-        let mut columns: Vec<DVector<f64>> = Vec::new();
-        let unit = |at: usize| {
-            let mut column = DVector::zeros(self.gradient.len());
-            column[at] = 1.0;
-            column
-        };
-        columns.extend((0..self.numbers).map(unit));
+    /// Derivatives of the numbers of the model with respect to every free variable. A free variable is a number without
+    /// constraint, or an entry of `L`.
+    fn slopes(&self) -> Vec<Slope> {
+        let mut slopes: Vec<Slope> = (0..self.numbers).map(Slope::unit).collect();
         for (block, range) in self.blocks.iter().zip(&self.ranges) {
             match block {
-                Block::Free => columns.extend(range.clone().map(unit)),
+                Block::Free => slopes.extend(range.clone().map(Slope::unit)),
                 Block::Held(_) => {}
-                Block::Frame(l) => columns.extend(LOWER[..range.len()].iter().map(|&(row, column)| {
+                Block::Frame(l) => slopes.extend(LOWER[..range.len()].iter().map(|&(row, column)| {
                     let mut moved = Matrix3::zeros();
                     moved[(row, column)] = 1.0;
                     let slope = moved * l.transpose() + l * moved.transpose();
-                    let mut out = DVector::zeros(self.gradient.len());
-                    range.clone().zip(&FRAME_ENTRIES).for_each(|(at, entry)| out[at] = slope[*entry]);
-                    out
+                    let entries = FRAME_ENTRIES.map(|entry| slope[entry]);
+                    Slope { first: range.start, count: range.len(), entries }
                 })),
             }
         }
-        DMatrix::from_columns(&columns)
+        slopes
     }
 
     /// Moves the free numbers in `linear` and the entries of `L` by their steps in `by`.

@@ -7,6 +7,7 @@
 //! direction, or a base that turned once.
 
 use super::search::{Scored, Search};
+use crate::arm::BASE;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::empirical::{
     BASE_TURN, BEND, EVEN_TWIST, GAIN, KIND, LEAN, ODD_TWIST, SOFTENING, SOFTENING_REFERENCE, SOFTENING_ROWS,
@@ -38,8 +39,6 @@ const SOFTENING_IN: [Channel; 2] = [Channel::Static, Channel::Modal];
 /// Values from which fits start, for the number of rows in which 63 % of a joint's softening takes place, as fractions
 /// of the rows of the file.
 const SOFTENED_AFTER: [f64; 2] = [0.08, 0.5];
-/// Name of the base, by which a candidate states its place.
-const BASE: &str = "base";
 /// Largest compliance of a base against tilt that is sought, as a multiple of the compliance of the first compliant
 /// joint.
 const SOFTEST: f64 = 100.0;
@@ -54,7 +53,9 @@ pub(crate) fn laws(forward: &Forward, baseline: &Fit, weights: &Weights) -> Vec<
         forward.layout.joints.iter().map(|slot| largest_torque_nm(forward, &slot.name)).collect();
     let largest = torques_nm.iter().copied().fold(0.0, f64::max);
     let mut out = Vec::new();
-    for ((slot, law), torque_nm) in forward.layout.joints.iter().zip(&nominal.laws).zip(torques_nm) {
+    let joints = forward.layout.joints.iter().zip(&nominal.laws).zip(torques_nm);
+    // a law at a joint with the name of the base could not be written: the name means the base
+    for ((slot, law), torque_nm) in joints.filter(|((slot, _), _)| slot.name != BASE) {
         out.extend(housing(forward, &slot.name, torque_nm));
         if !law.is_rigid() && torque_nm > UNLOADED * largest {
             out.extend(twists(&slot.name, torque_nm, law.angle_rad(torque_nm).abs()));

@@ -20,6 +20,8 @@ pub(crate) struct DocumentPage {
     pub tables: Vec<(String, Table)>,
     /// Facts of the run: pairs of name and value.
     pub facts: Vec<(String, String)>,
+    /// Those facts that differ from run to run, such as how long it took.
+    pub timing: Vec<(String, String)>,
 }
 
 impl DocumentPage {
@@ -31,6 +33,7 @@ impl DocumentPage {
             self.tables.iter().map(|(caption, t)| json!({"caption": caption, "table": table(t)})).collect();
         let content = json!({
             "question": self.question, "words": self.words, "figures": figures, "tables": tables, "facts": self.facts,
+            "timing": self.timing,
         });
         gallery.page("document.html", &self.title, content, &json!({}))
     }
