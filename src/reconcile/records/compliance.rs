@@ -4,7 +4,7 @@
 //! with and without that error where the records cannot tell the two apart.
 
 use super::finding::{State, Stated};
-use super::intervals::{covering, is_positive, widened};
+use super::intervals::{attenuated, covering, is_positive, widened};
 use super::twist::{CLEARLY, Group, TwistModel};
 use crate::reconcile::model::estimate::Estimate;
 
@@ -28,15 +28,16 @@ pub(crate) const GRAVITY_OR_ERROR: &str = "the twist by gravity and a transmissi
      stated: the records cannot tell them apart";
 
 /// Result for the compliance of a joint: whether it is identified, and the stiffness with its interval. `left_share`
-/// is the fraction of the torque's variance that the balance of torques leaves unexplained.
-pub(super) fn compliance(model: &TwistModel, left_share: f64) -> Stated {
+/// is the fraction of the torque's variance that the balance of torques leaves unexplained, and `least` that of
+/// [`TwistModel::least_attenuation`].
+pub(super) fn compliance(model: &TwistModel, left_share: f64, least: f64) -> Stated {
     const WHAT: &str = "compliance";
     const NAME: &str = "stiffness_nm_per_rad";
     if !model.rows.has_torque {
         return Stated::none(WHAT, State::NotIdentified, "the torque is not recorded");
     }
     let share = model.own_share_of_torque();
-    let c = model.fitted.coefficient(model.places.torque());
+    let c = attenuated(model.fitted.coefficient(model.places.torque()), least);
     if share < OWN_SHARE.min(WELL_BALANCED * left_share) {
         let known = if model.rows.rotor_inertia_kgm2.is_none() {
             " and the rotor's inertia is not stated"
@@ -137,7 +138,7 @@ fn with_gear_error(model: &TwistModel, low: f64, high: f64) -> (f64, f64, Vec<St
 /// Stiffness with its interval \[N m/rad\], as a parameter, for a compliance `c` that is not identified. The upper
 /// end is `None` where the compliance may be zero. Empty if the best compliance or its upper end is not positive.
 fn open(c: &Estimate) -> Vec<(String, Vec<Estimate>)> {
-    let stiffness = |c: Option<f64>| c.filter(|c| *c > 0.0).map(|c| 1.0 / c);
+    let stiffness = |c: Option<f64>| c.filter(|c| *c > 0.0 && c.is_finite()).map(|c| 1.0 / c);
     let Some(low) = stiffness(c.high) else { return Vec::new() };
     let value = if c.value > 0.0 { 1.0 / c.value } else { f64::MAX };
     if value == f64::MAX {

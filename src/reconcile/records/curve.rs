@@ -1,7 +1,7 @@
 //! Nonlinear torsion laws of a joint, beyond a single compliance: three segments, lost motion and hysteresis.
 //!
-//! The spring is the joint as a compliance. Its torque is the motor's torque without friction and rotor inertia, as the
-//! linear fit of the twist gives them. Each law is written as a few columns, which are functions of the spring torque
+//! The spring is the joint as a compliance. Its torque is the motor's torque without friction, as the balance of torques gives
+//! it, and without rotor inertia, as the linear fit of the twist gives it. Each law is written as a few columns, which are functions of the spring torque
 //! and of the law's own torques (break points, closing torque or half width `r`). The law's torques are first tried on
 //! a grid. The best grid point is then improved with the derivatives of the twist with respect to these torques. The
 //! columns of the derivatives are part of the fit, so that the intervals contain the uncertainty of the torques.
@@ -11,6 +11,8 @@
 //! - hysteresis: `s - T`, where `s` is dragged so that it stays within `r` of `T`.
 
 use super::blocks::{Blocks, Fitted};
+use super::friction::Friction;
+use super::intervals::is_positive;
 use super::twist::{Group, Places, TwistModel, columns, fill};
 use crate::arm::effect::{hysteresis, lost_motion};
 use crate::reconcile::model::estimate::Estimate;
@@ -133,28 +135,38 @@ fn dragged(spring_nm: &[f64], record: impl Fn(usize) -> usize, width: f64) -> Ve
     spring_nm.iter().enumerate().map(drag).collect()
 }
 
-/// Torque of the spring at each row \[N m\]: the motor's torque without friction and rotor inertia, computed with the
-/// coefficients of the fitted twist. `viscous_nms_per_rad` is the viscous friction, which these coefficients do not
-/// contain.
-pub(crate) fn spring_torque(model: &TwistModel, viscous_nms_per_rad: f64) -> Vec<f64> {
+/// Torque of the spring at each row \[N m\]: the motor's torque without friction and rotor inertia. The friction is that of the
+/// balance of torques, `friction`, where it is certain. The linear fit of the twist takes a hysteresis for friction, and gives
+/// it only where the balance does not.
+pub(crate) fn spring_torque(model: &TwistModel, friction: Option<&Friction>) -> Vec<f64> {
     let p = model.places;
-    let compliance = model.fitted.value(p.torque());
+    let of_twist = |column: usize| model.fitted.value(column) / model.fitted.value(p.torque());
+    let sure = |k: usize, of: fn(&Friction) -> Estimate| {
+        friction.filter(|f| f.clearly[k] && is_positive(&of(f))).map(|f| of(f).value)
+    };
+    let coulomb_nm = sure(0, |f| f.coulomb_nm);
+    let viscous_nms_per_rad = sure(1, |f| f.viscous_nms_per_rad).unwrap_or(0.0);
+    let [sense, load_part] = match coulomb_nm.zip(friction) {
+        Some((coulomb_nm, f)) => [-coulomb_nm, -f.load_part.map_or(0.0, |part| part.value)],
+        None => [of_twist(p.sense()), of_twist(p.load_sense())],
+    };
+    let (inertia, rate) = (of_twist(p.acceleration()), of_twist(p.rate()));
+    let parts = [(p.torque(), 1.0), (p.acceleration(), inertia), (p.sense(), sense)];
+    let parts = [parts.as_slice(), &[(p.load_sense(), load_part), (p.rate(), rate)]].concat();
     let mut row = vec![0.0; p.further() + 1];
-    let parts = [p.torque(), p.acceleration(), p.sense(), p.load_sense(), p.rate()];
-    (0..model.rows.samples.len())
-        .map(|i| {
-            row.fill(0.0);
-            fill(model.rows, i, model.shift_s, &mut row);
-            let twist: f64 = parts.iter().map(|c| row[*c] * model.fitted.value(*c)).sum();
-            twist / compliance - viscous_nms_per_rad * model.rows.samples[i].speed_rad_s
-        })
-        .collect()
+    let torque_nm = |i: usize| {
+        row.fill(0.0);
+        fill(model.rows, i, model.shift_s, &mut row);
+        let sum: f64 = parts.iter().map(|(column, factor)| row[*column] * factor).sum();
+        sum - viscous_nms_per_rad * model.rows.samples[i].speed_rad_s
+    };
+    (0..model.rows.samples.len()).map(torque_nm).collect()
 }
 
 /// Finds up to two torsion laws beyond a single compliance, one after the other, that predict held-out blocks clearly
 /// better. `None` if a fit is impossible.
-pub(crate) fn curve(model: &TwistModel, viscous_nms_per_rad: f64) -> Option<Curve> {
-    let spring_nm = spring_torque(model, viscous_nms_per_rad);
+pub(crate) fn curve(model: &TwistModel, friction: Option<&Friction>) -> Option<Curve> {
+    let spring_nm = spring_torque(model, friction);
     let first = model.places.further();
     let own = columns(model.rows, &model.groups);
     let mut out = Curve {

@@ -4,8 +4,8 @@ use super::blocks::Fitted;
 use super::compliance::{GRAVITY_OR_ERROR, compliance};
 use super::curve::{Curve, Law, TORSION_CURVE, curve};
 use super::finding::{JointRecord, State, Stated, Step, Traced};
-use super::friction::{Friction, friction};
-use super::intervals::{covering, excludes_zero, half, is_positive, widened};
+use super::friction::{Friction, friction, load_nm};
+use super::intervals::{attenuated, covering, excludes_zero, half, is_positive, widened};
 use super::reading::Record;
 use super::ringing::{joined, swings};
 use super::signals::JointRows;
@@ -37,16 +37,25 @@ const TELLING_RANGE_RAD: f64 = 2.0;
 /// impossible.
 pub(crate) fn judge(records: &[Record], joint: &str) -> Option<JointRecord> {
     let wave = Wave::find(records, joint);
-    let rows = JointRows::gather(records, joint, BLOCKS, &wave)?;
+    let rows = gathered(records, joint, BLOCKS, &wave)?;
     let model = TwistModel::find(&rows)?;
     let readings = rows.samples.len() as f64 / model.rows_per_reading / LONG_BLOCK;
     let blocks = (readings as usize).clamp(FEWEST_BLOCKS, BLOCKS);
     if blocks >= BLOCKS {
         return Some(Judged::new(&rows, &model, records).conclude());
     }
-    let rows = JointRows::gather(records, joint, blocks, &wave)?;
+    let rows = gathered(records, joint, blocks, &wave)?;
     let model = TwistModel::find(&rows)?;
     Some(Judged::new(&rows, &model, records).conclude())
+}
+
+/// Rows of the joint from all records, with the torque of the load.
+fn gathered(records: &[Record], joint: &str, blocks: usize, wave: &Wave) -> Option<JointRows> {
+    let mut rows = JointRows::gather(records, joint, blocks, wave)?;
+    if let Some(load_nm) = load_nm(&rows, records) {
+        rows.take_load(&load_nm);
+    }
+    Some(rows)
 }
 
 struct Judged<'a> {
@@ -54,6 +63,8 @@ struct Judged<'a> {
     model: &'a TwistModel<'a>,
     records: &'a [Record],
     friction: Option<Friction>,
+    /// Limit of [`TwistModel::least_attenuation`].
+    least: f64,
     compliance: Stated,
     curve: Option<Curve>,
 }
@@ -61,12 +72,11 @@ struct Judged<'a> {
 impl<'a> Judged<'a> {
     fn new(rows: &'a JointRows, model: &'a TwistModel<'a>, records: &'a [Record]) -> Self {
         let friction = balanced(rows, model, records);
-        let compliance = compliance(model, friction.map_or(1.0, |f| f.left_share));
+        let least = model.least_attenuation(friction.map_or(1.0, |f| f.left_share_with_reversals));
+        let compliance = compliance(model, friction.map_or(1.0, |f| f.left_share), least);
         let is_found = compliance.state == State::Found && Curve::applies(model);
-        let viscous = friction.filter(|f| f.clearly[1] && is_positive(&f.viscous_nms_per_rad));
-        let viscous = viscous.map_or(0.0, |f| f.viscous_nms_per_rad.value);
-        let curve = if is_found { curve(model, viscous) } else { None };
-        Self { rows, model, records, friction, compliance, curve }
+        let curve = if is_found { curve(model, friction.as_ref()) } else { None };
+        Self { rows, model, records, friction, least, compliance, curve }
     }
 
     /// The last fit of the twist: the one with torsion laws if any was found, otherwise the linear one.
@@ -83,7 +93,7 @@ impl<'a> Judged<'a> {
     fn compliance_beside_laws(&self) -> Stated {
         let laws = self.curve.iter().flat_map(|c| &c.laws);
         let is_changed = !laws.clone().any(|l| matches!(l, Law::Segments(..))) && laws.count() > 0;
-        let c = self.fitted().coefficient(self.model.places.torque());
+        let c = attenuated(self.fitted().coefficient(self.model.places.torque()), self.least);
         let c = widened(c, LEAST_LAW_PART * c.value.abs());
         let (Some(low), Some(high)) = (c.low.filter(|low| is_changed && *low > 0.0), c.high) else {
             return self.compliance.clone();
@@ -183,7 +193,7 @@ impl<'a> Judged<'a> {
     fn with_friction(&self, plain: Estimate) -> (Estimate, String) {
         // the columns of a torsion law use the torque without viscous friction, so only the linear compliance is used
         // here
-        let c = self.fitted().coefficient(self.model.places.torque());
+        let c = attenuated(self.fitted().coefficient(self.model.places.torque()), self.least);
         let Some(f) = self.friction.filter(|f| f.is_possible && is_positive(&f.viscous_nms_per_rad)) else {
             let possible = self.friction.filter(|f| f.is_possible);
             let Some(f) = possible else { return (plain, String::new()) };

@@ -40,7 +40,7 @@ pub(crate) struct Sample {
     pub acceleration_rad_s2: f64,
     /// Sign of the motor's speed, from -1 to 1.
     pub sense: f64,
-    /// Sign of the motor's speed times the magnitude of the torque \[N m\].
+    /// Sign of the motor's speed times the magnitude of the load's torque \[N m\]; 0 until [`JointRows::take_load`].
     pub load_sense_nm: f64,
     /// Torque of the motor at the output \[N m\]; 0 if it is not recorded.
     pub torque_nm: f64,
@@ -158,20 +158,12 @@ impl JointRows {
         let sign = senses(&motor.slope, slope_noise(t_s, &calm_motor_rad, half));
         let none = vec![0.0; t_s.len()];
         let torque_nm = if self.has_torque { &signals.torque_nm } else { &none };
-        let loaded: Vec<f64> = sign.iter().zip(torque_nm).map(|(s, t)| s * t.abs()).collect();
-        let [motor_rad, link_rad, calm_motor_rad, calm_link_rad, torque, sense, load_sense_nm] = averaged(
+        let [motor_rad, link_rad, calm_motor_rad, calm_link_rad, torque, sense] = averaged(
             t_s,
             half,
-            [
-                &signals.motor_rad,
-                &signals.link_rad,
-                &calm_motor_rad,
-                &calm_link_rad,
-                torque_nm,
-                &sign,
-                &loaded,
-            ],
+            [&signals.motor_rad, &signals.link_rad, &calm_motor_rad, &calm_link_rad, torque_nm, &sign],
         );
+        let twist_rad: Vec<f64> = signals.motor_rad.iter().zip(&signals.link_rad).map(|(m, l)| m - l).collect();
         let input_waves = input_waves(t_s, signals, half);
         let (speed_rad_s, torque_rate_nm_s) = (slope(t_s, &calm_motor_rad), slope(t_s, &torque));
         let of_link = Signals {
@@ -182,7 +174,8 @@ impl JointRows {
             link_acceleration_rad_s2,
             step_s: usual_step_s(t_s),
             half,
-            noise_rad: libm::hypot(noise(t_s, &signals.motor_rad), noise(t_s, &signals.link_rad)),
+            // not of each angle: an error of the times is in both and leaves the twist
+            noise_rad: noise(t_s, &twist_rad),
             torque_noise_nm: noise(t_s, torque_nm) * value_noise(half),
         };
         let record = self.records.len();
@@ -203,7 +196,7 @@ impl JointRows {
                 speed_rad_s: speed_rad_s[row],
                 acceleration_rad_s2: motor.curvature[row],
                 sense: sense[row],
-                load_sense_nm: load_sense_nm[row],
+                load_sense_nm: 0.0,
                 torque_nm: torque[row],
                 torque_rate_nm_s: torque_rate_nm_s[row],
             };
@@ -219,6 +212,13 @@ impl JointRows {
     /// Half width of the window over which the signals of the record with the index `record` are averaged \[rows\].
     pub(crate) fn half(&self, record: usize) -> usize {
         self.records[record].half
+    }
+
+    /// Takes the torque of the load that the gear carries at each row, `load_nm`, for load-dependent friction.
+    pub(crate) fn take_load(&mut self, load_nm: &[f64]) {
+        for (sample, load_nm) in self.samples.iter_mut().zip(load_nm) {
+            sample.load_sense_nm = sample.sense * load_nm.abs();
+        }
     }
 
     /// Number of records.
