@@ -13,7 +13,7 @@
 use super::blocks::{Blocks, Fitted};
 use super::friction::Friction;
 use super::intervals::is_positive;
-use super::twist::{Group, Places, TwistModel, columns, fill};
+use super::twist::{CLEARLY, Group, Places, TwistModel, columns, fill};
 use crate::arm::effect::{hysteresis, lost_motion};
 use crate::reconcile::model::estimate::Estimate;
 
@@ -138,9 +138,9 @@ fn dragged(spring_nm: &[f64], record: impl Fn(usize) -> usize, width: f64) -> Ve
 /// Torque of the spring at each row \[N m\]: the motor's torque without friction and rotor inertia. The friction is that of the
 /// balance of torques, `friction`, where it is certain. The linear fit of the twist takes a hysteresis for friction, and gives
 /// it only where the balance does not.
-pub(crate) fn spring_torque(model: &TwistModel, friction: Option<&Friction>) -> Vec<f64> {
+pub(crate) fn spring_torque(model: &TwistModel, fitted: &Fitted, friction: Option<&Friction>) -> Vec<f64> {
     let p = model.places;
-    let of_twist = |column: usize| model.fitted.value(column) / model.fitted.value(p.torque());
+    let of_twist = |column: usize| fitted.value(column) / fitted.value(p.torque());
     let sure = |k: usize, of: fn(&Friction) -> Estimate| {
         friction.filter(|f| f.clearly[k] && is_positive(&of(f))).map(|f| of(f).value)
     };
@@ -166,7 +166,7 @@ pub(crate) fn spring_torque(model: &TwistModel, friction: Option<&Friction>) -> 
 /// Finds up to two torsion laws beyond a single compliance, one after the other, that predict held-out blocks clearly
 /// better. `None` if a fit is impossible.
 pub(crate) fn curve(model: &TwistModel, friction: Option<&Friction>) -> Option<Curve> {
-    let spring_nm = spring_torque(model, friction);
+    let spring_nm = spring_torque(model, &model.fitted, friction);
     let first = model.places.further();
     let own = columns(model.rows, &model.groups);
     let mut out = Curve {
@@ -182,26 +182,38 @@ pub(crate) fn curve(model: &TwistModel, friction: Option<&Friction>) -> Option<C
     let largest_nm = out.spring_nm.iter().fold(0.0f64, |m, t| m.max(t.abs()));
     for _ in 0..2 {
         let tried = out.best_of_grids(model, &own, largest_nm)?;
-        let clear = |fit: &Fitted| fit.better_than(&out.fitted) > CLEARLY_OF_GRID;
-        let Some((law, fit)) = tried.iter().find(|(_, fit)| clear(fit)).cloned() else {
-            let best = tried.first().map(|(law, fit)| (law.what(), fit.held_out_rms()));
-            out.hidden = best.filter(|(_, rms_rad)| *rms_rad < HIDDEN * out.fitted.held_out_rms());
+        let (at, torque) = (out.laws.len(), model.places.torque());
+        let is_clear =
+            |fit: &Fitted| fit.better_than(&out.fitted) > CLEARLY_OF_GRID || fit.halves(&out.fitted);
+        let reason = |(law, fit): &(Law, Fitted)| impossible(fit, *law, first, at, torque);
+        let clear: Vec<&(Law, Fitted)> = tried.iter().filter(|(_, fit)| is_clear(fit)).collect();
+        let Some(best) = clear.first() else {
+            let likely = tried.iter().find(|law| reason(law).is_none());
+            let rms_rad = likely.map(|(law, fit)| (law.what(), fit.held_out_rms()));
+            out.hidden = rms_rad.filter(|(_, rms_rad)| *rms_rad < HIDDEN * out.fitted.held_out_rms());
             break;
         };
-        if !is_material(&fit, law, first + 4 * out.laws.len(), &out.spring_nm, model.places.torque()) {
+        if !is_material(&best.1, best.0, first + 4 * at, &out.spring_nm, torque) {
             break;
         }
-        if let Some(reason) = impossible(&fit, law, first, out.laws.len(), model.places.torque()) {
-            out.refused.push((law.what(), reason));
+        if let Some(reason) = reason(best) {
+            out.refused.push((best.0.what(), reason));
             break;
         }
-        let alike =
-            tried.iter().find(|(l, f)| l.what() != law.what() && clear(f) && fit.better_than(f) < 2.0);
-        out.competing = out.competing.or(alike.map(|(l, _)| l.what()));
-        let laws = [out.laws.as_slice(), &[law]].concat();
-        let Some((laws, fit)) = out.improved(model, &own, laws) else { break };
-        out.steps.push((law.what().replace('_', " "), fit.held_out_rms()));
+        // laws that held-out blocks cannot tell from the best one are compared at their best torques, not at those of the grid
+        let is_equal = |law: &(Law, Fitted)| reason(law).is_none() && best.1.better_than(&law.1) < CLEARLY;
+        let equals: Vec<Law> = clear.iter().filter(|law| is_equal(law)).map(|(law, _)| *law).collect();
+        let at_best = |law: &Law| out.improved(model, &own, [out.laws.as_slice(), &[*law]].concat());
+        let improved = equals.iter().filter_map(|law| Some((law.what(), at_best(law)?)));
+        let rms = |fit: &Fitted| fit.held_out_rms();
+        let Some((what, (laws, fit))) = improved.min_by(|a, b| rms(&a.1.1).total_cmp(&rms(&b.1.1))) else {
+            break;
+        };
+        let competing = equals.iter().map(|law| law.what()).find(|other| *other != what);
+        out.competing = out.competing.or(competing);
+        out.steps.push((what.replace('_', " "), rms(&fit)));
         (out.laws, out.fitted) = (laws, fit);
+        out.refined(model, &own, friction);
     }
     Some(out)
 }
@@ -350,6 +362,25 @@ impl Curve {
             true
         });
         (sums, target)
+    }
+
+    /// Computes the spring torque again with the rotor's inertia of the fit with the laws, and improves the laws with it. A law
+    /// that the linear fit lacks makes this inertia wrong there.
+    fn refined(&mut self, model: &TwistModel, own: &[usize], friction: Option<&Friction>) {
+        const ROUNDS: usize = 3;
+        for _ in 0..ROUNDS {
+            let before = std::mem::take(&mut self.spring_nm);
+            self.spring_nm = spring_torque(model, &self.fitted, friction);
+            match self.improved(model, own, self.laws.clone()) {
+                Some((laws, fit)) if fit.squares < self.fitted.squares => {
+                    (self.laws, self.fitted) = (laws, fit)
+                }
+                _ => {
+                    self.spring_nm = before;
+                    return;
+                }
+            }
+        }
     }
 
     /// Improves the torques of all `laws` together by [`ROUNDS`] Gauss-Newton steps. Returns the laws with the

@@ -8,8 +8,8 @@
 //!
 //! The load of a joint also depends on the position and motion of the other joints. Their angles, speeds and
 //! accelerations enter as free columns, joint by joint, where held-out blocks are predicted better with them. The
-//! torque of the load `T_l`, which the gear carries, comes from a first fit without load-dependent friction: all terms of the
-//! load except the rotor's inertia.
+//! torque of the load `T_l`, which the gear carries, comes from a first fit without load-dependent friction, then from one
+//! with it: all terms of the load except the rotor's inertia.
 
 use super::blocks::Fitted;
 use super::intervals::is_positive;
@@ -34,6 +34,9 @@ const SLIGHTLY: f64 = 1.0;
 const TURNING: f64 = 0.05;
 /// Number of columns that the motion of one other joint adds to the balance of torques.
 const OTHER: usize = 8;
+
+/// Number of fits in which load-dependent friction and the load improve each other.
+const LOAD_ROUNDS: usize = 4;
 
 /// Friction of a joint on the output of its gear, with 95 % intervals.
 #[derive(Debug, Clone, Copy)]
@@ -247,14 +250,22 @@ fn balance<'a>(rows: &'a JointRows, records: &[Record], shift_s: f64) -> Option<
 pub(crate) fn friction(rows: &JointRows, records: &[Record], shift_s: f64) -> Option<Friction> {
     let mut balance = balance(rows, records, shift_s)?;
     let best = balance.without_load_friction()?;
-    let columns = best.columns.clone();
     let (target, [sense, speed, load_sense]) = (balance.target(), balance.friction());
-    balance.load_nm = balance.load_of(&best);
-    let sums = rows.sums(target + 1, |i, s, row| balance.fill(i, s, row));
+    let (mut sums, mut chosen) = (rows.sums(target + 1, |i, s, row| balance.fill(i, s, row)), best);
+    let with = [chosen.columns.as_slice(), &[load_sense]].concat();
+    let mut has_load = false;
+    for _ in 0..LOAD_ROUNDS {
+        balance.load_nm = balance.load_of(&chosen);
+        let next = rows.sums(target + 1, |i, s, row| balance.fill(i, s, row));
+        let with_load = next.fit(&with, target, |_| None)?;
+        if !has_load
+            && !(with_load.better_than(&chosen) > CLEARLY && is_positive(&with_load.coefficient(load_sense)))
+        {
+            break;
+        }
+        (sums, chosen, has_load) = (next, with_load, true);
+    }
     let fit = |columns: &[usize]| sums.fit(columns, target, |_| None);
-    let with_load = fit(&[columns, vec![load_sense]].concat())?;
-    let has_load = with_load.better_than(&best) > CLEARLY && is_positive(&with_load.coefficient(load_sense));
-    let chosen = if has_load { with_load } else { best };
     let without = |column: usize| {
         let others: Vec<usize> = chosen.columns.iter().copied().filter(|c| *c != column).collect();
         fit(&others).is_some_and(|other| chosen.better_than(&other) > CLEARLY || chosen.halves(&other))

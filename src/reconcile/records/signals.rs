@@ -163,7 +163,8 @@ impl JointRows {
             half,
             [&signals.motor_rad, &signals.link_rad, &calm_motor_rad, &calm_link_rad, torque_nm, &sign],
         );
-        let twist_rad: Vec<f64> = signals.motor_rad.iter().zip(&signals.link_rad).map(|(m, l)| m - l).collect();
+        let twist_rad: Vec<f64> =
+            signals.motor_rad.iter().zip(&signals.link_rad).map(|(m, l)| m - l).collect();
         let input_waves = input_waves(t_s, signals, half);
         let (speed_rad_s, torque_rate_nm_s) = (slope(t_s, &calm_motor_rad), slope(t_s, &torque));
         let of_link = Signals {
