@@ -49,6 +49,7 @@ pub(crate) enum Law {
 }
 
 /// The torsion laws that the twist of a joint needs, and the fit of the twist that contains them.
+#[derive(Clone)]
 pub(crate) struct Curve {
     /// The laws in the order in which they were found.
     pub laws: Vec<Law>,
@@ -200,20 +201,15 @@ pub(crate) fn curve(model: &TwistModel, friction: Option<&Friction>) -> Option<C
             out.refused.push((best.0.what(), reason));
             break;
         }
-        // laws that held-out blocks cannot tell from the best one are compared at their best torques, not at those of the grid
-        let is_equal = |law: &(Law, Fitted)| reason(law).is_none() && best.1.better_than(&law.1) < CLEARLY;
-        let equals: Vec<Law> = clear.iter().filter(|law| is_equal(law)).map(|(law, _)| *law).collect();
-        let at_best = |law: &Law| out.improved(model, &own, [out.laws.as_slice(), &[*law]].concat());
-        let improved = equals.iter().filter_map(|law| Some((law.what(), at_best(law)?)));
-        let rms = |fit: &Fitted| fit.held_out_rms();
-        let Some((what, (laws, fit))) = improved.min_by(|a, b| rms(&a.1.1).total_cmp(&rms(&b.1.1))) else {
-            break;
-        };
-        let competing = equals.iter().map(|law| law.what()).find(|other| *other != what);
-        out.competing = out.competing.or(competing);
-        out.steps.push((what.replace('_', " "), rms(&fit)));
-        (out.laws, out.fitted) = (laws, fit);
-        out.refined(model, &own, friction);
+        // a law is judged at its best torques and with the rotor's inertia that follows, not at those of the grid
+        let possible = clear.iter().filter(|law| reason(law).is_none()).map(|(law, _)| *law);
+        let mut with: Vec<Curve> = possible.filter_map(|law| out.with(model, &own, law, friction)).collect();
+        with.sort_by(|a, b| a.fitted.held_out_rms().total_cmp(&b.fitted.held_out_rms()));
+        let others = with.split_off(with.len().min(1));
+        let Some(next) = with.pop() else { break };
+        let is_equal = |other: &&Curve| next.fitted.better_than(&other.fitted) < CLEARLY;
+        let competing = out.competing.or(others.iter().find(is_equal).and_then(Curve::last));
+        out = Curve { competing, ..next };
     }
     Some(out)
 }
@@ -364,23 +360,35 @@ impl Curve {
         (sums, target)
     }
 
-    /// Computes the spring torque again with the rotor's inertia of the fit with the laws, and improves the laws with it. A law
-    /// that the linear fit lacks makes this inertia wrong there.
-    fn refined(&mut self, model: &TwistModel, own: &[usize], friction: Option<&Friction>) {
-        const ROUNDS: usize = 3;
+    /// Name of the law that was found last.
+    fn last(&self) -> Option<&'static str> {
+        self.laws.last().map(|law| law.what())
+    }
+
+    /// These laws and the law `law`, all at their best torques. The spring torque is computed again with the rotor's inertia of
+    /// the fit, which a law that the fit before lacks made wrong there. `None` if a fit is impossible.
+    fn with(
+        &self,
+        model: &TwistModel,
+        own: &[usize],
+        law: Law,
+        friction: Option<&Friction>,
+    ) -> Option<Curve> {
+        const ROUNDS: usize = 10;
+        const STILL_BETTER: f64 = 0.99;
+        let (laws, fitted) = self.improved(model, own, [self.laws.as_slice(), &[law]].concat())?;
+        let mut out = Curve { laws, fitted, ..self.clone() };
         for _ in 0..ROUNDS {
-            let before = std::mem::take(&mut self.spring_nm);
-            self.spring_nm = spring_torque(model, &self.fitted, friction);
-            match self.improved(model, own, self.laws.clone()) {
-                Some((laws, fit)) if fit.squares < self.fitted.squares => {
-                    (self.laws, self.fitted) = (laws, fit)
-                }
-                _ => {
-                    self.spring_nm = before;
-                    return;
-                }
+            let spring_nm = spring_torque(model, &out.fitted, friction);
+            let mut next = Curve { spring_nm, ..out.clone() };
+            (next.laws, next.fitted) = next.improved(model, own, out.laws.clone())?;
+            if next.fitted.squares > STILL_BETTER * out.fitted.squares {
+                break;
             }
+            out = next;
         }
+        out.steps.push((law.what().replace('_', " "), out.fitted.held_out_rms()));
+        Some(out)
     }
 
     /// Improves the torques of all `laws` together by [`ROUNDS`] Gauss-Newton steps. Returns the laws with the
