@@ -39,17 +39,7 @@ pub(super) fn compliance(model: &TwistModel, left_share: f64, least: f64) -> Sta
     let share = model.own_share_of_torque();
     let c = attenuated(model.fitted.coefficient(model.places.torque()), least);
     if share < OWN_SHARE.min(WELL_BALANCED * left_share) {
-        let known = if model.rows.rotor_inertia_kgm2.is_none() {
-            " and the rotor's inertia is not stated"
-        } else {
-            ""
-        };
-        let words = format!(
-            "insufficient excitation: {:.0} % of the torque's variance is the joint's own acceleration and friction{known}; \
-             {:.1} % are explained by neither friction nor load, so that compliance cannot be told from them",
-            100.0 * (1.0 - share),
-            100.0 * left_share
-        );
+        let words = insufficient(model, share, left_share);
         let parameters = open(&beside_gear_error(model, c));
         return Stated { parameters, ..Stated::none(WHAT, State::NotIdentified, words) };
     }
@@ -95,6 +85,19 @@ pub(super) fn compliance(model: &TwistModel, left_share: f64, least: f64) -> Sta
         ));
     }
     Stated::one(WHAT, State::Found, NAME, stiffness, &words.join("; "))
+}
+
+/// Sentence on a torque that is nearly all the joint's own motion: `share` of its variance is not, and `left_share` is left by
+/// the balance of torques.
+fn insufficient(model: &TwistModel, share: f64, left_share: f64) -> String {
+    let is_stated = model.rows.rotor_inertia_kgm2.is_some();
+    format!(
+        "insufficient excitation: {:.0} % of the torque's variance is the joint's own acceleration and friction{}; {:.1} % are \
+         explained by neither friction nor load, so that compliance cannot be told from them",
+        100.0 * (1.0 - share),
+        if is_stated { "" } else { " and the rotor's inertia is not stated" },
+        100.0 * left_share
+    )
 }
 
 /// The compliance `c` \[rad/(N m)\] of a joint whose compliance is not identified, with its interval widened so that it

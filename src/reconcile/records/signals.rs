@@ -163,8 +163,6 @@ impl JointRows {
             half,
             [&signals.motor_rad, &signals.link_rad, &calm_motor_rad, &calm_link_rad, torque_nm, &sign],
         );
-        let twist_rad: Vec<f64> =
-            signals.motor_rad.iter().zip(&signals.link_rad).map(|(m, l)| m - l).collect();
         let input_waves = input_waves(t_s, signals, half);
         let (speed_rad_s, torque_rate_nm_s) = (slope(t_s, &calm_motor_rad), slope(t_s, &torque));
         let of_link = Signals {
@@ -175,8 +173,7 @@ impl JointRows {
             link_acceleration_rad_s2,
             step_s: usual_step_s(t_s),
             half,
-            // not of each angle: an error of the times is in both and leaves the twist
-            noise_rad: noise(t_s, &twist_rad),
+            noise_rad: twist_noise_rad(t_s, signals),
             torque_noise_nm: noise(t_s, torque_nm) * value_noise(half),
         };
         let record = self.records.len();
@@ -293,6 +290,13 @@ impl JointRows {
             },
         )
     }
+}
+
+/// Standard deviation of the noise of the twist \[rad\]. It is not that of both angles: an error of the times is in each of them
+/// and leaves the twist.
+fn twist_noise_rad(t_s: &[f64], signals: &JointSignals) -> f64 {
+    let angles = signals.motor_rad.iter().zip(&signals.link_rad);
+    noise(t_s, &angles.map(|(motor, link)| motor - link).collect::<Vec<_>>())
 }
 
 /// Sign of the speed at each row, from -1 to 1; zero where the speed is not known. It changes smoothly below a small part of
