@@ -191,9 +191,7 @@ impl<'a> Judged<'a> {
     /// interval covers the correction for every compliance that is possible. If the friction is refused too, the correction
     /// may have either sign.
     fn with_friction(&self, plain: Estimate) -> (Estimate, String) {
-        // the columns of a torsion law use the torque without viscous friction, so only the linear compliance is used
-        // here
-        let c = attenuated(self.fitted().coefficient(self.model.places.torque()), self.least);
+        let c = self.bounded_compliance();
         let Some(f) = self.friction.filter(|f| f.is_possible && is_positive(&f.viscous_nms_per_rad)) else {
             let possible = self.friction.filter(|f| f.is_possible);
             let Some(f) = possible else { return (plain, String::new()) };
@@ -236,6 +234,19 @@ impl<'a> Judged<'a> {
             1e3 * by_friction(least)
         );
         (out, words)
+    }
+
+    /// Compliance of the last fit \[rad/(N m)\], without that of a torsion law, with noise of the torque in its interval. The
+    /// recorded twist bounds it where the noise does not.
+    fn bounded_compliance(&self) -> Estimate {
+        let fitted = self.fitted().coefficient(self.model.places.torque());
+        let bound = self.model.largest_compliance();
+        let noisy = attenuated(fitted, self.least);
+        Estimate {
+            value: fitted.value,
+            low: fitted.low.zip(noisy.low).map(|(fitted, noisy)| noisy.max(fitted.min(-bound))),
+            high: fitted.high.zip(noisy.high).map(|(fitted, noisy)| noisy.min(fitted.max(bound))),
+        }
     }
 
     fn laws(&self) -> Vec<Stated> {

@@ -305,6 +305,9 @@ impl<'a> TwistModel<'a> {
             }
         }
         self.judge_errors();
+        if let Some(last) = self.steps.last_mut() {
+            last.1 = self.fitted.held_out_rms();
+        }
         Some(())
     }
 
