@@ -4,7 +4,7 @@
 //! with and without that error where the records cannot tell the two apart.
 
 use super::finding::{State, Stated};
-use super::intervals::{covering, is_positive, widened};
+use super::intervals::{attenuated, covering, is_positive, widened};
 use super::twist::{CLEARLY, Group, TwistModel};
 use crate::reconcile::model::estimate::Estimate;
 
@@ -28,27 +28,18 @@ pub(crate) const GRAVITY_OR_ERROR: &str = "the twist by gravity and a transmissi
      stated: the records cannot tell them apart";
 
 /// Result for the compliance of a joint: whether it is identified, and the stiffness with its interval. `left_share`
-/// is the fraction of the torque's variance that the balance of torques leaves unexplained.
-pub(super) fn compliance(model: &TwistModel, left_share: f64) -> Stated {
+/// is the fraction of the torque's variance that the balance of torques leaves unexplained, and `least` that of
+/// [`TwistModel::least_attenuation`].
+pub(super) fn compliance(model: &TwistModel, left_share: f64, least: f64) -> Stated {
     const WHAT: &str = "compliance";
     const NAME: &str = "stiffness_nm_per_rad";
     if !model.rows.has_torque {
         return Stated::none(WHAT, State::NotIdentified, "the torque is not recorded");
     }
     let share = model.own_share_of_torque();
-    let c = model.fitted.coefficient(model.places.torque());
+    let c = attenuated(model.fitted.coefficient(model.places.torque()), least);
     if share < OWN_SHARE.min(WELL_BALANCED * left_share) {
-        let known = if model.rows.rotor_inertia_kgm2.is_none() {
-            " and the rotor's inertia is not stated"
-        } else {
-            ""
-        };
-        let words = format!(
-            "insufficient excitation: {:.0} % of the torque's variance is the joint's own acceleration and friction{known}; \
-             {:.1} % are explained by neither friction nor load, so that compliance cannot be told from them",
-            100.0 * (1.0 - share),
-            100.0 * left_share
-        );
+        let words = insufficient(model, share, left_share);
         let parameters = open(&beside_gear_error(model, c));
         return Stated { parameters, ..Stated::none(WHAT, State::NotIdentified, words) };
     }
@@ -96,6 +87,19 @@ pub(super) fn compliance(model: &TwistModel, left_share: f64) -> Stated {
     Stated::one(WHAT, State::Found, NAME, stiffness, &words.join("; "))
 }
 
+/// Sentence on a torque that is nearly all the joint's own motion: `share` of its variance is not, and `left_share` is left by
+/// the balance of torques.
+fn insufficient(model: &TwistModel, share: f64, left_share: f64) -> String {
+    let is_stated = model.rows.rotor_inertia_kgm2.is_some();
+    format!(
+        "insufficient excitation: {:.0} % of the torque's variance is the joint's own acceleration and friction{}; {:.1} % are \
+         explained by neither friction nor load, so that compliance cannot be told from them",
+        100.0 * (1.0 - share),
+        if is_stated { "" } else { " and the rotor's inertia is not stated" },
+        100.0 * left_share
+    )
+}
+
 /// The compliance `c` \[rad/(N m)\] of a joint whose compliance is not identified, with its interval widened so that it
 /// covers the fits with and without a transmission error of the output, where the compliance shows without that error.
 fn beside_gear_error(model: &TwistModel, c: Estimate) -> Estimate {
@@ -137,7 +141,7 @@ fn with_gear_error(model: &TwistModel, low: f64, high: f64) -> (f64, f64, Vec<St
 /// Stiffness with its interval \[N m/rad\], as a parameter, for a compliance `c` that is not identified. The upper
 /// end is `None` where the compliance may be zero. Empty if the best compliance or its upper end is not positive.
 fn open(c: &Estimate) -> Vec<(String, Vec<Estimate>)> {
-    let stiffness = |c: Option<f64>| c.filter(|c| *c > 0.0).map(|c| 1.0 / c);
+    let stiffness = |c: Option<f64>| c.filter(|c| *c > 0.0 && c.is_finite()).map(|c| 1.0 / c);
     let Some(low) = stiffness(c.high) else { return Vec::new() };
     let value = if c.value > 0.0 { 1.0 / c.value } else { f64::MAX };
     if value == f64::MAX {

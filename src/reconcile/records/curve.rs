@@ -1,7 +1,7 @@
 //! Nonlinear torsion laws of a joint, beyond a single compliance: three segments, lost motion and hysteresis.
 //!
-//! The spring is the joint as a compliance. Its torque is the motor's torque without friction and rotor inertia, as the
-//! linear fit of the twist gives them. Each law is written as a few columns, which are functions of the spring torque
+//! The spring is the joint as a compliance. Its torque is the motor's torque without friction, as the balance of torques gives
+//! it, and without rotor inertia, as the linear fit of the twist gives it. Each law is written as a few columns, which are functions of the spring torque
 //! and of the law's own torques (break points, closing torque or half width `r`). The law's torques are first tried on
 //! a grid. The best grid point is then improved with the derivatives of the twist with respect to these torques. The
 //! columns of the derivatives are part of the fit, so that the intervals contain the uncertainty of the torques.
@@ -11,7 +11,9 @@
 //! - hysteresis: `s - T`, where `s` is dragged so that it stays within `r` of `T`.
 
 use super::blocks::{Blocks, Fitted};
-use super::twist::{Group, Places, TwistModel, columns, fill};
+use super::friction::Friction;
+use super::intervals::is_positive;
+use super::twist::{CLEARLY, Group, Places, TwistModel, columns, fill};
 use crate::arm::effect::{hysteresis, lost_motion};
 use crate::reconcile::model::estimate::Estimate;
 
@@ -47,6 +49,7 @@ pub(crate) enum Law {
 }
 
 /// The torsion laws that the twist of a joint needs, and the fit of the twist that contains them.
+#[derive(Clone)]
 pub(crate) struct Curve {
     /// The laws in the order in which they were found.
     pub laws: Vec<Law>,
@@ -133,28 +136,38 @@ fn dragged(spring_nm: &[f64], record: impl Fn(usize) -> usize, width: f64) -> Ve
     spring_nm.iter().enumerate().map(drag).collect()
 }
 
-/// Torque of the spring at each row \[N m\]: the motor's torque without friction and rotor inertia, computed with the
-/// coefficients of the fitted twist. `viscous_nms_per_rad` is the viscous friction, which these coefficients do not
-/// contain.
-pub(crate) fn spring_torque(model: &TwistModel, viscous_nms_per_rad: f64) -> Vec<f64> {
+/// Torque of the spring at each row \[N m\]: the motor's torque without friction and rotor inertia. The friction is that of the
+/// balance of torques, `friction`, where it is certain. The linear fit of the twist takes a hysteresis for friction, and gives
+/// it only where the balance does not.
+pub(crate) fn spring_torque(model: &TwistModel, fitted: &Fitted, friction: Option<&Friction>) -> Vec<f64> {
     let p = model.places;
-    let compliance = model.fitted.value(p.torque());
+    let of_twist = |column: usize| fitted.value(column) / fitted.value(p.torque());
+    let sure = |k: usize, of: fn(&Friction) -> Estimate| {
+        friction.filter(|f| f.clearly[k] && is_positive(&of(f))).map(|f| of(f).value)
+    };
+    let coulomb_nm = sure(0, |f| f.coulomb_nm);
+    let viscous_nms_per_rad = sure(1, |f| f.viscous_nms_per_rad).unwrap_or(0.0);
+    let [sense, load_part] = match coulomb_nm.zip(friction) {
+        Some((coulomb_nm, f)) => [-coulomb_nm, -f.load_part.map_or(0.0, |part| part.value)],
+        None => [of_twist(p.sense()), of_twist(p.load_sense())],
+    };
+    let (inertia, rate) = (of_twist(p.acceleration()), of_twist(p.rate()));
+    let parts = [(p.torque(), 1.0), (p.acceleration(), inertia), (p.sense(), sense)];
+    let parts = [parts.as_slice(), &[(p.load_sense(), load_part), (p.rate(), rate)]].concat();
     let mut row = vec![0.0; p.further() + 1];
-    let parts = [p.torque(), p.acceleration(), p.sense(), p.load_sense(), p.rate()];
-    (0..model.rows.samples.len())
-        .map(|i| {
-            row.fill(0.0);
-            fill(model.rows, i, model.shift_s, &mut row);
-            let twist: f64 = parts.iter().map(|c| row[*c] * model.fitted.value(*c)).sum();
-            twist / compliance - viscous_nms_per_rad * model.rows.samples[i].speed_rad_s
-        })
-        .collect()
+    let torque_nm = |i: usize| {
+        row.fill(0.0);
+        fill(model.rows, i, model.shift_s, &mut row);
+        let sum: f64 = parts.iter().map(|(column, factor)| row[*column] * factor).sum();
+        sum - viscous_nms_per_rad * model.rows.samples[i].speed_rad_s
+    };
+    (0..model.rows.samples.len()).map(torque_nm).collect()
 }
 
 /// Finds up to two torsion laws beyond a single compliance, one after the other, that predict held-out blocks clearly
 /// better. `None` if a fit is impossible.
-pub(crate) fn curve(model: &TwistModel, viscous_nms_per_rad: f64) -> Option<Curve> {
-    let spring_nm = spring_torque(model, viscous_nms_per_rad);
+pub(crate) fn curve(model: &TwistModel, friction: Option<&Friction>) -> Option<Curve> {
+    let spring_nm = spring_torque(model, &model.fitted, friction);
     let first = model.places.further();
     let own = columns(model.rows, &model.groups);
     let mut out = Curve {
@@ -170,26 +183,33 @@ pub(crate) fn curve(model: &TwistModel, viscous_nms_per_rad: f64) -> Option<Curv
     let largest_nm = out.spring_nm.iter().fold(0.0f64, |m, t| m.max(t.abs()));
     for _ in 0..2 {
         let tried = out.best_of_grids(model, &own, largest_nm)?;
-        let clear = |fit: &Fitted| fit.better_than(&out.fitted) > CLEARLY_OF_GRID;
-        let Some((law, fit)) = tried.iter().find(|(_, fit)| clear(fit)).cloned() else {
-            let best = tried.first().map(|(law, fit)| (law.what(), fit.held_out_rms()));
-            out.hidden = best.filter(|(_, rms_rad)| *rms_rad < HIDDEN * out.fitted.held_out_rms());
+        let (at, torque) = (out.laws.len(), model.places.torque());
+        let is_clear =
+            |fit: &Fitted| fit.better_than(&out.fitted) > CLEARLY_OF_GRID || fit.halves(&out.fitted);
+        let reason = |(law, fit): &(Law, Fitted)| impossible(fit, *law, first, at, torque);
+        let clear: Vec<&(Law, Fitted)> = tried.iter().filter(|(_, fit)| is_clear(fit)).collect();
+        let Some(best) = clear.first() else {
+            let likely = tried.iter().find(|law| reason(law).is_none());
+            let rms_rad = likely.map(|(law, fit)| (law.what(), fit.held_out_rms()));
+            out.hidden = rms_rad.filter(|(_, rms_rad)| *rms_rad < HIDDEN * out.fitted.held_out_rms());
             break;
         };
-        if !is_material(&fit, law, first + 4 * out.laws.len(), &out.spring_nm, model.places.torque()) {
+        if !is_material(&best.1, best.0, first + 4 * at, &out.spring_nm, torque) {
             break;
         }
-        if let Some(reason) = impossible(&fit, law, first, out.laws.len(), model.places.torque()) {
-            out.refused.push((law.what(), reason));
+        if let Some(reason) = reason(best) {
+            out.refused.push((best.0.what(), reason));
             break;
         }
-        let alike =
-            tried.iter().find(|(l, f)| l.what() != law.what() && clear(f) && fit.better_than(f) < 2.0);
-        out.competing = out.competing.or(alike.map(|(l, _)| l.what()));
-        let laws = [out.laws.as_slice(), &[law]].concat();
-        let Some((laws, fit)) = out.improved(model, &own, laws) else { break };
-        out.steps.push((law.what().replace('_', " "), fit.held_out_rms()));
-        (out.laws, out.fitted) = (laws, fit);
+        // a law is judged at its best torques and with the rotor's inertia that follows, not at those of the grid
+        let possible = clear.iter().filter(|law| reason(law).is_none()).map(|(law, _)| *law);
+        let mut with: Vec<Curve> = possible.filter_map(|law| out.with(model, &own, law, friction)).collect();
+        with.sort_by(|a, b| a.fitted.held_out_rms().total_cmp(&b.fitted.held_out_rms()));
+        let others = with.split_off(with.len().min(1));
+        let Some(next) = with.pop() else { break };
+        let is_equal = |other: &&Curve| next.fitted.better_than(&other.fitted) < CLEARLY;
+        let competing = out.competing.or(others.iter().find(is_equal).and_then(Curve::last));
+        out = Curve { competing, ..next };
     }
     Some(out)
 }
@@ -338,6 +358,37 @@ impl Curve {
             true
         });
         (sums, target)
+    }
+
+    /// Name of the law that was found last.
+    fn last(&self) -> Option<&'static str> {
+        self.laws.last().map(|law| law.what())
+    }
+
+    /// These laws and the law `law`, all at their best torques. The spring torque is computed again with the rotor's inertia of
+    /// the fit, which a law that the fit before lacks made wrong there. `None` if a fit is impossible.
+    fn with(
+        &self,
+        model: &TwistModel,
+        own: &[usize],
+        law: Law,
+        friction: Option<&Friction>,
+    ) -> Option<Curve> {
+        const ROUNDS: usize = 10;
+        const STILL_BETTER: f64 = 0.99;
+        let (laws, fitted) = self.improved(model, own, [self.laws.as_slice(), &[law]].concat())?;
+        let mut out = Curve { laws, fitted, ..self.clone() };
+        for _ in 0..ROUNDS {
+            let spring_nm = spring_torque(model, &out.fitted, friction);
+            let mut next = Curve { spring_nm, ..out.clone() };
+            (next.laws, next.fitted) = next.improved(model, own, out.laws.clone())?;
+            if next.fitted.squares > STILL_BETTER * out.fitted.squares {
+                break;
+            }
+            out = next;
+        }
+        out.steps.push((law.what().replace('_', " "), out.fitted.held_out_rms()));
+        Some(out)
     }
 
     /// Improves the torques of all `laws` together by [`ROUNDS`] Gauss-Newton steps. Returns the laws with the

@@ -115,6 +115,9 @@ pub struct JointRecord {
     pub noise_rad: f64,
     /// Root mean square error of the twist on held-out blocks with an offset alone as model \[rad\].
     pub before_rad: f64,
+    /// The same error with an offset and the time shift as model, if a time shift was found; otherwise with the offset alone
+    /// \[rad\].
+    pub(crate) unshifted_rad: f64,
     /// Root mean square error of the twist on held-out blocks with everything that was found \[rad\].
     pub after_rad: f64,
     /// All effects that were looked for, found or not.

@@ -8,13 +8,14 @@
 //!
 //! The load of a joint also depends on the position and motion of the other joints. Their angles, speeds and
 //! accelerations enter as free columns, joint by joint, where held-out blocks are predicted better with them. The
-//! torque of the load `T_l` comes from a first fit, without the terms of friction.
+//! torque of the load `T_l`, which the gear carries, comes from a first fit without load-dependent friction, then from one
+//! with it: all terms of the load except the rotor's inertia.
 
 use super::blocks::Fitted;
 use super::intervals::is_positive;
 use super::reading::Record;
 use super::signals::{JointRows, Sample};
-use super::smooth::{half_width, smooth};
+use super::smooth::{averaged, slope, smooth};
 use super::twist::CLEARLY;
 use crate::reconcile::model::estimate::Estimate;
 
@@ -33,6 +34,9 @@ const SLIGHTLY: f64 = 1.0;
 const TURNING: f64 = 0.05;
 /// Number of columns that the motion of one other joint adds to the balance of torques.
 const OTHER: usize = 8;
+
+/// Number of fits in which load-dependent friction and the load improve each other.
+const LOAD_ROUNDS: usize = 4;
 
 /// Friction of a joint on the output of its gear, with 95 % intervals.
 #[derive(Debug, Clone, Copy)]
@@ -54,6 +58,8 @@ pub(crate) struct Friction {
     pub most_viscous_nms_per_rad: f64,
     /// Fraction of the variance of the motor's torque that neither load nor friction explains.
     pub left_share: f64,
+    /// The same fraction with the rows at reversals, where friction follows no formula.
+    pub left_share_with_reversals: f64,
 }
 
 /// Sine of the angle, and cosine minus 1. Both are zero at zero angle so that they do not compete with the offset.
@@ -71,6 +77,8 @@ struct Balance<'a> {
     shift_s: f64,
     others: Vec<Motion>,
     load_nm: Vec<f64>,
+    /// Whether the rows at reversals are used too.
+    has_reversals: bool,
 }
 
 impl Balance<'_> {
@@ -105,7 +113,7 @@ impl Balance<'_> {
 
     fn fill(&self, i: usize, sample: &Sample, row: &mut [f64]) -> bool {
         // at a reversal the friction changes its sign somewhere between the rows, and no formula gives it
-        if (sample.sense.abs() - 1.0).abs() > TURNING {
+        if !self.has_reversals && (sample.sense.abs() - 1.0).abs() > TURNING {
             return false;
         }
         let read = self.rows.link(sample, self.shift_s).zip(self.rows.accelerations(sample, self.shift_s));
@@ -132,18 +140,59 @@ impl Balance<'_> {
         true
     }
 
-    /// Torque of the load at each row according to the fit `fitted` \[N m\]: the sum of all terms except friction.
+    /// Torque of the load that the gear carries at each row according to the fit `fitted` \[N m\]: the sum of all terms
+    /// except friction and the torque that accelerates the rotor. Where the link's acceleration is in the fit, the motor's
+    /// acceleration belongs to the rotor; otherwise it stands for both, and a stated inertia of the rotor is subtracted.
     fn load_of(&self, fitted: &Fitted) -> Vec<f64> {
-        let friction = self.friction();
+        let motor = self.rows.record_count();
+        let mut apart = self.friction().to_vec();
+        let mut rotor_kgm2 = self.rows.rotor_inertia_kgm2.unwrap_or_default();
+        if fitted.columns.contains(&self.link()) {
+            apart.push(motor);
+            rotor_kgm2 = 0.0;
+        }
         let mut row = vec![0.0; self.target() + 1];
         let rows = self.rows.samples.iter().enumerate();
         rows.map(|(i, sample)| {
             row.fill(0.0);
             self.fill(i, sample, &mut row);
-            let parts = fitted.columns.iter().zip(&fitted.values).filter(|(c, _)| !friction.contains(c));
-            parts.map(|(c, v)| row[*c] * v).sum()
+            let parts = fitted.columns.iter().zip(&fitted.values).filter(|(c, _)| !apart.contains(c));
+            parts.map(|(c, v)| row[*c] * v).sum::<f64>() - rotor_kgm2 * row[motor]
         })
         .collect()
+    }
+
+    /// Fit of the torque without load-dependent friction, with the columns that held-out blocks ask for. `None` if a fit is
+    /// impossible.
+    fn without_load_friction(&self) -> Option<Fitted> {
+        let target = self.target();
+        let sums = self.rows.sums(target + 1, |i, s, row| self.fill(i, s, row));
+        let [sense, speed, _] = self.friction();
+        let mut columns = [self.load(), vec![sense, speed]].concat();
+        let mut best = sums.fit(&columns, target, |_| None)?;
+        let mut left = self.candidates();
+        loop {
+            let tried = left.iter().enumerate().filter_map(|(k, group)| {
+                let more = [columns.as_slice(), group].concat();
+                Some((k, sums.fit(&more, target, |_| None)?))
+            });
+            let asked = |k: usize| if left[k].len() == 1 { SLIGHTLY } else { CLEARLY };
+            let better = tried.filter(|(k, fit)| fit.better_than(&best) > asked(*k));
+            let rms = |fit: &Fitted| fit.held_out_rms();
+            let Some((k, fit)) = better.min_by(|a, b| rms(&a.1).total_cmp(&rms(&b.1))) else { break };
+            columns.extend(left.remove(k));
+            best = fit;
+        }
+        Some(best)
+    }
+
+    /// Fraction of the variance of the motor's torque that a fit by the columns `columns` leaves.
+    fn left_share(&self, columns: &[usize]) -> f64 {
+        let target = self.target();
+        let sums = self.rows.sums(target + 1, |i, s, row| self.fill(i, s, row));
+        let offsets: Vec<usize> = (0..self.rows.record_count()).collect();
+        let others: Vec<usize> = columns.iter().copied().filter(|c| !offsets.contains(c)).collect();
+        sums.own_share(target, &offsets, &others)
     }
 }
 
@@ -160,50 +209,63 @@ fn motions(rows: &JointRows, records: &[Record]) -> Vec<Motion> {
     in_all
         .map(|name| {
             let signals = own.iter().filter_map(|r| Some((r, r.joints.iter().find(|j| j.joint == *name)?)));
-            let smoothed: Vec<_> = signals
-                .map(|(r, j)| smooth(&r.t_s, &j.motor_rad, half_width(&r.t_s, &j.motor_rad)))
+            let smoothed: Vec<[Vec<f64>; 3]> = signals
+                .enumerate()
+                .map(|(k, (r, j))| motion_of(&r.t_s, &j.motor_rad, rows.half(k)))
                 .collect();
             let at = |s: &Sample| {
-                let m = smoothed.get(s.record)?;
-                (!m.value[s.row].is_nan()).then(|| [m.value[s.row], m.slope[s.row], m.curvature[s.row]])
+                let m = smoothed.get(s.record)?.each_ref().map(|x| x[s.row]);
+                m.iter().all(|x| !x.is_nan()).then_some(m)
             };
             rows.samples.iter().map(at).collect()
         })
         .collect()
 }
 
+/// Angle \[rad\], speed \[rad/s\] and acceleration \[rad/s²\] of another joint, averaged with the window of this joint.
+fn motion_of(t_s: &[f64], motor_rad: &[f64], half: usize) -> [Vec<f64>; 3] {
+    let [angle_rad] = averaged(t_s, half, [motor_rad]);
+    let speed_rad_s = slope(t_s, &angle_rad);
+    [angle_rad, speed_rad_s, smooth(t_s, motor_rad, half).curvature]
+}
+
+/// Torque of the load that the gear of a joint carries, one per row \[N m\], from the balance of torques. A time shift of the
+/// link's readings changes it little and is not removed. `None` if the torque is not recorded or a fit is impossible.
+pub(crate) fn load_nm(rows: &JointRows, records: &[Record]) -> Option<Vec<f64>> {
+    let mut balance = balance(rows, records, 0.0)?;
+    let best = balance.without_load_friction()?;
+    balance.has_reversals = true;
+    Some(balance.load_of(&best))
+}
+
+/// The balance of torques before a fit; `None` if the torque is not recorded.
+fn balance<'a>(rows: &'a JointRows, records: &[Record], shift_s: f64) -> Option<Balance<'a>> {
+    let load_nm = vec![0.0; rows.samples.len()];
+    let others = rows.has_torque.then(|| motions(rows, records))?;
+    Some(Balance { rows, shift_s, others, load_nm, has_reversals: false })
+}
+
 /// Finds the friction of a joint from the balance of its torques. `shift_s` is the delay of the link's readings
 /// \[s\]. `None` if the torque is not recorded or a fit is impossible.
 pub(crate) fn friction(rows: &JointRows, records: &[Record], shift_s: f64) -> Option<Friction> {
-    if !rows.has_torque {
-        return None;
+    let mut balance = balance(rows, records, shift_s)?;
+    let best = balance.without_load_friction()?;
+    let (target, [sense, speed, load_sense]) = (balance.target(), balance.friction());
+    let (mut sums, mut chosen) = (rows.sums(target + 1, |i, s, row| balance.fill(i, s, row)), best);
+    let with = [chosen.columns.as_slice(), &[load_sense]].concat();
+    let mut has_load = false;
+    for _ in 0..LOAD_ROUNDS {
+        balance.load_nm = balance.load_of(&chosen);
+        let next = rows.sums(target + 1, |i, s, row| balance.fill(i, s, row));
+        let with_load = next.fit(&with, target, |_| None)?;
+        if !has_load
+            && !(with_load.better_than(&chosen) > CLEARLY && is_positive(&with_load.coefficient(load_sense)))
+        {
+            break;
+        }
+        (sums, chosen, has_load) = (next, with_load, true);
     }
-    let mut balance =
-        Balance { rows, shift_s, others: motions(rows, records), load_nm: vec![0.0; rows.samples.len()] };
-    let target = balance.target();
-    let sums = rows.sums(target + 1, |i, s, row| balance.fill(i, s, row));
-    let [sense, speed, load_sense] = balance.friction();
-    let mut columns = [balance.load(), vec![sense, speed]].concat();
-    let mut best = sums.fit(&columns, target, |_| None)?;
-    let mut left = balance.candidates();
-    loop {
-        let tried = left.iter().enumerate().filter_map(|(k, group)| {
-            let more = [columns.as_slice(), group].concat();
-            Some((k, sums.fit(&more, target, |_| None)?))
-        });
-        let asked = |k: usize| if left[k].len() == 1 { SLIGHTLY } else { CLEARLY };
-        let better = tried.filter(|(k, fit)| fit.better_than(&best) > asked(*k));
-        let rms = |fit: &Fitted| fit.held_out_rms();
-        let Some((k, fit)) = better.min_by(|a, b| rms(&a.1).total_cmp(&rms(&b.1))) else { break };
-        columns.extend(left.remove(k));
-        best = fit;
-    }
-    balance.load_nm = balance.load_of(&best);
-    let sums = rows.sums(target + 1, |i, s, row| balance.fill(i, s, row));
     let fit = |columns: &[usize]| sums.fit(columns, target, |_| None);
-    let with_load = fit(&[columns.clone(), vec![load_sense]].concat())?;
-    let has_load = with_load.better_than(&best) > CLEARLY && is_positive(&with_load.coefficient(load_sense));
-    let chosen = if has_load { with_load } else { best };
     let without = |column: usize| {
         let others: Vec<usize> = chosen.columns.iter().copied().filter(|c| *c != column).collect();
         fit(&others).is_some_and(|other| chosen.better_than(&other) > CLEARLY || chosen.halves(&other))
@@ -212,6 +274,8 @@ pub(crate) fn friction(rows: &JointRows, records: &[Record], shift_s: f64) -> Op
     let largest_nm = rows.samples.iter().fold(0.0f64, |m, s| m.max(s.torque_nm.abs()));
     let fastest = rows.samples.iter().fold(0.0f64, |m, s| m.max(s.speed_rad_s.abs()));
     let is_possible = chosen.value(speed) * fastest < largest_nm;
+    let left_share = balance.left_share(&chosen.columns);
+    balance.has_reversals = true;
     Some(Friction {
         coulomb_nm: chosen.coefficient(sense),
         viscous_nms_per_rad: chosen.coefficient(speed),
@@ -219,6 +283,7 @@ pub(crate) fn friction(rows: &JointRows, records: &[Record], shift_s: f64) -> Op
         clearly: [without(sense), without(speed) && is_possible],
         is_possible,
         most_viscous_nms_per_rad: largest_nm / fastest.max(1e-12),
-        left_share: chosen.squares / fit(&(0..rows.record_count()).collect::<Vec<_>>())?.squares.max(1e-300),
+        left_share,
+        left_share_with_reversals: balance.left_share(&chosen.columns),
     })
 }

@@ -30,6 +30,14 @@ pub(super) fn widened(estimate: Estimate, least: f64) -> Estimate {
     }
 }
 
+/// The estimate of a coefficient with its interval widened to cover that the fit gives `least` to 1 times the true value. An end
+/// without limit is infinite.
+pub(super) fn attenuated(estimate: Estimate, least: f64) -> Estimate {
+    let up = |end: f64| if end > 0.0 { end.max(end / least) } else { end };
+    let down = |end: f64| if end < 0.0 { end.min(end / least) } else { end };
+    Estimate { value: estimate.value, low: estimate.low.map(down), high: estimate.high.map(up) }
+}
+
 /// Whether the whole interval lies on one side of zero.
 pub(super) fn excludes_zero(estimate: &Estimate) -> bool {
     is_positive(estimate) || estimate.high.is_some_and(|h| h < 0.0)

@@ -4,8 +4,8 @@ use super::blocks::Fitted;
 use super::compliance::{GRAVITY_OR_ERROR, compliance};
 use super::curve::{Curve, Law, TORSION_CURVE, curve};
 use super::finding::{JointRecord, State, Stated, Step, Traced};
-use super::friction::{Friction, friction};
-use super::intervals::{covering, excludes_zero, half, is_positive, widened};
+use super::friction::{Friction, friction, load_nm};
+use super::intervals::{attenuated, covering, excludes_zero, half, is_positive, widened};
 use super::reading::Record;
 use super::ringing::{joined, swings};
 use super::signals::JointRows;
@@ -37,16 +37,25 @@ const TELLING_RANGE_RAD: f64 = 2.0;
 /// impossible.
 pub(crate) fn judge(records: &[Record], joint: &str) -> Option<JointRecord> {
     let wave = Wave::find(records, joint);
-    let rows = JointRows::gather(records, joint, BLOCKS, &wave)?;
+    let rows = gathered(records, joint, BLOCKS, &wave)?;
     let model = TwistModel::find(&rows)?;
     let readings = rows.samples.len() as f64 / model.rows_per_reading / LONG_BLOCK;
     let blocks = (readings as usize).clamp(FEWEST_BLOCKS, BLOCKS);
     if blocks >= BLOCKS {
         return Some(Judged::new(&rows, &model, records).conclude());
     }
-    let rows = JointRows::gather(records, joint, blocks, &wave)?;
+    let rows = gathered(records, joint, blocks, &wave)?;
     let model = TwistModel::find(&rows)?;
     Some(Judged::new(&rows, &model, records).conclude())
+}
+
+/// Rows of the joint from all records, with the torque of the load.
+fn gathered(records: &[Record], joint: &str, blocks: usize, wave: &Wave) -> Option<JointRows> {
+    let mut rows = JointRows::gather(records, joint, blocks, wave)?;
+    if let Some(load_nm) = load_nm(&rows, records) {
+        rows.take_load(&load_nm);
+    }
+    Some(rows)
 }
 
 struct Judged<'a> {
@@ -54,6 +63,8 @@ struct Judged<'a> {
     model: &'a TwistModel<'a>,
     records: &'a [Record],
     friction: Option<Friction>,
+    /// Limit of [`TwistModel::least_attenuation`].
+    least: f64,
     compliance: Stated,
     curve: Option<Curve>,
 }
@@ -61,12 +72,11 @@ struct Judged<'a> {
 impl<'a> Judged<'a> {
     fn new(rows: &'a JointRows, model: &'a TwistModel<'a>, records: &'a [Record]) -> Self {
         let friction = balanced(rows, model, records);
-        let compliance = compliance(model, friction.map_or(1.0, |f| f.left_share));
+        let least = model.least_attenuation(friction.map_or(1.0, |f| f.left_share_with_reversals));
+        let compliance = compliance(model, friction.map_or(1.0, |f| f.left_share), least);
         let is_found = compliance.state == State::Found && Curve::applies(model);
-        let viscous = friction.filter(|f| f.clearly[1] && is_positive(&f.viscous_nms_per_rad));
-        let viscous = viscous.map_or(0.0, |f| f.viscous_nms_per_rad.value);
-        let curve = if is_found { curve(model, viscous) } else { None };
-        Self { rows, model, records, friction, compliance, curve }
+        let curve = if is_found { curve(model, friction.as_ref()) } else { None };
+        Self { rows, model, records, friction, least, compliance, curve }
     }
 
     /// The last fit of the twist: the one with torsion laws if any was found, otherwise the linear one.
@@ -83,7 +93,7 @@ impl<'a> Judged<'a> {
     fn compliance_beside_laws(&self) -> Stated {
         let laws = self.curve.iter().flat_map(|c| &c.laws);
         let is_changed = !laws.clone().any(|l| matches!(l, Law::Segments(..))) && laws.count() > 0;
-        let c = self.fitted().coefficient(self.model.places.torque());
+        let c = attenuated(self.fitted().coefficient(self.model.places.torque()), self.least);
         let c = widened(c, LEAST_LAW_PART * c.value.abs());
         let (Some(low), Some(high)) = (c.low.filter(|low| is_changed && *low > 0.0), c.high) else {
             return self.compliance.clone();
@@ -122,6 +132,7 @@ impl<'a> Judged<'a> {
             range_rad: high - low,
             noise_rad: self.rows.noise_rad(),
             before_rad: self.model.steps.first().map_or(0.0, |s| s.1),
+            unshifted_rad: self.unshifted_rad(),
             after_rad: fitted.held_out_rms(),
             steps: steps.map(|(added, rad)| Step { added: added.clone(), held_out_rad: *rad }).collect(),
             trace: self.trace(),
@@ -129,6 +140,12 @@ impl<'a> Judged<'a> {
             undecided: self.undecided(),
             stated,
         }
+    }
+
+    /// Root mean square error of the twist on held-out blocks \[rad\] with an offset and, if it is in the model, the time shift.
+    fn unshifted_rad(&self) -> f64 {
+        let shift: Vec<Group> = self.model.groups.iter().copied().filter(|g| *g == Group::Shift).collect();
+        self.model.fit(&shift).map_or(0.0, |f| f.held_out_rms())
     }
 
     /// Lower and upper limit of the fraction of Coulomb friction that acts on the motor's side of the spring, from 0
@@ -174,16 +191,14 @@ impl<'a> Judged<'a> {
     /// interval covers the correction for every compliance that is possible. If the friction is refused too, the correction
     /// may have either sign.
     fn with_friction(&self, plain: Estimate) -> (Estimate, String) {
-        // the columns of a torsion law use the torque without viscous friction, so only the linear compliance is used
-        // here
-        let c = self.fitted().coefficient(self.model.places.torque());
+        let c = self.bounded_compliance();
         let Some(f) = self.friction.filter(|f| f.is_possible && is_positive(&f.viscous_nms_per_rad)) else {
-            let possible = self.friction.filter(|f| f.is_possible && self.compliance.state != State::Found);
+            let possible = self.friction.filter(|f| f.is_possible);
             let Some(f) = possible else { return (plain, String::new()) };
             let most = |e: &Estimate| e.low.unwrap_or(0.0).abs().max(e.high.unwrap_or(0.0).abs());
             let reach = most(&c) * most(&f.viscous_nms_per_rad).min(f.most_viscous_nms_per_rad);
             let words = format!(
-                "viscous friction may count for up to {:.2} ms of it: neither it nor the compliance is determined",
+                "viscous friction, which is not determined, may count for up to {:.2} ms of it",
                 1e3 * reach
             );
             return (widened(plain, half(&plain) + reach), words);
@@ -195,7 +210,11 @@ impl<'a> Judged<'a> {
         if self.compliance.state != State::Found && c.value <= 0.0 {
             most_compliant = most_compliant.max(self.model.largest_compliance());
         }
-        let (least, most) = if is_known { self.motor_part() } else { (0.0, 1.0) };
+        let (least, most) = match self.motor_part() {
+            // where a part of Coulomb friction is certainly behind the spring, any part of viscous friction may be
+            (least, most) if is_known && most >= 1.0 => (least, most),
+            _ => (0.0, 1.0),
+        };
         let viscous = f.viscous_nms_per_rad;
         let by_friction = |part: f64| part * compliance * viscous.value;
         let spread = |part: f64| {
@@ -215,6 +234,19 @@ impl<'a> Judged<'a> {
             1e3 * by_friction(least)
         );
         (out, words)
+    }
+
+    /// Compliance of the last fit \[rad/(N m)\], without that of a torsion law, with noise of the torque in its interval. The
+    /// recorded twist bounds it where the noise does not.
+    fn bounded_compliance(&self) -> Estimate {
+        let fitted = self.fitted().coefficient(self.model.places.torque());
+        let bound = self.model.largest_compliance();
+        let noisy = attenuated(fitted, self.least);
+        Estimate {
+            value: fitted.value,
+            low: fitted.low.zip(noisy.low).map(|(fitted, noisy)| noisy.max(fitted.min(-bound))),
+            high: fitted.high.zip(noisy.high).map(|(fitted, noisy)| noisy.min(fitted.max(bound))),
+        }
     }
 
     fn laws(&self) -> Vec<Stated> {

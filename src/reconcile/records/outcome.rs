@@ -23,11 +23,17 @@ use crate::reconcile::verdict::outcome::{Calibrated, Located, NextTest, Outcome,
 use serde_json::json;
 
 /// A joint is explained if the root mean square error of its twist on held-out blocks is at most this fraction of the
-/// error with an offset alone. The sum of squares is then 2.5 % of that with an offset alone.
+/// error with an offset and the time shift alone. The sum of squares is then 2.5 % of that.
 const LEFT: f64 = 0.158;
 /// A joint is also explained if the root mean square error of its twist on held-out blocks is at most this many times
 /// the noise of the twist from row to row.
 const NOISY: f64 = 1.5;
+/// Where a time shift is most of the recorded twist, a joint is also explained if its error is at most this \[rad\], and at most
+/// [`LEFT`] of the error with an offset alone: encoders at the output are not more accurate than 20 seconds of arc.
+const ENCODER_RAD: f64 = 1e-4;
+/// A stiffness that is wrong by a factor of the ratio, or of the degrees of a radian, differs from this factor by at most this
+/// fraction.
+const NEAR: f64 = 0.25;
 /// Effects that change how far a joint twists under torque. If other readings name one of them at a joint, the records
 /// add none of them at this joint.
 const OF_TWIST: [&str; 5] = [
@@ -95,7 +101,8 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
 
 /// Whether the error of a joint's twist on held-out blocks is noise, or a small part of the twist.
 fn is_explained(joint: &JointRecord) -> bool {
-    joint.after_rad <= (LEFT * joint.before_rad).max(NOISY * joint.noise_rad)
+    let of_encoders = ENCODER_RAD.min(LEFT * joint.before_rad);
+    joint.after_rad <= (LEFT * joint.unshifted_rad).max(NOISY * joint.noise_rad).max(of_encoders)
 }
 
 /// Whether the joint is explained and the records leave nothing open.
@@ -115,6 +122,18 @@ fn left_beyond_noise(joint: &JointRecord) -> String {
     }
 }
 
+/// Sentence on a joint without an effect: noise explains its twist, or its nominal compliance does and little is left.
+fn no_gap(joint: &JointRecord) -> String {
+    format!(
+        "{}: the nominal joint within its tolerance explains the records: {:.4} of {:.4} mrad of the twist are left on held-out \
+         blocks{}",
+        joint.joint,
+        1e3 * joint.after_rad,
+        1e3 * joint.before_rad,
+        left_beyond_noise(joint)
+    )
+}
+
 fn verdict(
     joints: &[JointRecord],
     findings: &[Finding],
@@ -128,10 +147,11 @@ fn verdict(
     if !open.is_empty() {
         let left = open.iter().map(|j| {
             format!(
-                "{}: {:.4} of {:.4} mrad of the twist are left on held-out blocks, and the noise of a row is {:.4} mrad",
+                "{}: {:.4} of {:.4} mrad of the twist are left on held-out blocks{}, and the noise of a row is {:.4} mrad",
                 j.joint,
                 1e3 * j.after_rad,
-                1e3 * j.before_rad,
+                1e3 * j.unshifted_rad,
+                if j.unshifted_rad < j.before_rad { " after the time shift" } else { "" },
                 1e3 * j.noise_rad
             )
         });
@@ -141,6 +161,10 @@ fn verdict(
     let undecided: Vec<String> = undecided.collect();
     if !undecided.is_empty() {
         return (Verdict::InsufficientData, undecided);
+    }
+    if stiffnesses.iter().any(|s| s.remark.is_some()) {
+        let text = "no effect of the library explains a joint that is stiffer than its nominal one";
+        return (Verdict::Unexplained, vec![text.into()]);
     }
     if !findings.is_empty() {
         let fall = joints.iter().map(|j| {
@@ -154,11 +178,7 @@ fn verdict(
         });
         return (Verdict::Explained, fall.collect());
     }
-    if stiffnesses.iter().any(|s| s.remark.is_some()) {
-        let text = "no effect of the library explains a joint that is stiffer than its nominal one";
-        return (Verdict::Unexplained, vec![text.into()]);
-    }
-    (Verdict::NoGap, vec!["noise and the tolerance of the joints explain the records".into()])
+    (Verdict::NoGap, joints.iter().map(no_gap).collect())
 }
 
 /// Effects of the library that the records show at a joint, as findings. The joint's single compliance is not among
@@ -253,7 +273,24 @@ fn stiffness(campaign: &Campaign, joint: &JointRecord) -> Stiffness {
             100.0 * tolerance
         )
     });
-    Stiffness { calibrated: Some(calibrated), factor: Some(own.value), remark, finding: None }
+    let hint = remark.is_some().then(|| stiff_by_unit(campaign, &joint.joint, own.value)).flatten();
+    let remark = remark.map(|r| r + hint.as_deref().unwrap_or_default());
+    // a joint that no effect explains keeps its nominal stiffness in the corrected arm
+    let factor = remark.is_none().then_some(own.value);
+    Stiffness { calibrated: Some(calibrated), factor, remark, finding: None }
+}
+
+/// Hint at a wrong unit where the joint is too stiff by about its ratio or by the degrees of a radian.
+fn stiff_by_unit(campaign: &Campaign, joint: &str, factor: f64) -> Option<String> {
+    let is_near = |by: f64| (libm::log(factor / by)).abs() < NEAR;
+    let own = campaign.records.iter().flat_map(|r| &r.joints).find(|j| j.joint == joint);
+    if let Some(ratio) = own.and_then(|j| j.ratio).filter(|n| *n > 2.0 && is_near(*n)) {
+        return Some(format!(
+            "; this is about its ratio of {ratio}: if the torque is at the output, state \"torque_at\": \"output\""
+        ));
+    }
+    is_near(1f64.to_degrees())
+        .then(|| "; this is about 57.3: angles must be in degrees, and these may be in radians".into())
 }
 
 /// Compliance of the nominal joint, with the effects of its arm file, as twist over torque (secant) at `torque_nm`

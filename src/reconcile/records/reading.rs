@@ -14,6 +14,16 @@ const MOST_FAULTS: usize = 10;
 /// Smallest number of rows of a record. A shorter record is a fault.
 pub(crate) const FEWEST_ROWS: usize = 200;
 
+/// The angles of an encoder of one turn lie within this \[rad\].
+const ONE_TURN_RAD: f64 = std::f64::consts::TAU * (1.0 + 1e-9);
+/// Motor and link are compared only if each of them turns through at least this \[rad\].
+const LEAST_RANGE_RAD: f64 = 0.1;
+/// Motor and link move together if the square of their correlation is at least this.
+const TOGETHER: f64 = 0.9;
+/// Largest angle of the link for each radian of the motor, both at the output, or of the motor for each of the link. No joint
+/// that twists turns one side twice as far as the other.
+const MOST_SLOPE: f64 = 2.0;
+
 /// Signals of one joint, all referred to the output of the gear.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JointSignals {
@@ -142,7 +152,7 @@ impl Reader<'_> {
                 Err(e) => self.fault(None, "", format!("not valid CSV: {e}"), "save the table as plain CSV"),
             }
         }
-        self.finish(&mut out);
+        self.finish(&mut out, &columns);
         Some(out)
     }
 
@@ -276,7 +286,7 @@ impl Reader<'_> {
             );
         }
         for (c, signals) in columns.iter().zip(&mut out.joints) {
-            signals.motor_rad.push(self.number(cells, line, c.motor.0).to_radians() * c.motor.1);
+            signals.motor_rad.push(self.number(cells, line, c.motor.0).to_radians());
             if let Some(link) = c.link {
                 signals.link_rad.push(self.number(cells, line, link).to_radians());
             }
@@ -305,16 +315,59 @@ impl Reader<'_> {
         }
     }
 
-    fn finish(&mut self, out: &mut Record) {
+    fn finish(&mut self, out: &mut Record, columns: &[Columns]) {
         if self.faults.is_empty() && out.t_s.len() < FEWEST_ROWS {
             let problem = format!("has {} rows", out.t_s.len());
             self.fault(None, "", problem, &format!("a record against time needs at least {FEWEST_ROWS}"));
         }
-        for signals in &mut out.joints {
-            unwrap(&mut signals.motor_rad);
+        for (signals, c) in out.joints.iter_mut().zip(columns) {
+            let is_at_shaft = c.motor.1 != 1.0;
+            // a shaft may turn by more than half a turn between rows, so only an encoder of one turn is unwrapped
+            if !is_at_shaft || range(&signals.motor_rad) < ONE_TURN_RAD {
+                unwrap(&mut signals.motor_rad);
+            }
+            signals.motor_rad.iter_mut().for_each(|angle| *angle *= c.motor.1);
             unwrap(&mut signals.link_rad);
+            if self.faults.is_empty()
+                && let Some(problem) = not_together(signals)
+            {
+                let hint = "check the sign and the unit of both angles, the ratio, and which of them is at the shaft";
+                self.fault(None, &format!("{}_link_deg", signals.joint), problem, hint);
+            }
         }
     }
+}
+
+/// Largest less smallest of the angles.
+fn range(angles_rad: &[f64]) -> f64 {
+    let ends = (f64::INFINITY, f64::NEG_INFINITY);
+    let (low, high) = angles_rad.iter().fold(ends, |(low, high), a| (low.min(*a), high.max(*a)));
+    high - low
+}
+
+/// What is wrong with the angles of a joint whose link and motor move far and together, but not by the same angle; `None` if they
+/// do, or if one of them hardly moves, as in a test with a locked output.
+fn not_together(signals: &JointSignals) -> Option<String> {
+    let (motor_rad, link_rad) = (&signals.motor_rad, &signals.link_rad);
+    if link_rad.is_empty() || range(motor_rad).min(range(link_rad)) < LEAST_RANGE_RAD {
+        return None;
+    }
+    let count = motor_rad.len() as f64;
+    let [of_motor, of_link] = [motor_rad, link_rad].map(|x| x.iter().sum::<f64>() / count);
+    let product = |a: &[f64], a0: f64, b: &[f64], b0: f64| -> f64 {
+        a.iter().zip(b).map(|(a, b)| (a - a0) * (b - b0)).sum()
+    };
+    let both = product(motor_rad, of_motor, link_rad, of_link);
+    let motors = product(motor_rad, of_motor, motor_rad, of_motor);
+    let links = product(link_rad, of_link, link_rad, of_link);
+    let slope = both / motors;
+    if both.powi(2) < TOGETHER * motors * links || (1.0 / MOST_SLOPE..MOST_SLOPE).contains(&slope) {
+        return None;
+    }
+    Some(match slope < 0.0 {
+        true => format!("the link turns against the motor: by {slope:.4} rad for each radian"),
+        false => format!("the link turns by {slope:.4} rad for each radian of the motor, both at the output"),
+    })
 }
 
 /// Removes jumps of a whole turn, which occur where a single-turn encoder passes zero.

@@ -53,8 +53,8 @@ pub(crate) fn swings(t_s: &[f64], motor_rad: &[f64], link_rad: &[f64]) -> Vec<(f
     let half = half_width(t_s, motor_rad);
     let speed = smooth(t_s, motor_rad, half).slope;
     let fastest = speed.iter().filter(|w| !w.is_nan()).fold(0.0f64, |m, w| m.max(w.abs()));
-    let slow = (AT_REST * fastest).max(4.0 * slope_noise(motor_rad, half, usual_step_s(t_s)));
-    let level = libm::hypot(noise(motor_rad), noise(link_rad));
+    let slow = (AT_REST * fastest).max(4.0 * slope_noise(t_s, motor_rad, half));
+    let level = libm::hypot(noise(t_s, motor_rad), noise(t_s, link_rad));
     let mut out = Vec::new();
     let mut begin = 0usize;
     // the end of the record also ends a stretch

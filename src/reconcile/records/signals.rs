@@ -2,7 +2,7 @@
 
 use super::blocks::Blocks;
 use super::reading::{JointSignals, Record};
-use super::smooth::{Smooth, half_width, noise, slope_noise, smooth, usual_step_s, value_noise};
+use super::smooth::{averaged, half_width, noise, slope, slope_noise, smooth, usual_step_s, value_noise};
 use super::wave::Wave;
 
 /// Fraction of the largest speed below which the sign of the speed changes smoothly, because real friction does not
@@ -32,14 +32,15 @@ pub(crate) struct Sample {
     pub block: usize,
     /// Angle of the motor at the output \[rad\].
     pub angle_rad: f64,
+    /// Sine and cosine less 1 of the motor's angle times the ratio, once and twice; zero if the ratio is not stated.
+    pub input_waves: [f64; 4],
     /// Speed of the motor at the output \[rad/s\].
     pub speed_rad_s: f64,
     /// Acceleration of the motor at the output \[rad/s²\].
     pub acceleration_rad_s2: f64,
-    /// Sign of the motor's speed, from -1 to 1, smoothed with the same window as the torque.
+    /// Sign of the motor's speed, from -1 to 1.
     pub sense: f64,
-    /// Sign of the motor's speed times the magnitude of the torque, smoothed with the same window as the torque \[N
-    /// m\].
+    /// Sign of the motor's speed times the magnitude of the load's torque \[N m\]; 0 until [`JointRows::take_load`].
     pub load_sense_nm: f64,
     /// Torque of the motor at the output \[N m\]; 0 if it is not recorded.
     pub torque_nm: f64,
@@ -47,12 +48,20 @@ pub(crate) struct Sample {
     pub torque_rate_nm_s: f64,
 }
 
+/// Signals of one record, row by row.
 struct Signals {
     t_s: Vec<f64>,
     motor_rad: Vec<f64>,
     link_rad: Vec<f64>,
-    link: Smooth,
+    link_speed_rad_s: Vec<f64>,
+    link_acceleration_rad_s2: Vec<f64>,
     step_s: f64,
+    /// Half width of the window over which all signals are averaged \[rows\].
+    half: usize,
+    /// Standard deviation of the noise of the twist from row to row, before averaging \[rad\].
+    noise_rad: f64,
+    /// Standard deviation of the noise that averaging leaves in the torque \[N m\].
+    torque_noise_nm: f64,
 }
 
 /// Rows of one joint from all records.
@@ -74,8 +83,6 @@ pub(crate) struct JointRows {
     /// Root mean squares, over all rows, of the accelerations of motor (first) and link (second) \[rad/s²\].
     accelerations_rad_s2: [f64; 2],
     records: Vec<Signals>,
-    /// For each record, the standard deviation of the noise that smoothing leaves in the torque \[N m\].
-    torque_noise_nm: Vec<f64>,
 }
 
 /// Twist at a row if the link's signal is late by some time, and the derivative of the twist with respect to this
@@ -109,7 +116,6 @@ impl JointRows {
             step_s: usual_step_s(&own[0].0.t_s),
             accelerations_rad_s2: [0.0; 2],
             records: Vec::new(),
-            torque_noise_nm: Vec::new(),
         };
         for (record, signals) in own {
             let share = (blocks * record.t_s.len()) as f64 / total as f64;
@@ -120,7 +126,7 @@ impl JointRows {
     }
 
     fn rms_accelerations(&self) -> [f64; 2] {
-        let of_link = |s: &Sample| self.records[s.record].link.curvature[s.row];
+        let of_link = |s: &Sample| self.records[s.record].link_acceleration_rad_s2[s.row];
         let mean = |of: &dyn Fn(&Sample) -> f64| {
             let sum: f64 = self.samples.iter().map(|s| of(s).powi(2)).sum();
             (sum / self.samples.len().max(1) as f64).sqrt()
@@ -148,27 +154,30 @@ impl JointRows {
         let [calm_motor_rad, calm_link_rad] = wave.taken_from(signals);
         let half = half_width(t_s, &calm_motor_rad).max(half_width(t_s, &calm_link_rad));
         let motor = smooth(t_s, &calm_motor_rad, half);
-        let link = smooth(t_s, &calm_link_rad, half);
-
-        let step_s = usual_step_s(t_s);
-        let fastest = motor.slope.iter().filter(|w| !w.is_nan()).fold(0.0f64, |m, w| m.max(w.abs()));
-        let doubt = slope_noise(&calm_motor_rad, half, step_s);
-        let slow = (SLOW_PART * fastest).max(2.0 * doubt).max(f64::MIN_POSITIVE);
-        let sign: Vec<f64> =
-            motor.slope.iter().map(|w| if w.is_nan() { 0.0 } else { libm::tanh(w / slow) }).collect();
+        let link_acceleration_rad_s2 = smooth(t_s, &calm_link_rad, half).curvature;
+        let sign = senses(&motor.slope, slope_noise(t_s, &calm_motor_rad, half));
         let none = vec![0.0; t_s.len()];
-        let (torque_nm, torque_half) = match self.has_torque {
-            true => (&signals.torque_nm, half_width(t_s, &signals.torque_nm)),
-            false => (&none, half),
+        let torque_nm = if self.has_torque { &signals.torque_nm } else { &none };
+        let [motor_rad, link_rad, calm_motor_rad, calm_link_rad, torque, sense] = averaged(
+            t_s,
+            half,
+            [&signals.motor_rad, &signals.link_rad, &calm_motor_rad, &calm_link_rad, torque_nm, &sign],
+        );
+        let input_waves = input_waves(t_s, signals, half);
+        let (speed_rad_s, torque_rate_nm_s) = (slope(t_s, &calm_motor_rad), slope(t_s, &torque));
+        let of_link = Signals {
+            t_s: t_s.to_vec(),
+            motor_rad,
+            link_rad,
+            link_speed_rad_s: slope(t_s, &calm_link_rad),
+            link_acceleration_rad_s2,
+            step_s: usual_step_s(t_s),
+            half,
+            noise_rad: twist_noise_rad(t_s, signals),
+            torque_noise_nm: noise(t_s, torque_nm) * value_noise(half),
         };
-        // at a reversal friction jumps and so does the torque: both are smoothed with the same window
-        let torque = smooth(t_s, torque_nm, torque_half);
-        self.torque_noise_nm.push(noise(torque_nm) * value_noise(torque_half));
-        let sense = smooth(t_s, &sign, torque_half).value;
-        let loaded: Vec<f64> = sign.iter().zip(torque_nm).map(|(s, t)| s * t.abs()).collect();
-        let load_sense_nm = smooth(t_s, &loaded, torque_half).value;
         let record = self.records.len();
-        let rests = if self.has_torque { rests(&sense, torque_half) } else { vec![false; t_s.len()] };
+        let rests = if self.has_torque { rests(&sense, half) } else { vec![false; t_s.len()] };
         let moving_rows = rests.iter().filter(|rests| !**rests).count();
         let mut moved = 0;
         for row in 0..t_s.len() {
@@ -181,20 +190,33 @@ impl JointRows {
                 row,
                 block: self.blocks + (moved - 1) * blocks / moving_rows,
                 angle_rad: signals.motor_rad[row],
-                speed_rad_s: motor.slope[row],
+                input_waves: std::array::from_fn(|k| input_waves[k][row]),
+                speed_rad_s: speed_rad_s[row],
                 acceleration_rad_s2: motor.curvature[row],
                 sense: sense[row],
-                load_sense_nm: load_sense_nm[row],
-                torque_nm: torque.value[row],
-                torque_rate_nm_s: torque.slope[row],
+                load_sense_nm: 0.0,
+                torque_nm: torque[row],
+                torque_rate_nm_s: torque_rate_nm_s[row],
             };
-            if !(sample.speed_rad_s.is_nan() || sample.torque_nm.is_nan() || link.value[row].is_nan()) {
+            // the slopes are known at a row less on each side than the averages
+            if !(sample.speed_rad_s.is_nan() || of_link.link_speed_rad_s[row].is_nan()) {
                 self.samples.push(sample);
             }
         }
         self.blocks += blocks;
-        let (motor_rad, link_rad) = (signals.motor_rad.clone(), signals.link_rad.clone());
-        self.records.push(Signals { t_s: t_s.to_vec(), motor_rad, link_rad, link, step_s });
+        self.records.push(of_link);
+    }
+
+    /// Half width of the window over which the signals of the record with the index `record` are averaged \[rows\].
+    pub(crate) fn half(&self, record: usize) -> usize {
+        self.records[record].half
+    }
+
+    /// Takes the torque of the load that the gear carries at each row, `load_nm`, for load-dependent friction.
+    pub(crate) fn take_load(&mut self, load_nm: &[f64]) {
+        for (sample, load_nm) in self.samples.iter_mut().zip(load_nm) {
+            sample.load_sense_nm = sample.sense * load_nm.abs();
+        }
     }
 
     /// Number of records.
@@ -210,7 +232,7 @@ impl JointRows {
         let steps = (shift_s / signals.step_s).round() as isize;
         let row = sample.row.checked_add_signed(steps).filter(|r| *r < signals.t_s.len())?;
         let rest_s = signals.t_s[sample.row] + shift_s - signals.t_s[row];
-        let (slope, curvature) = (signals.link.slope[row], signals.link.curvature[row]);
+        let (slope, curvature) = (signals.link_speed_rad_s[row], signals.link_acceleration_rad_s2[row]);
         // across a gap in time there is no near row
         if slope.is_nan() || rest_s.abs() > 1.5 * signals.step_s {
             return None;
@@ -231,21 +253,20 @@ impl JointRows {
             return None;
         }
         let between = |x: &[f64]| x[row as usize] * (1.0 - part) + x[row as usize + 1] * part;
-        let out = [between(&signals.link.value), between(&signals.link.curvature)];
+        let out = [between(&signals.link_rad), between(&signals.link_acceleration_rad_s2)];
         (!out[0].is_nan()).then_some(out)
     }
 
     /// Standard deviation of the noise of the twist from row to row \[rad\].
     pub(crate) fn noise_rad(&self) -> f64 {
-        let squares: f64 =
-            self.records.iter().map(|r| noise(&r.motor_rad).powi(2) + noise(&r.link_rad).powi(2)).sum();
+        let squares: f64 = self.records.iter().map(|r| r.noise_rad.powi(2)).sum();
         (squares / self.records.len() as f64).sqrt()
     }
 
     /// Standard deviation of the noise of the smoothed torque \[N m\].
     pub(crate) fn torque_noise_nm(&self) -> f64 {
-        let squares: f64 = self.torque_noise_nm.iter().map(|nm| nm * nm).sum();
-        (squares / self.torque_noise_nm.len() as f64).sqrt()
+        let squares: f64 = self.records.iter().map(|r| r.torque_noise_nm.powi(2)).sum();
+        (squares / self.records.len() as f64).sqrt()
     }
 
     /// Smallest and largest angle of the motor at the output \[rad\].
@@ -269,6 +290,41 @@ impl JointRows {
             },
         )
     }
+}
+
+/// Standard deviation of the noise of the twist \[rad\]. It is not that of both angles: an error of the times is in each of them
+/// and leaves the twist.
+fn twist_noise_rad(t_s: &[f64], signals: &JointSignals) -> f64 {
+    let angles = signals.motor_rad.iter().zip(&signals.link_rad);
+    noise(t_s, &angles.map(|(motor, link)| motor - link).collect::<Vec<_>>())
+}
+
+/// Sign of the speed at each row, from -1 to 1; zero where the speed is not known. It changes smoothly below a small part of
+/// the largest speed, and below the noise of the speed, `noise_rad_s`.
+fn senses(speed_rad_s: &[f64], noise_rad_s: f64) -> Vec<f64> {
+    let fastest = speed_rad_s.iter().filter(|w| !w.is_nan()).fold(0.0f64, |m, w| m.max(w.abs()));
+    let slow = (SLOW_PART * fastest).max(2.0 * noise_rad_s).max(f64::MIN_POSITIVE);
+    speed_rad_s.iter().map(|w| if w.is_nan() { 0.0 } else { libm::tanh(w / slow) }).collect()
+}
+
+/// Sine and cosine less 1 of the motor's angle times the ratio, once and twice, averaged like the other signals because they
+/// vary fast; zero if the ratio is not stated.
+fn input_waves(t_s: &[f64], signals: &JointSignals, half: usize) -> [Vec<f64>; 4] {
+    let Some(ratio) = signals.ratio else { return std::array::from_fn(|_| vec![0.0; t_s.len()]) };
+    let mut waves: [Vec<f64>; 4] = std::array::from_fn(|_| Vec::with_capacity(t_s.len()));
+    for angle_rad in &signals.motor_rad {
+        for (column, value) in waves.iter_mut().zip(waves_of(ratio * angle_rad)) {
+            column.push(value);
+        }
+    }
+    averaged(t_s, half, waves.each_ref().map(Vec::as_slice))
+}
+
+/// Sine and cosine less 1 of an angle, then of twice this angle. All are zero at zero angle so that they do not compete with
+/// the offset.
+pub(crate) fn waves_of(angle_rad: f64) -> [f64; 4] {
+    let (sin, cos) = libm::sincos(angle_rad);
+    [sin, cos - 1.0, 2.0 * sin * cos, cos * cos - sin * sin - 1.0]
 }
 
 /// Whether the joint rests, row by row. Friction is not known while it rests: it may hold any torque up to that of Coulomb

@@ -1,8 +1,12 @@
 //! Value, slope and curvature of a sampled signal, from a cubic fitted to the rows around each row.
 //!
 //! The window is the widest one whose misfit is still the signal's own noise: a wider one would distort the signal, a
-//! narrower one would remove less noise. The noise is estimated from fourth differences, to which a smooth signal
+//! narrower one would remove less noise. The noise is estimated from fourth divided differences, to which a smooth signal
 //! contributes nothing.
+//!
+//! The curvature of a fitted cubic is an average of the signal's true second derivative over the window, with the weights
+//! of [`averaged`] (the Peano kernel of the curvature). Columns that stand in one equation with an acceleration are
+//! averaged with the same weights. The equation then holds exactly however fast the acceleration changes within a window.
 
 use nalgebra::{Matrix4, Vector4};
 
@@ -13,8 +17,8 @@ const HALF_WIDTHS: [usize; 9] = [3, 4, 6, 8, 12, 16, 24, 32, 48];
 const STILL_NOISE: f64 = 1.05;
 /// A window that lasts this many times as long as its usual steps has a gap between its rows.
 const LONGEST: f64 = 1.5;
-/// Sum of the squares of the weights of a fourth difference (1, -4, 6, -4, 1).
-const FOURTH_DIFFERENCE_VARIANCE: f64 = 70.0;
+/// Number of rows of a fourth difference.
+const FIVE: usize = 5;
 
 /// Smoothed value and derivatives of a signal, one per row. The entries of rows that are too near to an end or a gap
 /// are NaN.
@@ -33,18 +37,36 @@ pub(crate) fn usual_step_s(t_s: &[f64]) -> f64 {
     crate::reconcile::fit::stats::median(t_s.windows(2).map(|w| w[1] - w[0]).collect())
 }
 
-/// Standard deviation of the noise of a signal from row to row, from its fourth differences, in the unit of the
-/// signal.
-pub(crate) fn noise(x: &[f64]) -> f64 {
-    let squares: f64 =
-        x.windows(5).map(|w| (w[0] - 4.0 * w[1] + 6.0 * w[2] - 4.0 * w[3] + w[4]).powi(2)).sum();
-    (squares / FOURTH_DIFFERENCE_VARIANCE / x.len().saturating_sub(4).max(1) as f64).sqrt()
+/// Standard deviation of the noise of a signal from row to row, from its fourth divided differences, in the unit of the
+/// signal. The difference of five rows is divided by the root of the sum of its squared weights, so that each has the variance
+/// of the noise whatever the steps between the rows are. Rows across a gap are left out.
+pub(crate) fn noise(t_s: &[f64], x: &[f64]) -> f64 {
+    let longest_s = LONGEST * (FIVE - 1) as f64 * usual_step_s(t_s);
+    let windows = t_s.windows(FIVE).zip(x.windows(FIVE)).filter(|(t, _)| t[FIVE - 1] - t[0] <= longest_s);
+    let (squares, count) = windows.fold((0.0, 0usize), |(sum, count), (t, x)| {
+        let weights = divided_difference(t);
+        // less the middle, so that a large angle costs no digits
+        let difference: f64 = weights.iter().zip(x).map(|(w, value)| w * (value - x[2])).sum();
+        let size: f64 = weights.iter().map(|w| w * w).sum();
+        (sum + difference.powi(2) / size, count + 1)
+    });
+    (squares / count.max(1) as f64).sqrt()
+}
+
+/// Weights of the divided difference of the values at the times `t_s`, in units of their mean step. A polynomial of a lower
+/// degree than their number less one contributes nothing.
+fn divided_difference(t_s: &[f64]) -> [f64; FIVE] {
+    let step_s = (t_s[FIVE - 1] - t_s[0]) / (FIVE - 1) as f64;
+    std::array::from_fn(|i| {
+        let others = (0..FIVE).filter(|j| *j != i);
+        1.0 / others.map(|j| (t_s[i] - t_s[j]) / step_s).product::<f64>()
+    })
 }
 
 /// Standard deviation of the slope that [`smooth`] finds, caused by the noise of the rows \[unit of the signal per s\].
 /// The slope of a cubic at the middle of its window scatters 2.5 times as much as that of a straight line.
-pub(crate) fn slope_noise(x: &[f64], half: usize, step_s: f64) -> f64 {
-    2.5 * noise(x) * (12.0 / ((2 * half + 1) as f64).powi(3)).sqrt() / step_s
+pub(crate) fn slope_noise(t_s: &[f64], x: &[f64], half: usize) -> f64 {
+    2.5 * noise(t_s, x) * (12.0 / ((2 * half + 1) as f64).powi(3)).sqrt() / usual_step_s(t_s)
 }
 
 /// Standard deviation of the value that [`smooth`] finds in the middle of its window, as a part of the noise of the rows.
@@ -54,7 +76,7 @@ pub(crate) fn value_noise(half: usize) -> f64 {
 
 /// Half width of the widest window whose misfit is still the signal's own noise \[rows\].
 pub(crate) fn half_width(t_s: &[f64], x: &[f64]) -> usize {
-    let noise = noise(x);
+    let noise = noise(t_s, x);
     let fits = |half: &&usize| {
         let smooth = smooth(t_s, x, **half);
         let left = x.iter().zip(&smooth.value).filter(|(_, v)| !v.is_nan());
@@ -74,21 +96,13 @@ pub(crate) fn half_width(t_s: &[f64], x: &[f64]) -> usize {
 /// Fits, at each row, a cubic to the rows from `half` before to `half` after it, and returns the value and the
 /// derivatives of the cubic at this row.
 pub(crate) fn smooth(t_s: &[f64], x: &[f64], half: usize) -> Smooth {
-    let n = x.len();
-    let step = usual_step_s(t_s);
-    let nan = vec![f64::NAN; n];
+    let nan = vec![f64::NAN; x.len()];
     let mut out = Smooth { value: nan.clone(), slope: nan.clone(), curvature: nan };
-    for i in half..n.saturating_sub(half) {
-        let window = i - half..=i + half;
-        let width = t_s[i + half] - t_s[i - half];
-        if width > step * (2 * half) as f64 * LONGEST {
-            continue;
-        }
-        let scale = 0.5 * width;
+    for i in whole_windows(t_s, half) {
+        let scale = 0.5 * (t_s[i + half] - t_s[i - half]);
         let (mut normal, mut right) = (Matrix4::zeros(), Vector4::zeros());
-        for j in window {
-            let u = (t_s[j] - t_s[i]) / scale;
-            let powers = Vector4::new(1.0, u, u * u, u * u * u);
+        for j in i - half..=i + half {
+            let powers = powers((t_s[j] - t_s[i]) / scale);
             normal += powers * powers.transpose();
             right += powers * (x[j] - x[i]);
         }
@@ -97,6 +111,63 @@ pub(crate) fn smooth(t_s: &[f64], x: &[f64], half: usize) -> Smooth {
             out.slope[i] = c[1] / scale;
             out.curvature[i] = 2.0 * c[2] / scale.powi(2);
         }
+    }
+    out
+}
+
+fn powers(u: f64) -> Vector4<f64> {
+    Vector4::new(1.0, u, u * u, u * u * u)
+}
+
+/// Rows whose window, from `half` rows before to `half` rows after, has no gap.
+fn whole_windows(t_s: &[f64], half: usize) -> impl Iterator<Item = usize> {
+    let longest_s = usual_step_s(t_s) * (2 * half) as f64 * LONGEST;
+    (half..t_s.len().saturating_sub(half)).filter(move |i| t_s[i + half] - t_s[i - half] <= longest_s)
+}
+
+/// Averages of several signals around each row, with the weights by which the curvature that [`smooth`] finds averages the
+/// second derivative. Rows near an end or a gap are NaN.
+pub(crate) fn averaged<const N: usize>(t_s: &[f64], half: usize, signals: [&[f64]; N]) -> [Vec<f64>; N] {
+    let mut out: [Vec<f64>; N] = std::array::from_fn(|_| vec![f64::NAN; t_s.len()]);
+    for i in whole_windows(t_s, half) {
+        let Some(weights) = curvature_kernel(&t_s[i - half..=i + half], half) else { continue };
+        for (out, signal) in out.iter_mut().zip(signals) {
+            let window = &signal[i - half..=i + half];
+            // less the middle, so that a large angle costs no digits
+            let sum: f64 = weights.iter().zip(window).map(|(w, x)| w * (x - window[half])).sum();
+            out[i] = window[half] + sum;
+        }
+    }
+    out
+}
+
+/// Weights of the rows at the times `t_s` with which the curvature of the cubic fitted to them averages the second
+/// derivative. The curvature at the row `middle` is `sum_j d_j x(t_j)`, and `sum_j d_j x(t_j)` is the integral of
+/// `k(t) x''(t)` with `k(t) = sum_j d_j max(t_j - t, 0)` (Peano). The integral over the rows is that of the trapezoidal rule.
+/// The sum of the weights is 1. `None` if no cubic is determined.
+fn curvature_kernel(t_s: &[f64], middle: usize) -> Option<Vec<f64>> {
+    let last = t_s.len() - 1;
+    let scale = 0.5 * (t_s[last] - t_s[0]);
+    let u: Vec<f64> = t_s.iter().map(|t| (t - t_s[middle]) / scale).collect();
+    let normal = u.iter().map(|u| powers(*u)).fold(Matrix4::zeros(), |sum, p| sum + p * p.transpose());
+    let of_curvature = normal.cholesky()?.solve(&Vector4::new(0.0, 0.0, 2.0, 0.0));
+    let mut weights = vec![0.0; t_s.len()];
+    let (mut slope, mut kernel) = (0.0, 0.0);
+    for i in (1..last).rev() {
+        slope += of_curvature.dot(&powers(u[i + 1]));
+        kernel += slope * (u[i + 1] - u[i]);
+        weights[i] = kernel * 0.5 * (u[i + 1] - u[i - 1]);
+    }
+    let sum: f64 = weights.iter().sum();
+    weights.iter_mut().for_each(|w| *w /= sum);
+    Some(weights)
+}
+
+/// Slope of a signal at each row from the rows before and after it; NaN where one of them is.
+pub(crate) fn slope(t_s: &[f64], x: &[f64]) -> Vec<f64> {
+    let mut out = vec![f64::NAN; x.len()];
+    for i in 1..x.len().saturating_sub(1) {
+        out[i] = (x[i + 1] - x[i - 1]) / (t_s[i + 1] - t_s[i - 1]);
     }
     out
 }
@@ -128,12 +199,36 @@ mod tests {
     }
 
     #[test]
+    fn an_average_of_the_second_derivative_is_the_curvature() {
+        // the second derivative jumps within the windows, and the times are uneven
+        let t: Vec<f64> = (0..400).map(|i| 0.001 * i as f64 + 0.0002 * libm::sin(i as f64)).collect();
+        let jump_s = 0.2;
+        let x: Vec<f64> = t.iter().map(|t| 0.5 * (t - jump_s).max(0.0).powi(2)).collect();
+        let second: Vec<f64> = t.iter().map(|t| if *t > jump_s { 1.0 } else { 0.0 }).collect();
+        let curvature = smooth(&t, &x, 16).curvature;
+        let [average] = averaged(&t, 16, [&second]);
+        let pairs = curvature.iter().zip(&average).filter(|(c, _)| !c.is_nan());
+        // the jump lies between two rows: half a row of a window of 32, times its largest weight
+        let worst = pairs.map(|(c, a)| (c - a).abs()).fold(0.0, f64::max);
+        assert!(worst < 0.04, "{worst}");
+    }
+
+    #[test]
+    fn noise_is_the_same_with_gaps_and_uneven_steps() {
+        let rows = (0..4000).filter(|i| i % 17 != 0 && !(1000..1400).contains(i));
+        let t: Vec<f64> = rows.map(|i| 0.001 * i as f64 + 0.0002 * libm::sin(3.0 * i as f64)).collect();
+        let noisy = |(t, e): (&f64, f64)| libm::sin(9.0 * t) + 1e-6 * e;
+        let x: Vec<f64> = t.iter().zip(deviates(t.len())).map(noisy).collect();
+        assert!((noise(&t, &x) / 1e-6 - 1.0).abs() < 0.05, "{}", noise(&t, &x));
+    }
+
+    #[test]
     fn the_noise_of_a_smooth_signal_is_found_and_widens_the_window() {
         let t: Vec<f64> = (0..4000).map(|i| 0.001 * i as f64).collect();
         let with = |size: f64| -> Vec<f64> {
             t.iter().zip(deviates(4000)).map(|(t, e)| libm::sin(9.0 * t) + size * e).collect()
         };
-        assert!((noise(&with(0.01)) / 0.01 - 1.0).abs() < 0.05);
+        assert!((noise(&t, &with(0.01)) / 0.01 - 1.0).abs() < 0.05);
         assert!(half_width(&t, &with(1e-2)) > half_width(&t, &with(1e-7)));
     }
 }

@@ -3,7 +3,7 @@
 //!
 //! The recorded twist is the motor's angle less the link's, `y = theta_m(t) - theta_l(t - s)`. Written as a sum,
 //!
-//! `y = offset + s w_l + c (T_m - J a - (F_c + f |T_m|) sgn w - F_v w) + e(q) + g(N q)`
+//! `y = offset + s w_l + c (T_m - J a - (F_c + f |T_l|) sgn w - F_v w) + e(q) + g(N q)`
 //!
 //! | symbol | what it is | unit |
 //! |---|---|---|
@@ -12,7 +12,7 @@
 //! | `q`, `N` | angle of the motor at the output, gear ratio | rad, 1 |
 //! | `s` | time by which the link's reading is late | s |
 //! | `c` | compliance | rad/(N m) |
-//! | `T_m` | torque of the motor at the output | N m |
+//! | `T_m`, `T_l` | torque of the motor at the output; of the load, by the balance of torques | N m |
 //! | `J` | inertia on the motor's side of the spring | kg m² |
 //! | `F_c`, `f`, `F_v` | Coulomb, load-dependent and viscous friction on the motor's side | N m, 1, N m s/rad |
 //! | `e`, `g` | transmission error once and twice a turn of the output and of the input | rad |
@@ -23,7 +23,7 @@
 //! the same signal in the twist, and only the balance of torques (`friction`) separates them.
 
 use super::blocks::{Blocks, Fitted, rows_per_reading};
-use super::signals::JointRows;
+use super::signals::{JointRows, waves_of};
 use crate::arm::effect::{time_shift, transmission_error};
 
 /// Prior standard deviation of each amplitude of a transmission error \[rad\].
@@ -69,7 +69,7 @@ impl Places {
     pub(crate) fn sense(self) -> usize {
         self.records + 3
     }
-    /// Index of the column of the sign of the speed times the magnitude of the torque.
+    /// Index of the column of the sign of the speed times the magnitude of the load's torque.
     pub(crate) fn load_sense(self) -> usize {
         self.records + 4
     }
@@ -220,14 +220,8 @@ pub(crate) fn fill(rows: &JointRows, i: usize, shift_s: f64, row: &mut [f64]) ->
     row[places.sense()] = sample.sense;
     row[places.load_sense()] = sample.load_sense_nm;
     row[places.rate()] = sample.torque_rate_nm_s;
-    for (columns, ratio) in [(places.output(), 1.0), (places.input(), rows.ratio.unwrap_or_default())] {
-        let (sin, cos) = libm::sincos(ratio * sample.angle_rad);
-        // once and twice a turn; without a ratio the columns of the input are zero and get no coefficient
-        row[columns[0]] = sin;
-        row[columns[1]] = cos - 1.0;
-        row[columns[2]] = 2.0 * sin * cos;
-        row[columns[3]] = cos * cos - sin * sin - 1.0;
-    }
+    row[places.output()[0]..][..4].copy_from_slice(&waves_of(sample.angle_rad));
+    row[places.input()[0]..][..4].copy_from_slice(&sample.input_waves);
     // adds the shift of the Taylor series back, so that the coefficient of the speed is the whole time shift
     let last = row.len() - 1;
     row[last] = twist.twist_rad + shift_s * twist.link_speed_rad_s;
@@ -279,13 +273,7 @@ impl<'a> TwistModel<'a> {
         };
         out.judge_errors();
         out.select()?;
-        out.error_or_gravity = out.error_or_gravity();
-        if out.groups.contains(&Group::Output)
-            && let Some(beside) = out.error_or_gravity.as_ref().filter(|b| b.is_held)
-        {
-            out.fitted = beside.with.clone();
-        }
-        out.judge_errors();
+        out.settle()?;
         Some(out)
     }
 
@@ -300,6 +288,50 @@ impl<'a> TwistModel<'a> {
             is_filled.then(|| row[row.len() - 1] - modelled)
         };
         (0..self.rows.samples.len()).filter_map(error).collect()
+    }
+
+    /// Fits the chosen groups again until the prior of transmission errors follows the error that the fit itself leaves. The
+    /// prior of the search comes from a fit without these errors, whose larger error makes the amplitudes too small. What the
+    /// records say of error and gravity depends on the prior, and is judged again with it.
+    fn settle(&mut self) -> Option<()> {
+        const ROUNDS: usize = 3;
+        for _ in 0..ROUNDS {
+            self.judge_errors();
+            self.fitted = self.fit(&self.groups)?;
+            self.error_or_gravity = self.error_or_gravity();
+            let held = self.error_or_gravity.as_ref().filter(|b| b.is_held);
+            if let Some(beside) = held.filter(|_| self.groups.contains(&Group::Output)) {
+                self.fitted = beside.with.clone();
+            }
+        }
+        self.judge_errors();
+        if let Some(last) = self.steps.last_mut() {
+            last.1 = self.fitted.held_out_rms();
+        }
+        Some(())
+    }
+
+    /// Fraction of the variance of the motor's torque that is orthogonal to all other columns of the fit. The compliance is
+    /// determined by it alone (Frisch and Waugh 1933).
+    fn own_share_in_fit(&self) -> f64 {
+        let p = self.places;
+        let is_other = |c: &usize| *c != p.torque() && *c >= p.records;
+        let others: Vec<usize> = self.fitted.columns.iter().copied().filter(is_other).collect();
+        self.sums.own_share(p.torque(), &p.offsets(), &others)
+    }
+
+    /// Lower limit of the factor by which the fit makes the compliance too small, because the torque that it uses is not only
+    /// that of the spring: a noisy regressor attenuates its coefficient. `left_share` is the fraction of the torque's variance
+    /// that the balance of torques leaves. The factor is at least one minus the part of this in the variance that determines
+    /// the compliance. It is also at least the square of the partial correlation of torque and twist, because the true
+    /// coefficient lies between that of the regression and that of the reverse regression (Frisch 1934).
+    pub(crate) fn least_attenuation(&self, left_share: f64) -> f64 {
+        let torque = self.places.torque();
+        let others: Vec<usize> = self.fitted.columns.iter().copied().filter(|c| *c != torque).collect();
+        let without = self.fit_with(&others).map_or(0.0, |f| f.squares);
+        let by_twist = 1.0 - self.fitted.squares / without.max(1e-300);
+        let by_balance = 1.0 - left_share / self.own_share_in_fit().max(1e-300);
+        by_twist.max(by_balance).clamp(0.0, 1.0)
     }
 
     fn judge_errors(&mut self) {
@@ -483,13 +515,13 @@ impl<'a> TwistModel<'a> {
         }
     }
 
-    /// Fraction of the variance of the motor's torque that the joint's own motion (speed, its sign, and acceleration)
-    /// does not explain.
+    /// Fraction of the variance of the motor's torque that neither the joint's own motion (speed, its sign, and acceleration)
+    /// nor the other columns of the fit explain.
     pub(crate) fn own_share_of_torque(&self) -> f64 {
         let p = self.places;
         let mut own = vec![p.shift(), p.sense()];
         own.extend(self.rows.rotor_inertia_kgm2.is_none().then_some(p.acceleration()));
-        self.sums.own_share(p.torque(), &p.offsets(), &own)
+        self.sums.own_share(p.torque(), &p.offsets(), &own).min(self.own_share_in_fit())
     }
 }
 
