@@ -28,7 +28,7 @@ impl Largest {
     fn with(self, load: &GuideLoad, limits: &GuideLimits) -> Self {
         let part_used = limits.part_used(&load.force_n, &load.moment_nm);
         Self {
-            across_n: self.across_n.max(load.force_n.y.hypot(load.force_n.z)),
+            across_n: self.across_n.max(libm::hypot(load.force_n.y, load.force_n.z)),
             moment_nm: self.moment_nm.max(load.moment_nm.norm()),
             part_used: part_used.map(|part| self.part_used.map_or(part, |most| most.max(part))),
         }

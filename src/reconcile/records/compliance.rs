@@ -75,16 +75,18 @@ pub(super) fn compliance(model: &TwistModel, left_share: f64, least: f64) -> Sta
         return Stated { parameters: open(&c), ..Stated::none(WHAT, State::NotIdentified, GRAVITY_OR_ERROR) };
     }
     let stiffness = Estimate { value: 1.0 / c.value, low: Some(1.0 / high), high: Some(1.0 / low) };
-    let p = model.places;
-    let plain =
-        model.fit_with(&[p.offsets(), vec![p.torque()]].concat()).map_or(0.0, |f| f.value(p.torque()));
-    if model.groups.contains(&Group::Shift) && plain > 0.0 && plain / c.value > 1.1 {
-        words.push(format!(
-            "without time shift and friction it would come out {:.1} times too soft",
-            plain / c.value
-        ));
-    }
+    words.extend(softer_without_shift(model, c.value));
     Stated::one(WHAT, State::Found, NAME, stiffness, &words.join("; "))
+}
+
+/// By how much the compliance `rad_per_nm` would come out larger in a model without time shift and friction; `None` if the
+/// model has no time shift, or the difference is small.
+fn softer_without_shift(model: &TwistModel, rad_per_nm: f64) -> Option<String> {
+    let p = model.places;
+    let plain = model.fit_with(&[p.offsets(), vec![p.torque()]].concat());
+    let factor = plain.map_or(0.0, |f| f.value(p.torque())) / rad_per_nm;
+    let is_said = model.groups.contains(&Group::Shift) && factor > 1.1;
+    is_said.then(|| format!("without time shift and friction it would come out {factor:.1} times too soft"))
 }
 
 /// Sentence on a torque that is nearly all the joint's own motion: `share` of its variance is not, and `left_share` is left by

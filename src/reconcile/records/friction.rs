@@ -258,9 +258,9 @@ pub(crate) fn friction(rows: &JointRows, records: &[Record], shift_s: f64) -> Op
         balance.load_nm = balance.load_of(&chosen);
         let next = rows.sums(target + 1, |i, s, row| balance.fill(i, s, row));
         let with_load = next.fit(&with, target, |_| None)?;
-        if !has_load
-            && !(with_load.better_than(&chosen) > CLEARLY && is_positive(&with_load.coefficient(load_sense)))
-        {
+        let is_clear = with_load.better_than(&chosen) > CLEARLY;
+        let grows_with_load = has_load || (is_clear && is_positive(&with_load.coefficient(load_sense)));
+        if !grows_with_load {
             break;
         }
         (sums, chosen, has_load) = (next, with_load, true);

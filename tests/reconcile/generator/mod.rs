@@ -7,6 +7,7 @@
 mod conditions;
 mod dice;
 mod hidden;
+mod plan;
 mod positions;
 mod specimen;
 pub mod unknown;
@@ -20,91 +21,19 @@ use std::path::Path;
 use unknown::Unknown;
 
 pub use dice::Dice;
+pub use plan::Plan;
 pub use specimen::Specimen;
 use specimen::{Rig, stiffness_nm_per_rad};
 
 const ARCMIN_PER_RAD: f64 = 10800.0 / std::f64::consts::PI;
 
-/// How large and how clean a campaign is.
-#[derive(Clone, Copy)]
-pub struct Plan {
-    /// Static poses of five loads.
-    pub static_poses: usize,
-    /// Modal poses, each with and without payload.
-    pub modal_poses: usize,
-    /// Whether there is a bench test.
-    pub bench: bool,
-    /// True over declared standard deviation.
-    pub noise: f64,
-    /// Part of static readings that are gross errors.
-    pub gross: f64,
-    /// Factor on the typical size of an effect.
-    pub size: f64,
-    /// Poses whose absolute position is measured.
-    pub positions: usize,
-    /// Standard deviation of each component of each link's vector \[m\].
-    pub lengths_m: f64,
-}
-
-impl Plan {
-    /// Much clean data.
-    pub fn plain() -> Self {
-        Self {
-            static_poses: 40,
-            modal_poses: 12,
-            bench: true,
-            noise: 1.0,
-            gross: 0.0,
-            size: 1.0,
-            positions: 0,
-            lengths_m: 0.0,
-        }
-    }
-
-    /// Little data, small effects, gross errors, too small declared deviations.
-    pub fn hard(dice: &mut Dice) -> Self {
-        let modal_poses = if dice.uniform() < 0.7 { 6 } else { 0 };
-        let bench = dice.uniform() < 0.6;
-        Self {
-            static_poses: 14,
-            modal_poses,
-            bench,
-            noise: 1.15,
-            gross: 1.0 / 60.0,
-            size: 0.35,
-            ..Self::plain()
-        }
-    }
-
-    /// Much clean data of one kind of readings.
-    fn of_channel(channel: &str) -> Self {
-        let (static_poses, modal_poses) = match channel {
-            "static" => (24, 0),
-            "modal" => (0, 16),
-            _ => (0, 0),
-        };
-        Self { static_poses, modal_poses, bench: channel == "windup", ..Self::plain() }
-    }
-
-    /// As much as comes.
-    pub fn varied(dice: &mut Dice) -> Self {
-        Self {
-            static_poses: 8 + (dice.uniform() * 30.0) as usize,
-            modal_poses: (dice.uniform() * 12.0) as usize,
-            bench: dice.uniform() < 0.6,
-            noise: *dice.pick(&[1.0, 1.0, 1.15]),
-            gross: *dice.pick(&[0.0, 0.0, 1.0 / 60.0]),
-            size: dice.between(0.35, 1.2),
-            ..Self::plain()
-        }
-    }
-}
-
-/// Makes one campaign below `out`: `set` is `plain` or `hard`, of six-axis arms, `static`, `modal` or `windup`, the same with
-/// one kind of readings, `varied`, of all kinds, or `geared`, of all kinds with torsion curves; `class` is `one`, `two`, `none`,
-/// `unknown`, or `later` or `further` for one of the effects, or of the unknown physics, that came later; numbers go through all effects in turn. `eased` makes an effect that nobody could see
-/// larger, by 40 % a step, and from the third step on leaves no file out. Returns the campaign's name
-/// and what is hidden in it.
+/// Makes one campaign below `out`. Returns its name and what is hidden in it.
+///
+/// - `set`: `plain` and `hard` have six-axis arms; `static`, `modal` and `windup` one kind of readings; `varied` all kinds;
+///   `geared` all kinds, with torsion curves.
+/// - `class`: what is hidden: `one` or `two` effects, `none`, `unknown` physics, or `later` or `further` for one of the effects,
+///   or of the unknown physics, that came later. `number` goes through all effects in turn.
+/// - `eased`: makes an effect that nobody could see larger, by 40 % a step; from the third step on, no file is left out.
 pub fn make(
     out: &Path,
     set: &str,
