@@ -78,6 +78,6 @@ def export(
     if cases is not None and stated:
         raise TypeError(f"cases have their own {', '.join(stated)}: give cases alone, or no cases")
     asked = source([one_case(held, of_arm, given)] if cases is None else cases, "cases")
-    pieces = None if pieces_per_link is None else whole(pieces_per_link, "pieces_per_link")
+    pieces = None if pieces_per_link is None else whole(pieces_per_link, "pieces_per_link", 1, 200)
     _, files = _armwright.export(held, of_arm, asked, to, case, pieces, bool(backlash))
     return Export(dict(files))

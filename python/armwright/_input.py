@@ -108,9 +108,11 @@ def vector(value: Any, what: str) -> List[float]:
     return numbers
 
 
-def whole(value: Any, what: str) -> int:
-    """A whole number that is not negative."""
+def whole(value: Any, what: str, least: int = 0, most: int = 2**64 - 1) -> int:
+    """A whole number from `least` to `most`."""
     number = operator.index(value)
-    if number < 0:
+    if number < 0 and least == 0:
         raise UsageError(f"{what} is {number}: give a whole number that is not negative")
+    if not least <= number <= most:
+        raise UsageError(f"{what} is {number}: give a whole number from {least} to {most}")
     return number

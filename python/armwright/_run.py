@@ -74,8 +74,8 @@ def run(
     threads = whole(threads, "threads")
     measured = effects.corrected_arm if isinstance(effects, Outcome) else effects
     arm = None if measured is None else source(measured, "arm")
-    within = None if within_percent is None else (_percentage(within_percent, "within_percent"), whole(within_most, "within_most"))
-    scatter = None if tolerance_percent is None else _scatter(tolerance_percent, whole(samples, "samples"), whole(seed, "seed"))
+    within = None if within_percent is None else (_percentage(within_percent, "within_percent"), whole(within_most, "within_most", 1, 10_000_000))
+    scatter = None if tolerance_percent is None else _scatter(tolerance_percent, whole(samples, "samples", 1, 1_000_000), whole(seed, "seed"))
 
     def front(found: Any) -> Front:
         (columns, rows), materials, further, facts, text = found
@@ -106,7 +106,5 @@ def _percentage(value: Any, what: str) -> float:
 
 def _scatter(ratings: Mapping[str, float], samples: int, seed: int) -> Tuple[str, int, int]:
     """The scatter of ratings as the program reads it, the number of samples and their seed."""
-    if not 1 <= samples <= 1_000_000:
-        raise UsageError(f"samples is {samples}: give a number from 1 to 1000000")
     parts = [f"{name}={_percentage(percent, f'the scatter of {name}')!r}%" for name, percent in ratings.items()]
     return ",".join(parts), samples, seed

@@ -322,3 +322,20 @@ def test_the_stub_names_what_the_native_part_has():
     stubbed = {node.name for node in ast.parse(text).body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
     native = {name for name in dir(_armwright) if not name.startswith("__")}
     assert stubbed == native
+
+
+def test_exports_and_searches_refuse_what_the_program_refuses(lever, bench_arm):
+    for pieces in [0, 201, 70_000]:
+        with pytest.raises(armwright.UsageError, match="from 1 to 200"):
+            armwright.export(lever, "mjcf", pieces_per_link=pieces)
+    with pytest.raises(armwright.UsageError, match="for mjcf"):
+        armwright.export(lever, "urdf", backlash=True)
+    with pytest.raises(armwright.UsageError, match="calculix, mjcf"):
+        armwright.export(lever, "step")
+    with pytest.raises(TypeError, match="cases have their own payload_kg"):
+        armwright.export(lever, "mjcf", payload_kg=1, cases=[{"pose_deg": [0]}])
+    for options in [{"within_percent": 2, "within_most": 0}, {"tolerance_percent": {"mass": 2}, "seed": 2**64},
+                    {"tolerance_percent": {"mass": 2}, "samples": 0}, {"tolerance_percent": {"weight": 2}},
+                    {"within_percent": 0}]:  # fmt: skip
+        with pytest.raises(armwright.UsageError):
+            armwright.run(bench_arm, **options)

@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use super::pose_flags::PoseArgs;
-use super::values::{choice, numbers};
+use super::values::{choice, non_negative, numbers};
 use super::wrong_kind::refuse_other_kind;
 use crate::arm::file::read_arm;
 use crate::arm::load::{LoadCase, Payload, read_load_cases};
@@ -95,13 +95,6 @@ fn frequencies(text: &str) -> Result<Frequencies, String> {
     }
     let last = points - 1.0;
     Ok(Frequencies((0..points as usize).map(|i| from + (to - from) * i as f64 / last).collect()))
-}
-
-fn non_negative(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(x) if x >= 0.0 && x.is_finite() => Ok(x),
-        _ => Err("give a number that is not negative".into()),
-    }
 }
 
 impl AnalyzeArgs {

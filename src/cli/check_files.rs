@@ -3,7 +3,7 @@
 use super::check_kinds::{kind_of, missing_keys, table_of};
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
-use super::manifest::{MANIFESTS, hash, listed};
+use super::manifest::{MANIFESTS, RUN, hash, listed};
 use super::result_folder::complete;
 use crate::arm::{Arm, DrivenJoint, Motion, read_arm, read_arm_document, read_load_cases};
 use crate::catalog::Catalogs;
@@ -109,7 +109,7 @@ type Look = (&'static str, Result<(), Problem>);
 fn look_at_folder(folder: &Path, catalogs: &Catalogs) -> Look {
     let has = |name: &str| folder.join(name).is_file();
     if let Some(manifest) = MANIFESTS.into_iter().find(|name| has(name)) {
-        return (result_words(manifest), unchanged(folder, manifest).and_then(|written| whole(&written)));
+        return (result_words(manifest), whole_result(folder, manifest));
     }
     if has("campaign.json") {
         return ("campaign", Campaign::read(folder, catalogs).map(drop).map_err(Problem::from));
@@ -233,8 +233,9 @@ fn joints_of_first_pose(document: &Document) -> Vec<DrivenJoint> {
 
 fn result_words(manifest: &str) -> &'static str {
     match manifest {
-        super::manifest::RUN => "result of a study",
+        RUN => "result of a study",
         super::manifest::VERDICT => "result of a campaign",
+        super::manifest::CHOICES => "result of a study, choice by choice",
         _ => "shard of a search",
     }
 }
@@ -257,6 +258,23 @@ fn unchanged(folder: &Path, manifest: &str) -> Result<Value, Problem> {
         })
         .collect();
     if wrong.is_empty() { Ok(value) } else { Err(Problem::Changed(wrong.join("\n  "))) }
+}
+
+/// Checks that the files of a result are those that were written, and that nothing is missing in it or in the runs that
+/// are folders in it.
+fn whole_result(folder: &Path, manifest: &str) -> Result<(), Problem> {
+    whole(&unchanged(folder, manifest)?)?;
+    let mut folders = vec![folder.to_path_buf(), folder.join("study")];
+    folders.retain(|folder| folder.is_dir());
+    for outer in folders {
+        let inside = std::fs::read_dir(&outer).map_err(|e| Problem::Unreadable(e.to_string()))?;
+        let mut runs: Vec<PathBuf> = inside.filter_map(|entry| Some(entry.ok()?.path())).collect();
+        runs.sort();
+        for run in runs.iter().filter(|run| run.join(RUN).is_file()) {
+            whole(&unchanged(run, RUN)?)?;
+        }
+    }
+    Ok(())
 }
 
 /// Checks that nothing is missing in the result of a study whose `run.json` is `written`.

@@ -4,7 +4,7 @@ use super::design::resolve_design;
 use super::failure::Failure;
 use super::own_files::write_own;
 use super::pose_flags::PoseArgs;
-use super::values::{choice, numbers};
+use super::values::{choice, non_negative, numbers};
 use super::wrong_kind::refuse_other_kind;
 use crate::arm::file::read_arm;
 use crate::arm::load::{LoadCase, Payload, read_load_cases};
@@ -12,7 +12,7 @@ use crate::arm::{Arm, JointModel, LinkModel};
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::interchange::export::Format;
-use crate::interchange::request::{ExportRequest, Exported};
+use crate::interchange::request::{ExportRequest, Exported, MOST_PIECES};
 use crate::report::number::percent;
 use clap::Args;
 use nalgebra::Vector3;
@@ -48,13 +48,13 @@ pub(crate) struct ExportArgs {
     #[command(flatten)]
     pose: PoseArgs,
     /// Payload of an arm file [kg]
-    #[arg(long, default_value_t = 0.0)]
+    #[arg(long, default_value_t = 0.0, allow_hyphen_values = true, value_parser = non_negative)]
     payload_kg: f64,
     /// Payload centre of gravity from the tip, last frame [m]
     #[arg(long, value_name = "X,Y,Z", default_value = "0,0,0", allow_hyphen_values = true, value_parser = numbers::<3>)]
     payload_cg_m: [f64; 3],
     /// Cut every flexible link into N parts with springs between them (mjcf); without it links are rigid
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=200))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=i64::from(MOST_PIECES)))]
     flexible: Option<u16>,
     /// Give joints the backlash of their gears as a deadband (mjcf)
     #[arg(long)]
@@ -132,12 +132,6 @@ fn source(args: &ExportArgs, catalogs: &Catalogs) -> Result<(Arm, Vec<LoadCase>,
 }
 
 fn case_of_flags(args: &ExportArgs, arm: &Arm) -> Result<LoadCase, Failure> {
-    if !(args.payload_kg >= 0.0 && args.payload_kg.is_finite()) {
-        return Err(Failure::Usage(format!(
-            "--payload-kg {}: give a mass that is not negative",
-            args.payload_kg
-        )));
-    }
     Ok(LoadCase {
         name: "case".into(),
         pose_deg: args.pose.entries(&arm.driven_joints())?,

@@ -19,6 +19,7 @@ use super::write::{is_same_file, refuse_overwriting};
 use super::wrong_kind::study_of;
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
+use crate::input::magnitude::{beyond_calculation, not_positive};
 use crate::paper::names::{NAMES, question};
 use crate::report::file_names::{file_names, folder_name};
 use crate::report::html::document::DocumentPage;
@@ -199,7 +200,7 @@ fn up_to_mass(
 
 /// Reads a mass limit \[kg\].
 fn mass_limit(text: &str) -> Result<f64, String> {
-    let kg = text.parse::<f64>().ok().filter(|kg| kg.is_finite() && *kg > 0.0);
+    let kg = text.parse::<f64>().ok().filter(|kg| beyond_calculation(*kg).or(not_positive(*kg)).is_none());
     kg.ok_or_else(|| "a finite mass above zero, in kilograms".into())
 }
 

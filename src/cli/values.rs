@@ -23,6 +23,14 @@ pub(super) fn number_list(text: &str) -> Result<Vec<f64>, String> {
         .collect()
 }
 
+/// Reads a number that is not negative.
+pub(super) fn non_negative(text: &str) -> Result<f64, String> {
+    match number_list(text)?.as_slice() {
+        [x] if *x >= 0.0 => Ok(*x),
+        _ => Err("give a number that is not negative".into()),
+    }
+}
+
 /// Reads entries `key=number`, separated by commas.
 pub(super) fn entries(text: &str) -> Result<Vec<(String, f64)>, String> {
     let entry = |cell: &str| match cell.rsplit_once('=') {

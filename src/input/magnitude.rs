@@ -12,7 +12,7 @@ pub(crate) fn beyond_calculation(x: f64) -> Option<(String, &'static str)> {
     match x {
         _ if !x.is_finite() => Some((format!("= {x} is not a finite number"), "give a finite number")),
         _ if x.abs() > LARGEST => Some((
-            format!("= {x:e} is larger than {LARGEST:e}, which no quantity of an arm is in any unit"),
+            format!("= {x:e} is beyond {LARGEST:e}, which no quantity of an arm is in any unit"),
             "check the exponent; what is rigid or without a limit has null, or no such key",
         )),
         _ => None,

@@ -3,6 +3,7 @@
 
 use super::given::GivenSprings;
 use super::urdf_file::{UrdfTree, moves, slides};
+use crate::input::magnitude::beyond_calculation;
 use nalgebra::Isometry3;
 use serde_json::{Value, json};
 use urdf_rs::{Joint, JointType, Link};
@@ -229,8 +230,9 @@ impl ImportReport {
     }
 }
 
+/// The number, unless it stands for one without a limit.
 fn finite(x: f64) -> Option<f64> {
-    Some(x).filter(|x| x.is_finite())
+    Some(x).filter(|x| beyond_calculation(*x).is_none())
 }
 
 fn word(joint: &Joint) -> &'static str {

@@ -7,6 +7,9 @@ use crate::arm::load::LoadCase;
 use crate::catalog::Catalogs;
 use crate::mechanics::chain::Chain;
 
+/// Largest number of pieces of a flexible link.
+pub(crate) const MOST_PIECES: u16 = 200;
+
 /// An arm to be written for another program.
 #[derive(Debug, Clone, Copy)]
 pub struct ExportRequest<'a> {
@@ -88,6 +91,9 @@ impl ExportRequest<'_> {
     fn suits_the_format(&self) -> Result<(), String> {
         if self.format != Format::Mjcf && (self.pieces_per_link.is_some() || self.backlash) {
             return Err("flexible links and backlash are for mjcf".into());
+        }
+        if self.pieces_per_link.is_some_and(|pieces| !(1..=MOST_PIECES).contains(&pieces)) {
+            return Err(format!("a link is cut into 1 to {MOST_PIECES} pieces"));
         }
         match (self.arm.prismatics().next(), self.format) {
             (Some(joint), Format::Calculix) => Err(format!(

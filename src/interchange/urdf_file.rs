@@ -6,6 +6,7 @@
 use super::urdf_place::{cut_off_at, line_of_robot, no_numbers};
 use super::urdf_shapes::without_shapes;
 use crate::input::json::{Fault, Faults};
+use crate::input::magnitude::beyond_calculation;
 use crate::input::names::unfit_name;
 use nalgebra::{Isometry3, Matrix3, SymmetricEigen, Translation3, UnitQuaternion, Vector3};
 use std::collections::BTreeMap;
@@ -291,7 +292,7 @@ fn least_moment_beyond_rounding(link: &Link) -> Option<f64> {
 fn body_problems(link: &Link, stands_still: bool, out: &mut Vec<(String, String, &'static str)>) {
     pose_problems(&link.name, &link.inertial.origin, out);
     let mass_kg = link.inertial.mass.value;
-    if !(mass_kg >= 0.0 && mass_kg.is_finite()) {
+    if !(mass_kg >= 0.0 && beyond_calculation(mass_kg).is_none()) {
         out.push((
             link.name.clone(),
             format!("has a mass of {mass_kg} kg"),

@@ -280,7 +280,7 @@ impl Both<'_> {
         let error_mm = |stage: Option<&Stage>| stage.map_or(f64::INFINITY, |s| s.median_mm);
         let most_mm = MOST_HARM * error_mm(self.calibrated.stages.last());
         let of = |calibrated: &Calibrated, has_laws: bool| Unexplained {
-            arms: calibrated.arms.clone(),
+            arms: calibrated.written.clone(),
             placements: calibrated.placements.clone(),
             has_laws,
         };

@@ -197,6 +197,7 @@ impl Analysis {
                 force_n.y, force_n.z, moment_nm.x, moment_nm.y, moment_nm.z
             );
         }
+        out.push_str(&not_in_the_part(arm));
     }
 
     /// The joints, each with the load on its output bearing while the joint is at rest.
@@ -404,6 +405,16 @@ fn joints_remarks_text(arm: &Arm, out: &mut String) {
             unweighed.join(", ")
         );
     }
+}
+
+/// Lines on the guides for which the arm states some of the loads that they hold, and not all.
+fn not_in_the_part(arm: &Arm) -> String {
+    let lines = arm.prismatics().filter_map(|joint| {
+        let keys = joint.guide.limits.unknown();
+        let lacks_some = (1..4).contains(&keys.len());
+        lacks_some.then(|| format!("  {}: not in the part, for want of {}\n", joint.name, keys.join(", ")))
+    });
+    lines.collect()
 }
 
 /// The part of what a guide holds that a load uses up; `None` if the arm does not state what it holds.

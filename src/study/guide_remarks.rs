@@ -129,10 +129,18 @@ impl OnGuide<'_> {
         if acceleration_m_s2 == 0.0 {
             return Some(at_rest);
         }
+        // the water bears the arm and does not brake with it: the inertia is that of the dry arm
+        structure.water = None;
+        let dry = of_guide(&structure)?;
         let gravity = structure.down * structure.gravity_m_s2 - at_rest.travel * acceleration_m_s2;
         structure.gravity_m_s2 = gravity.norm();
         structure.down = gravity.try_normalize(0.0).unwrap_or(structure.down);
-        of_guide(&structure)
+        let stopped = of_guide(&structure)?;
+        Some(GuideLoad {
+            force_n: at_rest.force_n + stopped.force_n - dry.force_n,
+            moment_nm: at_rest.moment_nm + stopped.moment_nm - dry.moment_nm,
+            ..at_rest
+        })
     }
 
     /// The keys that would state what the guide holds, in words; `None` if all are stated.

@@ -43,7 +43,7 @@ pub struct NearFront {
 
 /// The reason why there is no list of near designs although the user asks for one.
 pub const NO_NEAR: &str = "Near designs are not listed: they are listed only if the front is complete and has all ties as rows. A longer \
-                       --time-limit, --gap 0% or tighter constraints help.";
+                       time limit, a gap of 0 % or tighter constraints help.";
 
 /// Finds the near designs of an exhaustive search, by a second search of the same space. `slack` says how much worse
 /// they may be. `None` if the user stopped it.

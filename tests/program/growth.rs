@@ -55,16 +55,20 @@ fn numbers_that_no_quantity_has_are_refused() {
             {"type": "link", "name": "arm", "vector_m": [length_m, 0, 0], "mass_kg": 1}]})
     };
     for (arm, words) in [
-        (arm(1e160, 1.0), "chain[1].vector_m[0]: = 1e160 is larger than 1e30"),
-        (arm(1.0, -1e31), "chain[0].mass_kg: = -1e31 is larger than 1e30"),
+        (arm(1e160, 1.0), "chain[1].vector_m[0]: = 1e160 is beyond 1e30"),
+        (arm(1.0, -1e31), "chain[0].mass_kg: = -1e31 is beyond 1e30"),
     ] {
         std::fs::write(here.path().join("arm.json"), arm.to_string()).expect("written");
         let (code, said) = armwright(here.path(), &["analyze", "arm.json"]);
         assert!(code == 3 && said.contains(words), "{said}");
     }
     std::fs::write(here.path().join("arm.json"), arm(1.0, 1.0).to_string()).expect("written");
-    let (code, said) = armwright(here.path(), &["analyze", "arm.json", "--force-n", "1e200,0,0"]);
-    assert!(code == 2 && said.contains("larger than 1e30"), "{said}");
+    for words in
+        [["analyze", "arm.json", "--force-n", "1e200,0,0"], ["analyze", "arm.json", "--payload-kg", "1e200"]]
+    {
+        let (code, said) = armwright(here.path(), &words);
+        assert!(code == 2 && said.contains("beyond 1e30"), "{said}");
+    }
 }
 
 #[test]

@@ -192,22 +192,20 @@ fn compliance_holds(joint: &JointRecord, truth: f64) -> Option<bool> {
 }
 
 #[test]
-fn a_slow_vertical_axis_hides_its_compliance_and_a_fast_one_states_it_with_an_interval_that_holds() {
-    // the link's acceleration differs from the motor's by (0.6 Hz / 11 Hz)^2 of it, less than the noise of the torque
-    let slow = Prescribed { gravity_nm: 0.0, ..Prescribed::plain() };
-    let blind = slow.outcome(false, &mut Dice(720));
-    let stated = blind.records[0].of("compliance").expect("stated");
-    assert_eq!(stated.state, State::NotIdentified, "{}", stated.words);
-    assert!(!names(&blind).contains(&"joint_compliance"));
+fn a_fast_vertical_axis_states_its_compliance_with_an_interval_that_holds() {
     // the torque of these differs by up to 2 % from one in phase with the motor's acceleration. Noise of the torque makes the
     // compliance too small by a part that the interval must hold
+    let mut stated = 0;
     for seed in [9001, 9007, 9011, 9013] {
         let mut dice = Dice(seed);
         let fast = Joint { gravity_nm: 0.0, ..Joint::random(&mut dice) };
         let folder = campaign(&fast, &test(), None, &mut dice);
         let outcome = outcome(folder.path());
-        assert_ne!(compliance_holds(&outcome.records[0], fast.stiffness_nm_per_rad), Some(false), "{seed}");
+        let holds = compliance_holds(&outcome.records[0], fast.stiffness_nm_per_rad);
+        assert_ne!(holds, Some(false), "{seed}");
+        stated += u32::from(holds == Some(true));
     }
+    assert!(stated > 0, "no axis states its compliance");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use super::generator::Dice;
 use super::records::{names, number, outcome};
+use armwright::reconcile::records::finding::State;
 use armwright::reconcile::{Outcome, Verdict};
 use serde_json::json;
 
@@ -208,4 +209,14 @@ fn a_torsion_curve_does_not_hide_behind_a_time_shift() {
     }
     // a curve that bends little against the shift stays hidden
     assert!(said >= 2, "{said} of 3");
+}
+
+#[test]
+fn a_slow_vertical_axis_hides_its_compliance() {
+    // the link's acceleration differs from the motor's by (0.6 Hz / 11 Hz)^2 of it, less than the noise of the torque
+    let slow = Prescribed { gravity_nm: 0.0, ..Prescribed::plain() };
+    let blind = slow.outcome(false, &mut Dice(720));
+    let stated = blind.records[0].of("compliance").expect("stated");
+    assert_eq!(stated.state, State::NotIdentified, "{}", stated.words);
+    assert!(!names(&blind).contains(&"joint_compliance"));
 }

@@ -245,7 +245,9 @@ fn finite_number(text: &str) -> Result<f64, Refusal> {
     match text.parse::<f64>() {
         Ok(x) => match beyond_calculation(x) {
             None => Ok(x),
-            Some((problem, _)) => refusal(problem, "leave the cell blank if the figure is unknown"),
+            Some((problem, _)) => {
+                refusal(problem, "check the exponent, or leave the cell blank if the figure is unknown")
+            }
         },
         Err(_) if text.contains(',') && text.replace(',', "").parse::<f64>().is_ok() => refusal(
             format!("\"{text}\" has a comma"),

@@ -16,6 +16,7 @@ use crate::arm::effect::channel::Channel;
 use crate::arm::effect::drift;
 use crate::arm::effect::kind::ElasticRotation;
 use crate::reconcile::fit::stats::median;
+use crate::reconcile::model::estimate::Finding;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::components::Components;
 use crate::reconcile::readings::declared::BASE;
@@ -77,6 +78,8 @@ pub(crate) struct Positions {
 pub(crate) struct Calibrated {
     /// The arms with calibrated geometry. Everything else about them is unchanged.
     pub arms: Vec<Arm>,
+    /// The same arms as files have them: with the drift of the instrument, if it drifted.
+    pub written: Vec<Arm>,
     /// The table of position errors, one row for each stage of the calibration.
     pub stages: Vec<Stage>,
     /// Predicted position of each row with the calibrated geometry, in the instrument's frame \[mm\].
@@ -88,10 +91,16 @@ pub(crate) struct Calibrated {
 /// Calibrates the geometry of the campaign's arms, with declared and found sessions, and does not search for effects.
 pub(crate) fn calibrated(campaign: &Campaign) -> Calibrated {
     let found = Positions::on_its_geometry(campaign);
+    let drift: Vec<Finding> = found.drift_finding(campaign).into_iter().collect();
     let mut placements = json!({});
-    let arm = |i| found.corrected(campaign, i, &found.rigid, &[], &mut placements);
+    let mut arms = |effects: &[Finding]| -> Vec<Arm> {
+        let arm = |i| found.corrected(campaign, i, &found.rigid, effects, &mut placements);
+        (0..campaign.arms().len()).map(arm).collect()
+    };
+    let (arms, written) = (arms(&[]), arms(&drift));
     Calibrated {
-        arms: (0..campaign.arms().len()).map(arm).collect(),
+        arms,
+        written,
         placements,
         predicted_mm: found.samples.iter().map(|s| (1e3 * found.rigid.predicted_m(s)).into()).collect(),
         stages: found.stages,

@@ -70,6 +70,10 @@ impl Positions {
             return false;
         }
         next.refine_thresholds();
+        // a spring that left the model may have been the mean about which a stiffness varies
+        if !next.has_possible_waves(&next.fitted) {
+            return false;
+        }
         let dropped = |e: &&usize| !next.fitted.effects.contains(e);
         let mut dropped: Vec<String> =
             self.fitted.effects.iter().filter(dropped).map(|e| self.label(*e)).collect();

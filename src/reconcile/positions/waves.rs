@@ -35,6 +35,8 @@ impl Positions {
             (Some((gain, c, fitted)), uneven) if uneven.as_ref().is_none_or(|(other, _)| gain > *other) => {
                 let next = Self { fitted, ..self.clone() };
                 self.take_if_confirmed(campaign, next, self.label(c))
+                    || uneven
+                        .is_some_and(|(_, (joint, fitted))| self.take_transmission(campaign, joint, fitted))
             }
             (_, Some((_, (joint, fitted)))) => self.take_transmission(campaign, joint, fitted),
             _ => false,
@@ -79,7 +81,7 @@ impl Positions {
     }
 
     /// Whether no joint's stiffness varies by more than it has in the fit `fitted`.
-    fn has_possible_waves(&self, fitted: &Fitted) -> bool {
+    pub(super) fn has_possible_waves(&self, fitted: &Fitted) -> bool {
         fitted.effects.iter().zip(&fitted.compliances).all(|(&e, sizes)| {
             let candidate = &self.candidates[e];
             let mean = self.mean_rad_per_nm(fitted, &candidate.at).unwrap_or_default();

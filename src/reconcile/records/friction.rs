@@ -276,6 +276,7 @@ pub(crate) fn friction(rows: &JointRows, records: &[Record], shift_s: f64) -> Op
     let is_possible = chosen.value(speed) * fastest < largest_nm;
     let left_share = balance.left_share(&chosen.columns);
     balance.has_reversals = true;
+    balance.load_nm = balance.load_of(&chosen);
     Some(Friction {
         coulomb_nm: chosen.coefficient(sense),
         viscous_nms_per_rad: chosen.coefficient(speed),

@@ -394,6 +394,7 @@ impl<'a> TwistModel<'a> {
                 None if self.rows.has_torque && !groups.contains(&Group::Compliance) => {
                     groups.push(Group::Compliance);
                     best = self.fit(&groups)?;
+                    self.steps.push((Group::Compliance.step().into(), best.held_out_rms()));
                 }
                 None => break,
             }
