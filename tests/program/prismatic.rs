@@ -161,6 +161,19 @@ fn a_study_says_what_its_guides_bear_at_rest_and_in_a_stop() {
     assert!(numbers.len() == 6 && bear.ends_with("times what it holds) in an emergency stop."), "{bear}");
     assert!(said("Whether guides hold").contains("rail has no max_roll_nm, max_yaw_nm in its guide"));
     assert!(said("Left out of every number").contains("the strength and life of guides"));
+    // water bears a part of the weight, and the whole mass is braked
+    let mut sunk = study;
+    sunk["environments"] = json!([{"name": "sea", "water": {"density_kg_m3": 1000}}]);
+    fs::write(folder.path().join("sunk.json"), sunk.to_string()).expect("written");
+    let output = run(folder.path(), &["run", "sunk.json", "--out", "sunk"]);
+    assert!(output.status.success(), "{}", errors(&output));
+    let text = fs::read_to_string(folder.path().join("sunk/run.json")).expect("a run");
+    let moment = |said: &str| {
+        let (_, stop) = said.split_once("at rest, ").expect("a stop");
+        stop.split(' ').nth(3).and_then(|word| word.parse::<f64>().ok()).expect("a moment")
+    };
+    let (_, in_water) = text.split_once("Guides bear").expect("a remark");
+    assert!((moment(in_water) - moment(bear)).abs() < 0.02 * moment(bear), "{in_water}");
 }
 
 #[test]
