@@ -1,5 +1,6 @@
 //! The JSON Schema of effects, made from the kinds of effects that the library has.
 
+use crate::arm::BASE;
 use crate::arm::effect::catalogue::KINDS;
 use crate::arm::effect::kind::{Kind as EffectKind, Parameter, Place};
 use serde_json::{Map, Value, json};
@@ -59,7 +60,7 @@ fn place_words(place: Place) -> String {
         Place::Prismatic => "a prismatic joint".into(),
         Place::Link => "a link".into(),
         Place::Tube => "a link that is a tube".into(),
-        Place::Base => "base".into(),
+        Place::Base => BASE.into(),
         Place::Payload => "payload".into(),
         Place::Arm => "arm".into(),
         Place::Channel(channel) => channel.word().into(),

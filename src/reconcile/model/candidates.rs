@@ -3,6 +3,7 @@
 
 use super::expected::Sizes;
 use super::parameters::{Candidate, FreeParameter, Number};
+use crate::arm::BASE;
 use crate::arm::effect::catalogue::KINDS;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::immersion::PAYLOAD_DENSITY;
@@ -288,7 +289,7 @@ fn middle_stiffness(forward: &Forward, at: &str) -> f64 {
 /// Largest torque on the joint `at` over all tests of the campaign, bench included \[N m\]. For the base, it is the
 /// largest moment in static tests.
 pub(crate) fn largest_torque_nm(forward: &Forward, at: &str) -> f64 {
-    if at == "base" {
+    if at == BASE {
         let nominal = forward.coefficients(&forward.nominal);
         let moments = forward.statics.iter().map(|p| p.largest_base_nm(&forward.layout, &nominal));
         return moments.fold(0.0, f64::max);

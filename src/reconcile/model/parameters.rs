@@ -3,6 +3,7 @@
 use super::calibration::Nuisance;
 use super::estimate::Estimate;
 use super::estimate::Interval;
+use crate::arm::BASE;
 use crate::arm::effect::entry::{Effect, word_of};
 use crate::arm::effect::kind::{Absent, Kind, Parameter, Place, Scale};
 use crate::arm::effect::subject::Subject;
@@ -238,7 +239,7 @@ impl Candidate {
         let count = |place: Place| (self.kind.parameters)(place).iter().map(|p| p.count).sum::<usize>();
         let is_own = |place: &&Place| match place {
             Place::Channel(channel) => channel.word() == self.at,
-            Place::Base => self.at == "base" && count(Place::Base) == self.numbers.len(),
+            Place::Base => self.at == BASE && count(Place::Base) == self.numbers.len(),
             _ => false,
         };
         let place = self.kind.places.iter().find(is_own).or(self.kind.places.first());

@@ -9,6 +9,7 @@ use crate::arm::effect::channel::Channel;
 use crate::arm::effect::drift;
 use crate::reconcile::model::estimate::{Estimate, Finding, Z_95};
 use crate::reconcile::readings::campaign::Campaign;
+use nalgebra::Vector3;
 
 /// Name of the effect.
 pub(super) const EFFECT: &str = drift::KIND.name;
@@ -67,7 +68,7 @@ impl Positions {
             return false;
         }
         let mut without = self.without_numbers(|number| matches!(number, Number::Drift(_)));
-        without.fitted.geometry.drift_m = nalgebra::Vector3::zeros();
+        without.fitted.geometry.drift_m = Vector3::zeros();
         without.refit();
         let is_needless = without.score() > self.score();
         if is_needless {

@@ -18,7 +18,7 @@ use crate::arm::effect::{
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::arm::load::Payload;
 use crate::arm::structure::{FrameCompliance, Piece, Structure};
-use crate::arm::{Arm, JointModel, LinkModel};
+use crate::arm::{Arm, BASE, JointModel, LinkModel};
 use crate::mechanics::chain::Chain;
 use crate::mechanics::chain::{Item, Posed};
 use crate::mechanics::hanging::hanging_tip_m;
@@ -185,8 +185,8 @@ pub(crate) fn candidates(tree: &Tree) -> Vec<CompliantPlace> {
             out.extend(CompliantPlace::new(&bearing_tilt::KIND, &joint.name));
         }
     }
-    out.extend(CompliantPlace::new(&base_compliance::KIND, "base"));
-    out.extend(CompliantPlace::new(&frame_compliance::KIND, "base"));
+    out.extend(CompliantPlace::new(&base_compliance::KIND, BASE));
+    out.extend(CompliantPlace::new(&frame_compliance::KIND, BASE));
     let behind = tree.arms.iter().flat_map(|chain| chain.windows(2));
     for (joint, link) in behind.map(|pair| (&tree.pieces[pair[0]], &tree.pieces[pair[1]])) {
         if let (Piece::Joint(_), Piece::Link(link)) = (joint, link)
@@ -231,7 +231,7 @@ impl CompliantPlace {
     pub(crate) fn count(&self) -> usize {
         match (self.shape.waves(), self.rotation, self.at.as_str()) {
             (Some(waves), ..) => waves.len(),
-            (None, ElasticRotation::Frame, "base") => 5,
+            (None, ElasticRotation::Frame, BASE) => 5,
             (None, ElasticRotation::Frame, _) => 6,
             _ => 1,
         }

@@ -12,11 +12,11 @@ use super::springs::frame_matrix;
 use super::structure::{MATERIAL_VARIANCE, mean_median_length};
 use super::transmission;
 use super::waves;
-use crate::arm::Arm;
 use crate::arm::effect::catalogue::kind;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::entry::Effect;
 use crate::arm::effect::kind::ElasticRotation;
+use crate::arm::{Arm, BASE};
 use crate::reconcile::fit::held_out::{HeldOut, rms};
 use crate::reconcile::fit::noise::{FEW, Noise};
 use crate::reconcile::model::estimate::{Estimate, Finding, Z_95};
@@ -399,9 +399,9 @@ impl Positions {
         geometry.relevel();
         let turned = geometry.write_into(arm, &mut out);
         let names: Vec<String> = out.chain.iter().map(|e| e.name().to_string()).collect();
-        let own = effects.iter().filter(|f| {
-            ["base", Channel::Positions.word()].contains(&f.at.as_str()) || names.contains(&f.at)
-        });
+        let own = effects
+            .iter()
+            .filter(|f| [BASE, Channel::Positions.word()].contains(&f.at.as_str()) || names.contains(&f.at));
         out.effects.extend(own.map(|f| as_effect(campaign, f)));
         let placement = self.placement(campaign, arm, shown, turned).to_json();
         match arm {

@@ -7,8 +7,9 @@ use super::fitted::Sample;
 use super::kinematics::Geometry;
 use super::points::points;
 use super::tree::Tree;
+use crate::arm::BASE;
 use crate::reconcile::readings::campaign::Campaign;
-use crate::reconcile::readings::declared::{BASE, DeclaredSession};
+use crate::reconcile::readings::declared::DeclaredSession;
 use nalgebra::{Rotation3, Vector3};
 use std::ops::Range;
 

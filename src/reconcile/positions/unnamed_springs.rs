@@ -13,9 +13,9 @@ use super::loads::CompliantPlace;
 use super::normal::Factor;
 use super::rows::normal;
 use super::shape::Shape;
+use crate::arm::BASE;
 use crate::arm::effect::kind::ElasticRotation;
 use crate::arm::structure::Piece;
-use crate::reconcile::readings::declared::BASE;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
 impl Positions {

@@ -3,10 +3,8 @@
 
 use super::keys::SESSION;
 use super::rows::PositionRow;
+use crate::arm::BASE;
 use crate::input::json::Node;
-
-/// Word in `campaign.json` for a session in which the arm's base or the instrument was moved.
-pub(crate) const BASE: &str = "base";
 
 /// A session that `campaign.json` declares.
 #[derive(Debug, Clone, PartialEq)]
