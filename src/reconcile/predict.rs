@@ -1,16 +1,15 @@
 //! The verb `predict`: adds the model's predictions to the readings of a file.
 
-use super::forward::prepared::make_links_rigid;
-use super::model::exact::Exact;
+use super::model::exact::{Exact, subject};
 use super::positions;
 use super::readings::campaign::{Campaign, Statement, driven_joints};
 use super::readings::cells::Purpose;
 use super::readings::components::{DISPLACEMENT, POSITION};
 use super::readings::rows::{modal_rows, position_rows, static_rows, windup_rows};
 use super::readings::table::Table;
+use crate::arm::Arm;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::subject::Subject;
-use crate::arm::{Arm, JointModel};
 use crate::input::json::Faults;
 use crate::reconcile::readings::placement::Placed;
 
@@ -66,20 +65,6 @@ pub fn predict(arms: &[Placed], statement: &Statement, table: Table) -> Result<S
     let text = text(&table, names, &columns);
     let faults = table.into_faults();
     if faults.is_empty() { Ok(text) } else { Err(Faults(faults)) }
-}
-
-/// The arm under test (subject), with all effects of its file. `statement` is what `campaign.json` says about the
-/// tests: whether links are rigid, and the density of payloads.
-pub(crate) fn subject(arm: &Arm, statement: &Statement) -> Subject {
-    let mut nominal = Arm { effects: Vec::new(), ..arm.clone() }.subject(JointModel::ThreeSegment);
-    if statement.rigid_links {
-        make_links_rigid(&mut nominal);
-    }
-    arm.effects.iter().for_each(|effect| nominal.apply(effect));
-    if let Some(water) = &mut nominal.structure.water {
-        water.payload_density_kg_m3 = statement.payload_density_kg_m3;
-    }
-    nominal
 }
 
 /// Predicted positions of the rows of `table` \[mm\], in the frame of the instrument, on one arm or on several whose

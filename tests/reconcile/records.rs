@@ -3,7 +3,7 @@
 use super::generator::Dice;
 use super::record_simulator::{Joint, Test, record};
 use armwright::catalog::Catalogs;
-use armwright::reconcile::records::finding::{JointRecord, State};
+use armwright::reconcile::verdict::joint_record::{JointRecord, State};
 use armwright::reconcile::{Campaign, Outcome, Verdict, reconcile};
 use serde_json::json;
 use std::path::{Path, PathBuf};

@@ -2,7 +2,7 @@
 
 use super::generator::Dice;
 use super::records::{names, number, outcome};
-use armwright::reconcile::records::finding::State;
+use armwright::reconcile::verdict::joint_record::State;
 use armwright::reconcile::{Outcome, Verdict};
 use serde_json::json;
 

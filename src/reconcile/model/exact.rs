@@ -1,21 +1,37 @@
 //! Predicts readings by [`mechanics`](crate::mechanics) directly, one row at a time. `predict` writes these
 //! values, and tests check the prepared model of the fits against them.
 
-use crate::arm::LinkModel;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::subject::Subject;
 use crate::arm::effect::warming::Moment;
 use crate::arm::joint_law::JointLaw;
 use crate::arm::load::Payload;
 use crate::arm::structure::{FrameCompliance, LinkPiece, Piece, Structure};
+use crate::arm::{Arm, JointModel, LinkModel};
 use crate::mechanics::chain::Chain;
 use crate::mechanics::chain::{Compliance, Posed};
 use crate::mechanics::{Twist, displacement_at};
 use crate::reconcile::forward::bench::{ARCMIN_PER_RAD, bench_twists_rad};
+use crate::reconcile::forward::prepared::make_links_rigid;
+use crate::reconcile::readings::campaign::Statement;
 use crate::reconcile::readings::placement::Placement;
 use crate::reconcile::readings::rows::{ModalRow, PositionRow, StaticRow, WindupRow};
 use nalgebra::Vector3;
 use std::borrow::Cow;
+
+/// The arm under test (subject), with all effects of its file. `statement` is what `campaign.json` says about the
+/// tests: whether links are rigid, and the density of payloads.
+pub(crate) fn subject(arm: &Arm, statement: &Statement) -> Subject {
+    let mut nominal = Arm { effects: Vec::new(), ..arm.clone() }.subject(JointModel::ThreeSegment);
+    if statement.rigid_links {
+        make_links_rigid(&mut nominal);
+    }
+    arm.effects.iter().for_each(|effect| nominal.apply(effect));
+    if let Some(water) = &mut nominal.structure.water {
+        water.payload_density_kg_m3 = statement.payload_density_kg_m3;
+    }
+    nominal
+}
 
 /// An arm under test (subject), prepared for the prediction of readings by the full model.
 pub struct Exact<'a> {

@@ -8,4 +8,3 @@ pub mod exact;
 pub(crate) mod expected;
 pub(crate) mod fitted_parameters;
 pub mod parameters;
-pub(crate) mod seen;

@@ -4,6 +4,8 @@ use super::cells::Purpose;
 use super::components::{Components, DISPLACEMENT, POSITION, leave_out_idle};
 use super::declared::{self, DeclaredSession};
 use super::keys::{CAMPAIGN, POSITIONS, TOLERANCE};
+use super::record::{Record, read_all};
+use super::record_spec::{RecordSpec, read_records};
 use super::rows::{
     ModalRow, PositionRow, StaticRow, WindupRow, modal_rows, position_rows, static_rows, windup_rows,
 };
@@ -16,8 +18,6 @@ use crate::arm::pose::{DrivenJoint, Motion};
 use crate::arm::{Arm, Element};
 use crate::catalog::Catalogs;
 use crate::input::json::{Document, Fault, Faults, InputError, Node};
-use crate::reconcile::records::reading::{Record, read_all};
-use crate::reconcile::records::spec::{RecordSpec, read_records};
 use std::path::{Path, PathBuf};
 
 /// Tolerance of parts: limits within which 95 % of faultless parts lie, as fractions of the nominal value.

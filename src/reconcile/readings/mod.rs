@@ -6,6 +6,8 @@ pub mod components;
 pub(crate) mod declared;
 pub(crate) mod keys;
 pub mod placement;
+pub mod record;
+pub mod record_spec;
 pub(crate) mod rows;
 pub(crate) mod source;
 pub(crate) mod spreadsheet;

@@ -3,10 +3,10 @@
 //! Gravity and a transmission error of the output both follow the angle of the joint, so the interval covers the fits
 //! with and without that error where the records cannot tell the two apart.
 
-use super::finding::{State, Stated};
 use super::intervals::{attenuated, covering, is_positive, widened};
 use super::twist::{CLEARLY, Group, TwistModel};
 use crate::reconcile::model::estimate::Estimate;
+use crate::reconcile::verdict::joint_record::{State, Stated};
 
 /// The compliance is identified if at least this fraction of the torque's variance is not explained by the joint's
 /// own acceleration and friction. This remainder is what tells the compliance from rotor inertia and friction. See

@@ -13,11 +13,11 @@
 
 use super::blocks::Fitted;
 use super::intervals::is_positive;
-use super::reading::Record;
 use super::signals::{JointRows, Sample};
 use super::smooth::{averaged, slope, smooth};
 use super::twist::CLEARLY;
 use crate::reconcile::model::estimate::Estimate;
+use crate::reconcile::readings::record::Record;
 
 /// Number of columns of the joint's own load, which come after the columns of the records' offsets: accelerations of
 /// motor and link, sine and cosine of the link's angle, and of twice this angle.

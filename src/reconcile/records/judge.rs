@@ -3,16 +3,16 @@
 use super::blocks::Fitted;
 use super::compliance::{GRAVITY_OR_ERROR, compliance};
 use super::curve::{Curve, Law, TORSION_CURVE, curve};
-use super::finding::{JointRecord, State, Stated, Step, Traced};
 use super::friction::{Friction, friction, load_nm};
 use super::intervals::{attenuated, covering, excludes_zero, half, is_positive, widened};
-use super::reading::Record;
 use super::ringing::{joined, swings};
 use super::signals::JointRows;
 use super::twist::{Group, TwistModel, fill};
 use super::wave::Wave;
 use crate::arm::effect::{hysteresis, lost_motion};
 use crate::reconcile::model::estimate::Estimate;
+use crate::reconcile::readings::record::Record;
+use crate::reconcile::verdict::joint_record::{JointRecord, State, Stated, Step, Traced};
 
 /// Number of blocks of time into which the records of a joint are divided, if they are long enough.
 const BLOCKS: usize = 30;

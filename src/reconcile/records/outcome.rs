@@ -2,7 +2,6 @@
 
 use super::compliance::GRAVITY_OR_ERROR;
 use super::curve::TORSION_CURVE;
-use super::finding::{JointRecord, State, Stated};
 use super::judge::judge;
 use super::twist::Group;
 use crate::arm::effect::entry::Effect;
@@ -15,10 +14,11 @@ use crate::arm::{Arm, Element};
 use crate::reconcile::fit::held_out::HeldOut;
 use crate::reconcile::fit::noise::Noise;
 use crate::reconcile::model::estimate::{Estimate, Finding};
-use crate::reconcile::predict::subject;
+use crate::reconcile::model::exact::subject;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::verdict::correct::provenance;
 use crate::reconcile::verdict::files::CORRECTED_FILE;
+use crate::reconcile::verdict::joint_record::{JointRecord, State, Stated};
 use crate::reconcile::verdict::outcome::{Calibrated, Located, NextTest, Outcome, Verdict};
 use serde_json::json;
 

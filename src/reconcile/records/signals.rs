@@ -1,9 +1,9 @@
 //! Signals of one joint from all records: smoothed, differentiated, and divided into blocks of time.
 
 use super::blocks::Blocks;
-use super::reading::{JointSignals, Record};
 use super::smooth::{averaged, half_width, noise, slope, slope_noise, smooth, usual_step_s, value_noise};
 use super::wave::Wave;
+use crate::reconcile::readings::record::{JointSignals, Record};
 
 /// Fraction of the largest speed below which the sign of the speed changes smoothly, because real friction does not
 /// jump at zero speed either.

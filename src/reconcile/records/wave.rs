@@ -4,8 +4,8 @@
 //! found in the fast part of the twist, `y - smooth(y)`. The sines and cosines are filtered in the same way, so that
 //! slow torque and inertia have no influence.
 
-use super::reading::{JointSignals, Record};
 use super::smooth::smooth;
+use crate::reconcile::readings::record::{JointSignals, Record};
 use nalgebra::{Matrix4, Vector4};
 
 /// Half width of the window that separates the fast from the slow part of a signal \[rows\].

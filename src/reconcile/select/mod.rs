@@ -7,6 +7,7 @@ pub(crate) mod lack_of_fit;
 pub(crate) mod laws;
 pub(crate) mod screening;
 pub(crate) mod search;
+pub(crate) mod seen;
 pub(crate) mod settle;
 pub(crate) mod structure;
 pub(crate) mod unnamed;

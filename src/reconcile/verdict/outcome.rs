@@ -2,6 +2,7 @@
 
 use super::corrected_model::Row;
 use super::files::{CORRECTED_FILE, corrected_files};
+use super::joint_record::JointRecord;
 use super::stage::Stage;
 use crate::arm::Arm;
 use crate::arm::effect::channel::Channel;
@@ -9,7 +10,6 @@ use crate::arm::pose::{DrivenJoint, pose_json};
 use crate::reconcile::fit::held_out::HeldOut;
 use crate::reconcile::fit::noise::Noise;
 use crate::reconcile::model::estimate::{Estimate, Finding};
-use crate::reconcile::records::finding::JointRecord;
 use crate::reconcile::select::lack_of_fit::LackOfFit;
 use serde_json::{Value, json};
 

@@ -1,12 +1,12 @@
 //! The values that the page of a campaign shows.
 
 use super::outcome::{NextTest, Outcome, ReadingResidual, Verdict};
+use super::record_report;
 use super::stage::Stage;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::entry::word_of;
 use crate::reconcile::model::estimate::{Estimate, Finding};
 use crate::reconcile::readings::campaign::{Campaign, driven_joints};
-use crate::reconcile::records;
 use crate::report::html::campaign::{CampaignPage, Compared, Found, Ranged, Reading, Test, Weighed};
 use crate::report::html::positions::{Position, Step};
 use crate::report::number::{fixed, shortest};
@@ -48,7 +48,7 @@ pub fn campaign_page(campaign: &Campaign, outcome: &Outcome) -> CampaignPage {
         kept_out: outcome.held_out.map(|k| (k.count, k.rms_before, k.rms_after)),
         quality: text.lines().filter(|l| is_quality(l)).map(|l| l.trim().to_string()).collect(),
         tests: outcome.next_tests.iter().map(test).collect(),
-        records: records::report::sections(&outcome.records),
+        records: record_report::sections(&outcome.records),
         corrected_models: corrected_models(outcome),
         optimum: None,
         facts: facts(campaign, outcome),

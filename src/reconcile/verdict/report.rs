@@ -2,10 +2,10 @@
 
 use super::files::{CORRECTED_FILE, corrected_files};
 use super::outcome::{Outcome, Verdict};
+use super::record_report;
 use crate::arm::effect::entry::word_of;
 use crate::arm::pose::any_slides;
 use crate::reconcile::model::estimate::{Estimate, Finding};
-use crate::reconcile::records;
 use crate::report::pose::pose_words;
 use crate::report::whole_file::{create_folder, write_whole};
 use std::fmt::Write as _;
@@ -35,7 +35,7 @@ impl Outcome {
         }
         self.models_table(&mut out);
         self.stages_table(&mut out);
-        out.push_str(&records::report::text(&self.records));
+        out.push_str(&record_report::text(&self.records));
         self.quality(&mut out);
         if let Some(test) = self.next_tests.first() {
             let angles = |p: &Vec<f64>| p.iter().map(|a| format!("{a:.1}")).collect::<Vec<_>>().join(", ");

@@ -1,7 +1,7 @@
 //! What `campaign.json` says about records: the files, the meaning of their columns, and the constants of each drive.
 
+use super::keys::RECORD;
 use crate::input::json::{Node, Object};
-use crate::reconcile::readings::keys::RECORD;
 
 /// Name of the file that is read if `campaign.json` names none.
 pub(crate) const DEFAULT_FILE: &str = "record.csv";

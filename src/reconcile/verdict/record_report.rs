@@ -1,6 +1,6 @@
 //! The results of the records as text, tables and pictures.
 
-use super::finding::{JointRecord, State, Stated, Traced};
+use super::joint_record::{JointRecord, State, Stated, Traced};
 use crate::reconcile::model::estimate::Estimate;
 use crate::report::number::significant;
 use crate::report::section::{Figure, PageSection};

@@ -1,9 +1,9 @@
 //! Leaves out the effects that no reading of a campaign can show.
 
-use super::calibration::Nuisance;
-use super::parameters::{Candidate, Model};
 use crate::reconcile::fit::descent::{Weights, change, evaluate};
 use crate::reconcile::forward::prepared::Forward;
+use crate::reconcile::model::calibration::Nuisance;
+use crate::reconcile::model::parameters::{Candidate, Model};
 
 /// An effect of its usual size is left out if it changes no reading by more than this \[standard deviations\]. The
 /// largest size that is sought is at most a thousand times the usual one. So even an effect of the largest size would

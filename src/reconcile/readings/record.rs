@@ -4,7 +4,7 @@
 //! the shaft is multiplied by it. A record may have a hundred thousand rows, so only the columns that are used are
 //! converted to numbers.
 
-use super::spec::RecordSpec;
+use super::record_spec::RecordSpec;
 use crate::input::json::{Fault, InputError, closest};
 use csv::{ReaderBuilder, Trim};
 use std::path::Path;
