@@ -12,7 +12,7 @@ use super::structure::{FrameCompliance, LinkPiece, Piece, Structure};
 use nalgebra::Vector3;
 
 /// Smallest distance between two divisions, and to the ends of a link, relative to the length of the link.
-const NEAREST: f64 = 1e-3;
+const LEAST_SPACING: f64 = 1e-3;
 
 impl Structure {
     /// This structure with every tube divided where a body moves with it; `None` if no body is between the ends of a
@@ -61,9 +61,9 @@ fn starts(piece: &Piece) -> Vec<f64> {
         && link.beam.is_some()
     {
         let places = link.bodies.iter().map(|body| along(link, &body.cg_m));
-        out.extend(places.filter(|xi| (NEAREST..1.0 - NEAREST).contains(xi)));
+        out.extend(places.filter(|xi| (LEAST_SPACING..1.0 - LEAST_SPACING).contains(xi)));
         out.sort_by(f64::total_cmp);
-        out.dedup_by(|next, before| *next - *before < NEAREST);
+        out.dedup_by(|next, before| *next - *before < LEAST_SPACING);
     }
     out
 }

@@ -238,7 +238,7 @@ impl Curve {
 
 /// Smallest factor on a joint's mean compliance when the compliance varies with the angle. It keeps the compliance
 /// positive.
-const STIFFEST: f64 = 0.02;
+const LEAST_COMPLIANCE_FACTOR: f64 = 0.02;
 
 /// Torque below which a joint is taken as unloaded \[N m\]. Smaller torques are rounding errors.
 const REST_NM: f64 = 1e-9;
@@ -351,7 +351,7 @@ impl JointLaw {
         }
         let waves = transmission_waves(angle_rad);
         let varied: f64 = waves.iter().zip(&self.waves).map(|(wave, size)| wave * size).sum();
-        Self { waves: [0.0; 4], ..self.softer((1.0 + varied).max(STIFFEST)) }
+        Self { waves: [0.0; 4], ..self.softer((1.0 + varied).max(LEAST_COMPLIANCE_FACTOR)) }
     }
 
     /// The law with the compliance of gear and connection multiplied by a factor.

@@ -1,6 +1,6 @@
 //! Links that consist of several pieces: stepped or tapered links, and factors for holes and inserts.
 //!
-//! A link with `pieces` becomes as many links, one after the other. A taper is divided into [`SLICES`] links of equal
+//! A link with `pieces` becomes as many links, one after the other. A taper is divided into [`SLICES_OF_TAPER`] links of equal
 //! length, each with the section at its middle. For a taper whose height halves towards the end, the deflection under
 //! an end load is then 0.3 % too large. This error falls with the square of the number of slices.
 
@@ -16,7 +16,7 @@ use crate::input::json::{Node, Object};
 use nalgebra::Vector3;
 
 /// Number of links into which a taper is divided.
-const SLICES: usize = 12;
+const SLICES_OF_TAPER: usize = 12;
 
 /// Number of elements of the arm that one item of the chain in the file becomes. A link with pieces becomes several.
 pub(crate) fn elements_of(item: &Node) -> usize {
@@ -27,7 +27,7 @@ pub(crate) fn elements_of(item: &Node) -> usize {
 }
 
 fn slices(tapers: bool) -> usize {
-    if tapers { SLICES } else { 1 }
+    if tapers { SLICES_OF_TAPER } else { 1 }
 }
 
 /// Factors on the moduli and on the density of a tube, for holes and inserts.

@@ -17,9 +17,9 @@
 use std::f64::consts::PI;
 
 /// Ratio of wall to smaller side up to which the wall is taken as thin.
-const THIN: f64 = 0.15;
+const THIN_WALL_RATIO: f64 = 0.15;
 /// Ratio of wall to smaller side from which on the term of the open section is added in full.
-const THICK: f64 = 0.155;
+const THICK_WALL_RATIO: f64 = 0.155;
 
 /// Torsional properties of a section.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,7 +34,7 @@ pub(super) struct Torsion {
 pub(super) fn tube(b: f64, h: f64, t: f64) -> Torsion {
     let thin = Torsion { constant_m4: bredt(b, h, t), shear_per_m3: 1.0 / (2.0 * (b - t) * (h - t) * t) };
     let side = b.min(h);
-    let share = ((t / side - THIN) / (THICK - THIN)).min(1.0);
+    let share = ((t / side - THIN_WALL_RATIO) / (THICK_WALL_RATIO - THIN_WALL_RATIO)).min(1.0);
     if share <= 0.0 {
         return thin;
     }
@@ -74,13 +74,13 @@ fn open(b: f64, h: f64, t: f64) -> f64 {
 
 /// Sum of n⁻⁵ over the odd n, which is 31/32 ζ(5).
 const ODD_FIFTH_POWERS: f64 = 1.004_523_762_795_139_5;
-const ODD: [f64; 5] = [1.0, 3.0, 5.0, 7.0, 9.0];
+const ODD_ORDERS: [f64; 5] = [1.0, 3.0, 5.0, 7.0, 9.0];
 
 /// Torsion constant `J` of a solid bar of sides b, h \[m\] \[m⁴\]. The sum over n⁻⁵ is taken exactly and only
 /// `1 - tanh` is summed as a series, which converges after few terms.
 fn bar_constant(b: f64, h: f64) -> f64 {
     let (b, h) = (b.min(h), b.max(h));
-    let rest: f64 = ODD.iter().map(|n| 2.0 / (n.powi(5) * (libm::exp(n * PI * h / b) + 1.0))).sum();
+    let rest: f64 = ODD_ORDERS.iter().map(|n| 2.0 / (n.powi(5) * (libm::exp(n * PI * h / b) + 1.0))).sum();
     h * b.powi(3) * (1.0 / 3.0 - 64.0 / PI.powi(5) * b / h * (ODD_FIFTH_POWERS - rest))
 }
 
@@ -88,7 +88,7 @@ fn bar_constant(b: f64, h: f64) -> f64 {
 /// length \[m\].
 fn bar_shear_m(b: f64, h: f64) -> f64 {
     let (b, h) = (b.min(h), b.max(h));
-    let series: f64 = ODD.iter().map(|n| 1.0 / (n * n * libm::cosh(n * PI * h / (2.0 * b)))).sum();
+    let series: f64 = ODD_ORDERS.iter().map(|n| 1.0 / (n * n * libm::cosh(n * PI * h / (2.0 * b)))).sum();
     b * (1.0 - 8.0 / PI.powi(2) * series)
 }
 

@@ -414,7 +414,7 @@ impl Transmission {
             let name = &chain[*element].name;
             let from_here: f64 = self.stages[along + k..].iter().map(|stage| stage.ratio).product();
             let cosine = axis.dot(own);
-            if cosine.abs() < PARALLEL {
+            if cosine.abs() < PARALLEL_COSINE {
                 terms = node.fault_below(
                     "motor_at",
                     format!("lies beyond \"{name}\", whose axis is not parallel to that of this joint"),
@@ -461,7 +461,7 @@ impl Transmission {
 }
 
 /// Smallest cosine of the angle between two axes that are taken as parallel.
-const PARALLEL: f64 = 0.999_999;
+const PARALLEL_COSINE: f64 = 0.999_999;
 
 /// The joints between a motor and the joint that it drives, each as the number of its element and its axis. `first` is
 /// the first element outboard of the motor.

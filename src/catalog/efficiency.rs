@@ -102,7 +102,7 @@ impl Catalogs {
         // the curves were measured on harmonic drives
         let rated = gear.efficiency.filter(|_| gear.kind == GearKind::StrainWave)?;
         let model = |of: &Gear, kind| Some(self.efficiency_curve(of, kind)).filter(|curve| !curve.is_empty());
-        let other = self.gear(MODEL).ok();
+        let other = self.gear(REPRESENTATIVE_GEAR).ok();
         let curve = |kind| model(gear, kind).or_else(|| model(other?, kind));
         let speed = curve(EfficiencyKind::AgainstInputSpeed);
         let at_speed = speed.and_then(|c| Some(level(&c, input_speed_rpm)? / level(&c, RATED_RPM)?));
@@ -124,7 +124,7 @@ impl Catalogs {
 }
 
 /// The gear whose curves are used for gears without their own.
-const MODEL: &str = "HFUC-25-100";
+const REPRESENTATIVE_GEAR: &str = "HFUC-25-100";
 /// Input speed at which the rated efficiency is stated \[rpm\].
 const RATED_RPM: f64 = 2000.0;
 

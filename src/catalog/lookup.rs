@@ -50,7 +50,7 @@ pub enum PartError {
         nearest: Vec<String>,
     },
     /// The text fits the names of several parts.
-    #[error("{kind} \"{name}\" may be any of: {}; give more of the name", first_names(.candidates, SHOWN))]
+    #[error("{kind} \"{name}\" may be any of: {}; give more of the name", first_names(.candidates, NAMES_SHOWN))]
     Ambiguous {
         /// Kind of part that was asked for.
         kind: PartKind,
@@ -69,7 +69,7 @@ fn near(kind: &PartKind, nearest: &[String]) -> String {
 }
 
 /// Number of names that a message about an ambiguous name shows.
-const SHOWN: usize = 6;
+const NAMES_SHOWN: usize = 6;
 
 /// The first `most` names of a list in words, with the number of the others: `A, B and 3 more`.
 pub(crate) fn first_names<S: AsRef<str>>(names: &[S], most: usize) -> String {

@@ -117,53 +117,53 @@ fn failing(limit: &Limit) -> String {
 
 /// The first sentence: which payloads hold in all poses, and what fails beyond them.
 fn headline(name: &str, found: &Capacity) -> String {
+    if found.window.holds() { held(name, found) } else { nothing_held(name, found) }
+}
+
+/// The pose in which the joint of an end fails first, as the end of a phrase.
+fn first_in(pose: &str) -> String {
+    if pose.is_empty() { String::new() } else { format!(", first in the pose {pose}") }
+}
+
+/// "less than 2.000 kg is too little for j2 (...), first in the pose down".
+fn too_little(found: &Capacity) -> String {
+    let least = &found.window.least;
+    let (least_kg, joint) = (fixed(least.payload_kg, 3), failing(least));
+    format!("less than {least_kg} kg is too little for {joint}{}", first_in(&found.least_pose))
+}
+
+/// No payload passes in all poses: what is too much for one joint is too little for another.
+fn nothing_held(name: &str, found: &Capacity) -> String {
     let Window { least, most } = &found.window;
-    let (least_kg, most_kg) = (least.payload_kg, most.payload_kg);
-    let first =
-        |pose: &str| if pose.is_empty() { String::new() } else { format!(", first in the pose {pose}") };
-    if !found.window.holds() {
-        let words = if least_kg.is_finite() {
-            format!(
-                "less than {} kg is too little for {}{}; more than {} kg is too much for {}{}",
-                fixed(least_kg, 3),
-                failing(least),
-                first(&found.least_pose),
-                fixed(most_kg, 3),
-                failing(most),
-                first(&found.pose)
-            )
-        } else {
-            format!(
-                "without payload {} fails{}, and no payload helps",
-                failing(least),
-                first(&found.least_pose)
-            )
-        };
-        return format!("{name} holds no payload in all of its poses: {words}\n");
-    }
-    let too_much = format!("more is too much for {}{}", failing(most), first(&found.pose));
-    match (least_kg > 0.0, most_kg.is_finite()) {
-        (false, false) => format!("{name}: nothing limits the payload\n"),
-        (false, true) => {
-            format!("{name} holds {} kg in all of its poses; {too_much}\n", fixed(most_kg, 3))
-        }
-        (true, is_limited) => {
-            let range = match is_limited {
-                true => format!(
-                    "from {} to {} kg in all of its poses; {too_much}",
-                    fixed(least_kg, 3),
-                    fixed(most_kg, 3)
-                ),
-                false => format!("{} kg and any larger payload in all of its poses", fixed(least_kg, 3)),
-            };
-            format!(
-                "{name} holds {range}\nIt does not hold the empty arm: less than {} kg is too little for {}{}\n",
-                fixed(least_kg, 3),
-                failing(least),
-                first(&found.least_pose)
-            )
-        }
-    }
+    let words = if least.payload_kg.is_finite() {
+        let (most_kg, joint) = (fixed(most.payload_kg, 3), failing(most));
+        format!(
+            "{}; more than {most_kg} kg is too much for {joint}{}",
+            too_little(found),
+            first_in(&found.pose)
+        )
+    } else {
+        format!(
+            "without payload {} fails{}, and no payload helps",
+            failing(least),
+            first_in(&found.least_pose)
+        )
+    };
+    format!("{name} holds no payload in all of its poses: {words}\n")
+}
+
+/// The range of payloads that passes in all poses, and what ends it.
+fn held(name: &str, found: &Capacity) -> String {
+    let Window { least, most } = &found.window;
+    let too_much = format!("more is too much for {}{}", failing(most), first_in(&found.pose));
+    let (least_kg, most_kg) = (fixed(least.payload_kg, 3), fixed(most.payload_kg, 3));
+    let range = match (least.payload_kg > 0.0, most.payload_kg.is_finite()) {
+        (false, false) => return format!("{name}: nothing limits the payload\n"),
+        (false, true) => return format!("{name} holds {most_kg} kg in all of its poses; {too_much}\n"),
+        (true, true) => format!("from {least_kg} to {most_kg} kg in all of its poses; {too_much}"),
+        (true, false) => format!("{least_kg} kg and any larger payload in all of its poses"),
+    };
+    format!("{name} holds {range}\nIt does not hold the empty arm: {}\n", too_little(found))
 }
 
 fn to_text(name: &str, found: &Capacity) -> String {

@@ -114,7 +114,7 @@ fn blanks_table(catalogs: &Catalogs) -> String {
 }
 
 /// Number of parts whose names are listed in one line; further parts are only counted.
-const NAMED: usize = 3;
+const PARTS_NAMED: usize = 3;
 
 /// A list of the parts that `size` and `run` cannot choose because ratings are blank, grouped by file and by blank
 /// ratings. It also says which of these parts an arm file cannot name. It is empty if there are no such parts.
@@ -172,7 +172,7 @@ fn verbs(lacks: &[Lack]) -> String {
 
 fn named(parts: &[(usize, &str)]) -> String {
     let names: Vec<&str> = parts.iter().map(|(_, id)| *id).collect();
-    first_names(&names, NAMED)
+    first_names(&names, PARTS_NAMED)
 }
 
 /// Housed gears and actuators whose output bearing counts as rigid because their row states no tilting stiffness. The

@@ -10,7 +10,7 @@ use super::manifest::{RUN, SHARD};
 use super::result_folder::ResultFolder;
 use super::run::planned;
 use super::shard_files::{
-    CANDIDATES, COMMON, DEEPEST, STUDY, folder_of, read_candidates_of, read_manifest, shards_in,
+    CANDIDATES, COMMON, MOST_LEVELS, STUDY, folder_of, read_candidates_of, read_manifest, shards_in,
     shards_in_all,
 };
 use super::stop::{refuse_if_stopped, stopped_by_signal};
@@ -189,8 +189,8 @@ impl Joining<'_> {
 pub(super) fn status(args: &StatusArgs) -> Result<String, Failure> {
     let (mut finished, mut begun) = (Vec::new(), Vec::new());
     for folder in &args.shards {
-        let here = begun_in(folder, DEEPEST)?;
-        if here.is_empty() || !shards_in(folder, DEEPEST)?.is_empty() {
+        let here = begun_in(folder, MOST_LEVELS)?;
+        if here.is_empty() || !shards_in(folder, MOST_LEVELS)?.is_empty() {
             finished.push(folder.clone());
         }
         begun.extend(here);

@@ -13,7 +13,7 @@ use std::time::Duration;
 
 /// How many times a folder is read again if its files do not fit together, and the time between two attempts. The
 /// reason may be that another process is just replacing the result.
-const AGAIN: (u32, Duration) = (3, Duration::from_millis(200));
+const RETRIES: (u32, Duration) = (3, Duration::from_millis(200));
 
 /// The result of a study, as it is in a folder.
 pub(super) struct Results {
@@ -32,7 +32,7 @@ impl Results {
     /// There is no `run.json`; an earlier version made the result; a file is not the one that `run.json` lists; or
     /// another process is writing the folder at the moment.
     pub(super) fn open(folder: &Path) -> Result<Self, Failure> {
-        let (mut again, wait) = AGAIN;
+        let (mut again, wait) = RETRIES;
         loop {
             complete(folder)?;
             let results = Self::read_run(folder)?;

@@ -57,7 +57,7 @@ pub(super) fn read_candidates_of(
 pub(super) fn shards_in_all(folders: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut all = Vec::new();
     for folder in folders {
-        let inside = shards_in(folder, DEEPEST)?;
+        let inside = shards_in(folder, MOST_LEVELS)?;
         if inside.is_empty() {
             return Err(Failure::File(format!(
                 "{} has no shard, which is a folder with {SHARD}; `armwright run STUDY --shard 1/4` makes one",
@@ -70,7 +70,7 @@ pub(super) fn shards_in_all(folders: &[PathBuf]) -> Result<Vec<PathBuf>, Failure
 }
 
 /// Number of levels of subfolders that are searched for shards.
-pub(super) const DEEPEST: usize = 3;
+pub(super) const MOST_LEVELS: usize = 3;
 
 /// The folders of the shards in `folder`, in the order of their names. If `folder` is itself a shard, it is the only
 /// one. `depth` is the number of levels of subfolders that are searched.

@@ -17,9 +17,9 @@ use std::time::{Duration, Instant};
 
 /// Shortest time between two saved states.
 const KEEP_EVERY: Duration = Duration::from_secs(2);
-/// Saving states may take at most the fraction 1/`SHARE` of the running time. Otherwise the time between two saves is
+/// Saving states may take at most the fraction 1/`SAVING_SHARE_OF_TIME` of the running time. Otherwise the time between two saves is
 /// made longer.
-const SHARE: u32 = 200;
+const SAVING_SHARE_OF_TIME: u32 = 200;
 /// Ending of the name of a file with a state.
 pub(super) const ENDING: &str = ".unfinished";
 /// Keys that must be equal in the saved state and in the search that is to be continued. Each comes with the word for
@@ -150,7 +150,7 @@ impl KeepState for Unfinished {
         let written =
             there.and_then(|()| write_whole(&self.path, &[format!("{head}\n").as_bytes(), state].concat()));
         let mut due = self.due();
-        due.at = Instant::now() + due.every.max(begun.elapsed() * SHARE);
+        due.at = Instant::now() + due.every.max(begun.elapsed() * SAVING_SHARE_OF_TIME);
         if let Err(e) = written
             && !std::mem::replace(&mut due.has_failed, true)
         {

@@ -13,7 +13,7 @@ use nalgebra::{Matrix6, Vector3};
 
 /// A component of a wrench is set to zero if its magnitude is below this fraction of the greatest magnitude that a
 /// component of this wrench could have. Such a component is due to rounding.
-const NOTHING: f64 = 1e-13;
+const RELATIVE_ROUNDING: f64 = 1e-13;
 /// Number of components of a load: moments about the two axes across the joint axis, forces along these two axes, and
 /// the force along the joint axis.
 const COMPONENTS: usize = 5;
@@ -92,7 +92,7 @@ impl Frame {
         self.0.each_ref().map(|unit| {
             let component = unit.dot(wrench);
             let scale = unit.abs().dot(&wrench.abs()) + linear(wrench).norm();
-            if component.abs() > NOTHING * scale { component } else { 0.0 }
+            if component.abs() > RELATIVE_ROUNDING * scale { component } else { 0.0 }
         })
     }
 

@@ -21,10 +21,10 @@ use std::sync::Arc;
 
 /// The refinement of the trial shapes (motions that give an upper bound of the lowest mode) stops when a step lowers
 /// the bound by less than this fraction.
-const SETTLED: f64 = 1e-10;
+const SHAPE_CONVERGENCE: f64 = 1e-10;
 /// Accelerations of the base \[m/s²\] whose inertia forces deform the arm into the first trial shapes: one vertical,
 /// and one sideways with a little forward.
-pub(super) const STARTS: [[f64; 3]; 2] = [[0.0, 0.0, 1.0], [0.3, 1.0, 0.0]];
+pub(super) const START_SHAPES: [[f64; 3]; 2] = [[0.0, 0.0, 1.0], [0.3, 1.0, 0.0]];
 /// Greatest number of refinement steps of the trial shapes on a box of one design.
 const MOST_STEPS: usize = 30;
 
@@ -101,14 +101,14 @@ impl<'c> Problem<'c> {
     }
 
     /// The first trial shapes, made for the box of all designs: for each judged case, one for each acceleration in
-    /// [`STARTS`]. `None` if no design meets the constraints.
+    /// [`START_SHAPES`]. `None` if no design meets the constraints.
     pub(super) fn first_shapes(&self, work: &mut Work) -> Option<Vec<Shape>> {
         self.fill(&mut self.root(), work)?;
         self.least_tip_m(work)?;
         let mut shapes = Vec::new();
         for case in self.judged_cases() {
             let first = shapes.len();
-            for [x, y, z] in STARTS {
+            for [x, y, z] in START_SHAPES {
                 let direction = Vector3::new(x, y, z);
                 let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
                 let shape = Shape::start(&self.poses[case], &ideal, direction, &shapes[first..], 6);
@@ -169,8 +169,8 @@ impl<'c> Problem<'c> {
         }
         for (judged, case) in self.judged_cases().enumerate() {
             let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
-            for start in 0..STARTS.len() {
-                let hz = hertz(shapes[judged * STARTS.len() + start].quotient(&ideal));
+            for start in 0..START_SHAPES.len() {
+                let hz = hertz(shapes[judged * START_SHAPES.len() + start].quotient(&ideal));
                 if hz < box_bound.hz {
                     box_bound.hz = hz;
                     work.worst = (judged, start);
@@ -196,10 +196,10 @@ impl<'c> Problem<'c> {
         for _ in 0..steps {
             let before = box_bound.hz;
             for (judged, case) in self.judged_cases().enumerate() {
-                for start in 0..STARTS.len() {
+                for start in 0..START_SHAPES.len() {
                     // The second shape is kept orthogonal to the first. Without that both would converge to the same
                     // mode. The bound would then miss a lower mode of the arm in the other plane.
-                    let (others, rest) = shapes[judged * STARTS.len()..].split_at_mut(start);
+                    let (others, rest) = shapes[judged * START_SHAPES.len()..].split_at_mut(start);
                     let shape = &mut rest[0];
                     let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };
                     shape.improve(&self.poses[case], &ideal, others, &mut work.shape);
@@ -213,7 +213,7 @@ impl<'c> Problem<'c> {
             if fails(box_bound) {
                 return Verdict::Pruned;
             }
-            if box_bound.hz >= before * (1.0 - SETTLED) {
+            if box_bound.hz >= before * (1.0 - SHAPE_CONVERGENCE) {
                 break;
             }
         }

@@ -13,7 +13,7 @@ use super::work::Work;
 use std::sync::Arc;
 
 /// Greatest number of boxes that one task bounds. After that, the task returns the boxes that are still open.
-const BOXES: usize = 32;
+const BOXES_PER_TASK: usize = 32;
 
 /// A box that waits to be bounded, with the trial shapes and the bound of the box from which it was halved.
 pub(super) struct OpenBox {
@@ -87,7 +87,7 @@ fn go_through_boxes<K: Sync, F: Send + Default>(
     in_rounds(state, first, || budget.stopped(), task, learn, see)
 }
 
-/// Bounds the box `first` and then boxes into which it is divided, depth first, until [`BOXES`] boxes are bounded.
+/// Bounds the box `first` and then boxes into which it is divided, depth first, until [`BOXES_PER_TASK`] boxes are bounded.
 /// `open` bounds one box and returns the boxes into which it is divided. Returns the boxes that are still open and the
 /// designs found.
 pub(super) fn open_boxes<F: Default>(
@@ -96,7 +96,7 @@ pub(super) fn open_boxes<F: Default>(
     open: impl Fn(OpenBox, &mut Work, &mut F) -> Vec<OpenBox>,
 ) -> Done<OpenBox, F> {
     let (mut work, mut findings, mut stack) = (Work::default(), F::default(), vec![first]);
-    for _ in 0..BOXES {
+    for _ in 0..BOXES_PER_TASK {
         if budget.stopped() {
             break;
         }

@@ -8,7 +8,7 @@
 //! The bounds of the two halves would be a worse guide, because a box has to be halved several times before
 //! its bound moves at all.
 
-use super::bound::{STARTS, linear_strain};
+use super::bound::{START_SHAPES, linear_strain};
 use super::parts::{INERTIAS, STIFFNESSES};
 use super::problem::{Part, Problem};
 use super::shape::{Shape, products};
@@ -32,7 +32,7 @@ impl Problem<'_> {
     ) -> Option<usize> {
         self.weigh_tip(work);
         let (judged, start) = work.worst;
-        let shape = &shapes[judged * STARTS.len() + start];
+        let shape = &shapes[judged * START_SHAPES.len() + start];
         let case = self.judged_cases().nth(judged)?;
         let strain = products(&shape.strain, &work.stiff_in[case]);
         let kinetic = shape.kinetic_energy(&work.light);

@@ -21,13 +21,13 @@ use super::tree::Key;
 const DRIVE: [(usize, f64); 2] = [(3, 1.0), (0, 4.0)];
 const TUBE: [(usize, f64); 2] = [(0, 2.0), (1, 1.0)];
 /// A division whose expected benefit is below this is not made, because the benefit is due to rounding.
-const NOTHING: f64 = 1e-9;
+const LEAST_BENEFIT: f64 = 1e-9;
 /// A force is known well enough if the width of its interval is less than this fraction of its greatest magnitude. Then
 /// it is not branched on.
-const KNOWN: f64 = 0.1;
+const KNOWN_FORCE_WIDTH: f64 = 0.1;
 /// Least distance of the value at which a region is divided from either end of the interval, as a fraction of the
 /// interval's width.
-const SAME: f64 = 1e-3;
+const LEAST_DISTANCE_TO_END: f64 = 1e-3;
 
 /// A way to divide a region into two: the quantity that is divided, and the value at which it is divided.
 #[derive(Debug, Clone, Copy)]
@@ -80,7 +80,7 @@ impl Rows<'_> {
             let spreads = [0, 1, 2, 3, 4].map(|axis| spread(mixed, |member| key(member)[axis]));
             // The coordinate in which the mixed designs differ most separates them best.
             let axis = (0..spreads.len()).max_by(|&a, &b| spreads[a].total_cmp(&spreads[b])).unwrap_or(0);
-            if spreads[axis] > NOTHING {
+            if spreads[axis] > LEAST_BENEFIT {
                 let at = mean(mixed, |member| key(member)[axis]);
                 branchings.push(Branching { gain, by: BranchOn::Options { level, axis }, at });
             }
@@ -92,7 +92,7 @@ impl Rows<'_> {
             }
         }
         branchings.extend(self.by_torque(mixed, multipliers));
-        branchings.retain(|branching| branching.gain > NOTHING);
+        branchings.retain(|branching| branching.gain > LEAST_BENEFIT);
         branchings.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         branchings
     }
@@ -162,8 +162,8 @@ impl Rows<'_> {
                 // The mean torque separates two states of a gear best. To shrink a product, the middle between the
                 // least torque and the acting torque is best.
                 let at_nm = if apart > left_out { acting } else { 0.5 * (least + acting) };
-                let margin = SAME * (high - low);
-                if high - low > KNOWN * low.abs().max(high.abs())
+                let margin = LEAST_DISTANCE_TO_END * (high - low);
+                if high - low > KNOWN_FORCE_WIDTH * low.abs().max(high.abs())
                     && low + margin < at_nm
                     && at_nm < high - margin
                 {

@@ -16,11 +16,11 @@ use std::collections::BTreeSet;
 
 /// Relative amount by which the known design's objectives are made worse before designs below them are looked for. With
 /// this margin, rounding excludes no part of the known design itself.
-const ROOM: f64 = 1e-6;
-/// Greatest number of subproblems that are branched. A subproblem of at most [`FEW`] designs is not branched, because
+const OBJECTIVE_MARGIN: f64 = 1e-6;
+/// Greatest number of subproblems that are branched. A subproblem of at most [`SMALL_SPACE`] designs is not branched, because
 /// that is not worth the time.
 const MOST_BRANCHED: usize = 50;
-const FEW: f64 = 1e6;
+const SMALL_SPACE: f64 = 1e6;
 
 /// A compiled design space that tells which parts can belong to a design as good as a known one.
 pub struct DomainReduction<'p> {
@@ -37,9 +37,9 @@ impl<'p> DomainReduction<'p> {
     /// design in all three objectives, ascending. `None` if no design is that good, not even the known one.
     pub fn options_as_good(&self, known: &Objectives) -> Option<Vec<Vec<u32>>> {
         let upper = LocalUpperBound {
-            mass_kg: known.mass_kg * (1.0 + ROOM),
-            tip_m: known.tip_deflection_m * (1.0 + ROOM),
-            hz: known.lowest_mode_hz * (1.0 - ROOM),
+            mass_kg: known.mass_kg * (1.0 + OBJECTIVE_MARGIN),
+            tip_m: known.tip_deflection_m * (1.0 + OBJECTIVE_MARGIN),
+            hz: known.lowest_mode_hz * (1.0 - OBJECTIVE_MARGIN),
         };
         let mut work = Work::default();
         let whole = Subproblem::whole(&self.problem, 0, &mut work)?;
@@ -48,7 +48,7 @@ impl<'p> DomainReduction<'p> {
         for _ in 0..MOST_BRANCHED {
             let largest = (0..open.len()).max_by(|&a, &b| open[a].designs.total_cmp(&open[b].designs));
             // The largest subproblem contributes most options, so branching it helps most.
-            let Some(at) = largest.filter(|&at| open[at].designs > FEW) else { break };
+            let Some(at) = largest.filter(|&at| open[at].designs > SMALL_SPACE) else { break };
             let next = open.swap_remove(at);
             match next.subproblem.branch(&next.survivors, &mut work) {
                 Some(halves) => {

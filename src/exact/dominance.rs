@@ -24,10 +24,10 @@ use super::work::Work;
 use crate::sizing::demand::JointDemand;
 
 /// A dominating drive must be lighter by at least this fraction of the arm's mass, so that rounding cannot decide.
-const LIGHTER: f64 = 1e-6;
+const LEAST_MASS_SAVED: f64 = 1e-6;
 
 /// Greatest number of tree nodes that are visited in the search for one dominating drive.
-const BOXES: usize = 64;
+const MOST_NODES: usize = 64;
 
 /// The properties that a drive must have to dominate all drives of a box.
 struct DominatingDrive<'a> {
@@ -125,14 +125,14 @@ impl Problem<'_> {
     ) -> bool {
         let arm_kg: f64 = work.masses.iter().map(|m| m[1]).sum();
         let wanted = DominatingDrive {
-            lighter_than_kg: drives.mass_kg[0] - LIGHTER * arm_kg,
+            lighter_than_kg: drives.mass_kg[0] - LEAST_MASS_SAVED * arm_kg,
             demand,
             curve: drives.curve,
             most_tilt_rad_per_nm: drives.tilt_rad_per_nm[0],
             most_torque_nm: work.torques.iter().map(|torques| torques[piece][1]).fold(0.0, f64::max),
         };
         // The search starts at the root, because the dominating drive need not be in the box.
-        wanted.find(tree, 0, &mut BOXES.clone()).is_some_and(|mass_kg| {
+        wanted.find(tree, 0, &mut MOST_NODES.clone()).is_some_and(|mass_kg| {
             self.slopes_stay(piece, (drives.mass_kg[1] - mass_kg) * self.space.gravity_m_s2, work)
         })
     }

@@ -19,7 +19,7 @@ use crate::pareto::objectives::Objectives;
 /// Number of dives.
 const DIVES: usize = 16;
 /// Number of boxes of the cover. To bound them takes about as long as the dives.
-const BOXES: usize = 1024;
+const BOXES_OF_COVER: usize = 1024;
 
 /// The designs and the cover that are known before the first pass.
 pub(super) struct Early<'l> {
@@ -37,7 +37,7 @@ impl<'l> Early<'l> {
         let aside = budget.aside();
         let findings = dives(&aside, problem, DIVES);
         let found: Vec<Objectives> = findings.kept.iter().map(|c| c.objectives).collect();
-        let cover = Cover::new(&aside, problem, &found, BOXES).bounds();
+        let cover = Cover::new(&aside, problem, &found, BOXES_OF_COVER).bounds();
         let early = Self { live, cover, findings };
         early.tell(&[], 0);
         early

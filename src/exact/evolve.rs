@@ -33,9 +33,9 @@ const MOST_TIME: f64 = 0.25;
 /// root of the number of designs.
 const MOST_CHILDREN: f64 = 8192.0;
 /// Width of a cell of the grid that thins out similar designs, in logarithms of the objectives.
-const STEP: f64 = 0.02;
+const CELL_WIDTH: f64 = 0.02;
 /// The designs are ordered by mass. The second parent is at most this many places away from the first.
-const CLOSE: u64 = 12;
+const MATING_DISTANCE: u64 = 12;
 
 /// A design with trial shapes that bound its modes. The shapes were computed for this design or for a similar one.
 pub(super) struct Individual {
@@ -113,7 +113,7 @@ pub(super) fn evolve<'p>(
 
 /// Keeps one design for each cell of the grid over the objectives, and sorts them by mass, the lightest first.
 fn by_mass(members: Vec<Individual>) -> Vec<Individual> {
-    let mut kept = thinned(members, STEP, |member| &member.objectives);
+    let mut kept = thinned(members, CELL_WIDTH, |member| &member.objectives);
     kept.sort_by(|a, b| a.objectives.mass_kg.total_cmp(&b.objectives.mass_kg));
     kept
 }
@@ -133,8 +133,8 @@ impl Recombination<'_, '_> {
     /// Makes one child of two parents, bounds it and tests the constraints.
     fn child(mut self, work: &mut Work) -> Offspring {
         let first = self.below(self.parents.len() as u64);
-        let from = first.saturating_sub(CLOSE);
-        let to = (first + CLOSE + 1).min(self.parents.len() as u64);
+        let from = first.saturating_sub(MATING_DISTANCE);
+        let to = (first + MATING_DISTANCE + 1).min(self.parents.len() as u64);
         let second = from + self.below(to - from);
         let [parent, other] = [first, second].map(|i| &self.parents[i as usize]);
         let mut design_box = parent.design_box.clone();

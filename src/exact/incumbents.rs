@@ -10,10 +10,10 @@ use crate::pareto::objectives::{Objective, Objectives};
 use std::collections::HashMap;
 
 /// Two objectives that differ by less than this (relative) count as equal.
-const EQUAL: f64 = 1e-9;
+const EQUAL_WITHIN: f64 = 1e-9;
 /// A design dominates another only if it is better by at least this fraction in one objective, so that rounding cannot
 /// decide.
-const BETTER: f64 = 1e-7;
+const BETTER_BY: f64 = 1e-7;
 /// Number of grid steps in a factor of two of mass or deflection.
 const STEPS: f64 = 64.0;
 
@@ -82,7 +82,7 @@ impl Incumbents {
     pub(super) fn dominates(&self, box_bound: &BoxBound) -> bool {
         let best = Objectives::from(*box_bound);
         if let Some((objective, least)) = self.only {
-            return objective.cost(&best) >= least * (1.0 - BETTER);
+            return objective.cost(&best) >= least * (1.0 - BETTER_BY);
         }
         if self.table.rejects(&best) {
             return true;
@@ -112,5 +112,6 @@ pub(super) fn is_better(a: &Objectives, b: &Objectives) -> bool {
         (a.tip_deflection_m, b.tip_deflection_m),
         (b.lowest_mode_hz, a.lowest_mode_hz),
     ];
-    pairs.iter().all(|(a, b)| *a <= b * (1.0 + EQUAL)) && pairs.iter().any(|(a, b)| *a < b * (1.0 - BETTER))
+    pairs.iter().all(|(a, b)| *a <= b * (1.0 + EQUAL_WITHIN))
+        && pairs.iter().any(|(a, b)| *a < b * (1.0 - BETTER_BY))
 }

@@ -15,7 +15,7 @@ use crate::space::slot::SizedJoint;
 /// Relative margin for rounding of a sum of a few dozen terms.
 pub(super) const ROUNDING: f64 = 1e-12;
 /// Greatest number of steps down a tree of drives in which drives that cannot carry a demand are searched for.
-const DEPTH: usize = 6;
+const MOST_TREE_STEPS: usize = 6;
 
 impl Problem<'_> {
     /// Computes every interval of a box, part by part from the tip inward, and writes it to `work`. Each node of
@@ -70,7 +70,7 @@ impl Problem<'_> {
         let [narrowest, widest] = self.room(piece, work);
         let least = LeastDemand::new(motion, rays, static_nm[0], inertia_kgm2[0], bearing[0], widest);
         *node = tree.smallest_node(*node, |drives| drives.may_hold(&least))?;
-        let drives = feasible_drives(tree, *node, &least, DEPTH)?;
+        let drives = feasible_drives(tree, *node, &least, MOST_TREE_STEPS)?;
         work.joint(self, piece, drives.mass_kg, drives.curve, drives.tilt_rad_per_nm);
         work.breaks[piece] = drives.breaks;
         work.least_demands[piece] = Some(least);

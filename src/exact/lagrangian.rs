@@ -9,7 +9,7 @@
 //! cutting-plane method). If no multipliers refute the bound, the modes of the mixed arm give new rows. The mixed arm
 //! has the mean stiffnesses and inertias of the relaxed designs, weighted by the solution of the game.
 
-use super::bound::STARTS;
+use super::bound::START_SHAPES;
 use super::dual_price::{DualPrice, JointPrice, TubePrice};
 use super::local_upper_bounds::LocalUpperBound;
 use super::matrix_game::{Game, solve};
@@ -79,7 +79,7 @@ impl Rows<'_> {
             let ideal = Ideal { stiffness: &stiffness, inertia: &inertia };
             let mut room = ShapeWork::default();
             let mut shapes: Vec<Shape> = Vec::new();
-            for start in 0..STARTS.len() {
+            for start in 0..START_SHAPES.len() {
                 let last = self.modes.iter().rfind(|m| m.judged == judged && m.start == start);
                 let Some(mut shape) = last.map(|mode| mode.shape.clone()) else { continue };
                 for _ in 0..STEPS {

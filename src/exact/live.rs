@@ -22,10 +22,10 @@ pub struct Known {
 }
 
 /// Least time between two updates.
-const EVERY: Duration = Duration::from_millis(250);
+const UPDATE_INTERVAL: Duration = Duration::from_millis(250);
 /// Least ratio of the time between two updates to the time that one update takes. Updates thus take at most 2 % of the
 /// time.
-const SHARE: u32 = 50;
+const UPDATE_INTERVAL_RATIO: u32 = 50;
 
 /// The latest progress of a search, shared by the search and the threads that watch it.
 #[derive(Default)]
@@ -58,7 +58,7 @@ impl Live {
             return;
         }
         self.tell(news());
-        let after = EVERY.max(began.elapsed() * SHARE);
+        let after = UPDATE_INTERVAL.max(began.elapsed() * UPDATE_INTERVAL_RATIO);
         self.lock().due = Some(Instant::now() + after);
     }
 

@@ -7,11 +7,11 @@ use std::ops::Range;
 /// Greatest number of simplex pivots.
 const MOST_PIVOTS: usize = 200;
 /// Numbers below this count as rounding.
-const NOTHING: f64 = 1e-11;
+const ROUNDING: f64 = 1e-11;
 
 /// The weighted sum of a balanced column may exceed zero by this much. A small amount that differs from column to
 /// column is added to this limit, so that no two pivots of the simplex method are equal.
-const BALANCED: f64 = 1e-6;
+const BALANCE_TOLERANCE: f64 = 1e-6;
 
 /// The solution of a matrix game.
 pub(super) struct Game {
@@ -53,14 +53,15 @@ pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game 
         for (j, number) in numbers[..count].iter_mut().enumerate() {
             *number = entry(i, rows[j * width + i]);
         }
-        numbers[count] = if balanced.contains(&i) { BALANCED * (1.0 + i as f64 / width as f64) } else { 1.0 };
+        numbers[count] =
+            if balanced.contains(&i) { BALANCE_TOLERANCE * (1.0 + i as f64 / width as f64) } else { 1.0 };
     }
     table[width * line..width * line + count].fill(-1.0);
     for _ in 0..MOST_PIVOTS {
         let objective = &table[width * line..width * line + count];
         let cost = in_lanes(Least(objective));
         // No variable improves the objective: the tableau is optimal.
-        if cost > -NOTHING {
+        if cost > -ROUNDING {
             break;
         }
         // Of several variables with this cost, the one with the lowest number enters, whatever its column is.
@@ -68,7 +69,7 @@ pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game 
         let Some(enter) = equals.min_by_key(|&j| others[j]) else { break };
         let ratio = |i: usize| {
             let a = table[i * line + enter];
-            if a > NOTHING { table[i * line + count] / a } else { f64::INFINITY }
+            if a > ROUNDING { table[i * line + count] / a } else { f64::INFINITY }
         };
         let ratios = (0..width).map(|i| (i, ratio(i)));
         // The program is bounded, so a missing finite ratio is due to rounding. The solution so far is then used.

@@ -12,7 +12,9 @@ use super::problem::Problem;
 use super::run::Exact;
 use super::work::Work;
 use crate::pareto::objectives::Objectives;
-use crate::search::near::{BUFFER, NearDesign, NearDesigns, ROUNDING, Shortfall, Slack, keep_nearest};
+use crate::search::near::{
+    BUFFERED_DESIGNS, NearDesign, NearDesigns, ROUNDING, Shortfall, Slack, keep_nearest,
+};
 use crate::search::sweep::Candidate;
 use crate::space::design::number;
 
@@ -83,7 +85,7 @@ impl Exact<'_> {
 /// How many near designs may be stored before the list is cut back to the `most` nearest that were asked for: twice
 /// `most` and a buffer, so that the list is not cut back at every find.
 fn kept_at_most(most: usize) -> usize {
-    2 * most + BUFFER
+    2 * most + BUFFERED_DESIGNS
 }
 
 /// The state of the search for near designs.

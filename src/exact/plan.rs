@@ -18,22 +18,22 @@ const SLACKS: [f64; 25] = [
 ];
 /// Slacks below this are used only in a search by regions. In a search by boxes, passes with such slacks find no
 /// further designs.
-const FINE: f64 = 0.02;
+const FINE_SLACK: f64 = 0.02;
 /// Greatest number of slacks of the list that are skipped between two passes.
 const MOST_PASSED_OVER: usize = 4;
 /// Greatest number of slacks that are skipped between two passes if the search is to end at a gap that was asked for.
 const PASSED_OVER_TO_A_GAP: usize = 8;
 /// Exponent `g` of the growth `t ∝ ε^-g` of a pass's time. This value is assumed until two passes are completed. An
 /// exponent measured later is limited to the interval from `LEAST_GROWTH` to `MOST_GROWTH`.
-const GROWTH: f64 = 3.3;
+const GROWTH_EXPONENT: f64 = 3.3;
 const LEAST_GROWTH: f64 = 1.0;
 const MOST_GROWTH: f64 = 4.5;
 /// The last pass is planned to take at most this fraction of the time left. The rest is a margin for errors of the
 /// prediction.
-const SAFE: f64 = 0.75;
+const LAST_PASS_SHARE: f64 = 0.75;
 /// A pass that should take at most this fraction of the time left counts as short and is made with the slack of the
 /// list.
-const SHORT: f64 = 0.05;
+const SHORT_PASS_SHARE: f64 = 0.05;
 /// Greatest factor by which one pass divides the slack. A larger step would be predicted from times measured at a much
 /// larger slack. An additional pass in between takes only a small part of the time of the next one.
 const LONGEST_STEP: f64 = 3.0;
@@ -65,7 +65,7 @@ impl Plan {
     /// The plan of a search by boxes or by regions: the slacks of the list above the gap, and then the gap that was
     /// asked for.
     pub(super) fn new(gap: f64, by_regions: bool) -> Self {
-        let coarser = SLACKS.into_iter().filter(|slack| *slack > gap && (by_regions || *slack >= FINE));
+        let coarser = SLACKS.into_iter().filter(|slack| *slack > gap && (by_regions || *slack >= FINE_SLACK));
         let most_passed_over = if gap > 0.0 { PASSED_OVER_TO_A_GAP } else { MOST_PASSED_OVER };
         Self { slacks: coarser.chain([gap]).collect(), most_passed_over }
     }
@@ -77,12 +77,12 @@ impl Plan {
         let listed = self.listed(last.slack)?;
         let Some(left_s) = left_s.filter(|_| listed > 0.0) else { return Some(listed) };
         let is_goal = self.slacks.last() == Some(&listed);
-        let part = if is_goal { SAFE } else { SHORT };
+        let part = if is_goal { LAST_PASS_SHARE } else { SHORT_PASS_SHARE };
         if listed >= least_slack_within(done, part * left_s) {
             return Some(listed);
         }
         let finest = self.slacks.iter().copied().rfind(|slack| *slack > 0.0)?;
-        Some(step_to(least_slack_within(done, SAFE * left_s).max(finest), last.slack).max(finest))
+        Some(step_to(least_slack_within(done, LAST_PASS_SHARE * left_s).max(finest), last.slack).max(finest))
     }
 
     /// The next slack of the list after the slack `last`. Up to `most_passed_over` slacks are skipped, but a skip never
@@ -109,10 +109,10 @@ fn step_to(slack: f64, from: f64) -> f64 {
 
 /// The exponent `g` of the growth `t ∝ ε^-g` of a pass's time with its slack, measured between the last two passes.
 fn growth(done: &[Pass]) -> f64 {
-    let [.., before, last] = done else { return GROWTH };
+    let [.., before, last] = done else { return GROWTH_EXPONENT };
     let measured = libm::log(last.took_s / before.took_s) / libm::log(before.slack / last.slack);
     // Passes that took no measurable time give no finite exponent.
-    if measured.is_finite() { measured.clamp(LEAST_GROWTH, MOST_GROWTH) } else { GROWTH }
+    if measured.is_finite() { measured.clamp(LEAST_GROWTH, MOST_GROWTH) } else { GROWTH_EXPONENT }
 }
 
 /// The least slack for which a pass is predicted to take at most `within_s` \[s\]. Infinite if no pass in `done` is

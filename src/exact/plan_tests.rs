@@ -72,7 +72,7 @@ fn the_exponent_is_measured_between_the_last_two_passes() {
     let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} {b}");
     near(growth(&[pass(1.0, 9.0), pass(0.2, 1.0), pass(0.1, 8.0)]), 3.0);
     near(growth(&[pass(0.2, 1.0), pass(0.1, 1.1)]), LEAST_GROWTH);
-    near(growth(&[pass(0.2, 0.0), pass(0.1, 1.0)]), GROWTH);
+    near(growth(&[pass(0.2, 0.0), pass(0.1, 1.0)]), GROWTH_EXPONENT);
     near(least_slack_within(&[pass(0.2, 1.0), pass(0.1, 8.0)], 64.0), 0.05);
     near(step_to(0.05, 0.2), 0.1);
     near(step_to(0.08, 0.2), 0.08);

@@ -8,7 +8,7 @@ use crate::mechanics::{Twist, Wrench};
 use nalgebra::{DMatrix, Matrix3, Matrix6, SMatrix, Vector3};
 
 /// Coefficients below this fraction of the largest one count as rounding.
-const NOTHING: f64 = 1e-12;
+const ROUNDING: f64 = 1e-12;
 
 /// Number of strain coordinates of a tube: curvatures of the bending along z and along y (4 each), shears along z and y
 /// (3 each), torsion (3), stretch (3). They are polynomial coefficients along the tube.
@@ -216,7 +216,7 @@ impl Pose {
         let rows = self.relevant_rows();
         let ways: Vec<_> = rows.map(|row| row.tip_m * sign(row.fixed, &row.per_n).unwrap_or(0.0)).collect();
         // A right angle with rounding must not count as opposition.
-        let agree = |a: &Vector3<f64>, b: &Vector3<f64>| a.dot(b) >= -NOTHING * a.norm() * b.norm();
+        let agree = |a: &Vector3<f64>, b: &Vector3<f64>| a.dot(b) >= -ROUNDING * a.norm() * b.norm();
         ways.iter().enumerate().all(|(i, a)| ways[..i].iter().all(|b| agree(a, b)))
     }
 
@@ -251,7 +251,7 @@ fn sign(fixed: f64, per_n: &[f64]) -> Option<f64> {
     let largest = per_n.iter().fold(0.0f64, |most, c| most.max(c.abs()));
     // The fixed force and the coefficients have different units. They are compared as if every weight were
     // one newton.
-    let nothing = NOTHING * largest.max(fixed.abs()).max(1.0);
+    let nothing = ROUNDING * largest.max(fixed.abs()).max(1.0);
     let numbers = || per_n.iter().chain([&fixed]);
     let (rise, fall) = (numbers().any(|c| *c > nothing), numbers().any(|c| *c < -nothing));
     match (rise, fall) {

@@ -22,7 +22,7 @@ const QUICK_DIVE_BOXES: usize = 400;
 /// Greatest number of boxes that are bounded while one level is optimized.
 const LEVEL_BOXES: usize = 300;
 /// Greatest number of rounds in which every level is optimized once.
-const ROUNDS: usize = 3;
+const MOST_ROUNDS: usize = 3;
 /// Fraction of a time limit after which a probe begins no further round.
 const MOST_TIME: f64 = 0.1;
 
@@ -34,9 +34,9 @@ impl Merit {
     /// The weights of the three objectives in probe `n`. Roberts' sequence spreads the weights of all probes evenly
     /// over the triangle of possible weights.
     fn nth(n: usize) -> Self {
-        const PLASTIC: f64 = 1.324_717_957_244_746;
+        const PLASTIC_NUMBER: f64 = 1.324_717_957_244_746;
         let at = |step: f64| (0.5 + (n + 1) as f64 / step).fract();
-        let (u, v) = (at(PLASTIC), at(PLASTIC * PLASTIC));
+        let (u, v) = (at(PLASTIC_NUMBER), at(PLASTIC_NUMBER * PLASTIC_NUMBER));
         let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
         Self([u, v, 1.0 - u - v])
     }
@@ -111,7 +111,7 @@ impl Probe<'_, '_> {
     fn best(&self, shapes: &Arc<Vec<Shape>>, findings: &mut Findings) -> Option<Individual> {
         let mut work = Work::default();
         let mut best = self.descend(self.problem.root(), shapes, DIVE_BOXES, None, &mut work, findings)?;
-        for _ in 0..ROUNDS {
+        for _ in 0..MOST_ROUNDS {
             let before = best.merit;
             for level in 0..best.design_box.len() {
                 let mut design_box = best.design_box.clone();

@@ -13,10 +13,10 @@ use super::rows::{DualPoint, ROUNDING, Rows};
 use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, in_lanes};
 
 /// Approximate number of tree nodes by which the remaining options of a level are described.
-const BOXES: usize = 256;
+const NODES_PER_LEVEL: usize = 256;
 /// Number of dual points (sets of multipliers) that are used to exclude options. Those are taken whose least weighted
 /// sum comes nearest to the sum that the local upper bound allows.
-const STRICTEST: usize = 32;
+const DUAL_POINTS_USED: usize = 32;
 
 /// The dual prices of a level at one dual point, and the greatest price at which an option of the level may still
 /// belong to a member below the local upper bound.
@@ -45,7 +45,7 @@ impl Rows<'_> {
         // The dual points that allow the lowest prices exclude most options. After some dozens of dual points, a
         // further one hardly excludes enough options to save the time that it takes.
         strict.sort_by(|a, b| a.0.total_cmp(&b.0));
-        strict.truncate(STRICTEST);
+        strict.truncate(DUAL_POINTS_USED);
         let levels = self.problem.level_pieces.iter().enumerate();
         levels
             .map(|(level, &piece)| {
@@ -70,13 +70,13 @@ impl Rows<'_> {
             Part::Drives { tree, .. } => {
                 let asked = self.work.least_demands[piece].as_ref();
                 let gears = afforded.first().map_or(&[][..], |(price, _)| &price.joint);
-                tree.kept(node, BOXES, |drives| {
+                tree.kept(node, NODES_PER_LEVEL, |drives| {
                     asked.is_none_or(|asked| drives.may_hold(asked))
                         && !in_lanes(DrivesCost { drives, gears, prices })
                 })
             }
             Part::Links { tree, .. } => {
-                tree.kept(node, BOXES, |links| !in_lanes(LinksCost { links, prices }))
+                tree.kept(node, NODES_PER_LEVEL, |links| !in_lanes(LinksCost { links, prices }))
             }
             _ => Vec::new(),
         }
@@ -139,7 +139,7 @@ impl LaneWork for DrivesCost<'_> {
     fn run<V: Lanes>(self) -> bool {
         let Self { drives, gears, prices } = self;
         let mut ends = GearStates::default();
-        let mut left = [V::zero(); STRICTEST / LANES];
+        let mut left = [V::zero(); DUAL_POINTS_USED / LANES];
         let tilt_stiffness = V::splat(stiffness_of(drives.tilt_rad_per_nm[0]));
         for (left, eight) in left.iter_mut().zip(prices) {
             let of_mass = least::<V>(&eight.inertia[inertia::MASS], drives.mass_kg);

@@ -18,9 +18,9 @@ const MOST_SHAPES: usize = 3;
 const MOST_TO_REDUCE: usize = 8;
 /// The search for multipliers stops if the value of the matrix game, which limits what any multipliers can prove,
 /// exceeds the value of the best dual point so far by at most this much (in the scale of the rows).
-const SETTLED: f64 = 1e-4;
+const VALUE_TOLERANCE: f64 = 1e-4;
 /// Least weight of a relaxed design in the mixture. A smaller weight is due to rounding.
-const SHARE: f64 = 1e-9;
+const LEAST_MIXTURE_WEIGHT: f64 = 1e-9;
 
 /// The options, branchings and candidates that remain of a region after it was bounded.
 pub(super) struct Survivors {
@@ -70,8 +70,11 @@ impl Problem<'_> {
         rows.refute_one_by_one(design_box, below, &mut proofs);
         let joined = below.join()?;
         let Proofs { points, members } = proofs;
-        let mixed: Vec<(&RelaxedDesign, f64)> =
-            members.iter().zip(game.mix.iter().copied()).filter(|(_, share)| *share > SHARE).collect();
+        let mixed: Vec<(&RelaxedDesign, f64)> = members
+            .iter()
+            .zip(game.mix.iter().copied())
+            .filter(|(_, share)| *share > LEAST_MIXTURE_WEIGHT)
+            .collect();
         let survivors = Survivors {
             options: rows.affordable_options(design_box, &points, &joined)?,
             branchings: rows.branchings(&mixed, &game.weights),
@@ -112,7 +115,7 @@ impl Rows<'_> {
                     to_reduce += usize::from(game.value <= ROUNDING);
                     if proofs.points.len() >= most
                         || to_reduce > MOST_TO_REDUCE
-                        || game.value <= nearest + SETTLED
+                        || game.value <= nearest + VALUE_TOLERANCE
                     {
                         return Some(game);
                     }
@@ -147,7 +150,7 @@ impl Rows<'_> {
         while !alone && let Some(&(nearest, next)) = open.iter().max_by(|a, b| a.0.total_cmp(&b.0)) {
             self.set_lambda(next.lambda().max(joined_lambda), &mut proofs.members);
             let game = self.best_multipliers(&proofs.members, &next);
-            if game.value <= nearest + SETTLED || game.value <= ROUNDING {
+            if game.value <= nearest + VALUE_TOLERANCE || game.value <= ROUNDING {
                 break;
             }
             let point = proofs.add(self, design_box, game.weights);

@@ -31,7 +31,7 @@ use std::sync::Arc;
 /// was excluded.
 const WORTH_IT: f64 = 0.1;
 /// Width of a grid cell for the thinning of incumbents, as a fraction of the slack.
-const THINNED: f64 = 0.45;
+const THINNING_CELL: f64 = 0.45;
 
 /// The options that may belong to a design of a region. The trial shapes and multipliers are those of the larger region
 /// of which this region is a part, until its own are computed.
@@ -68,7 +68,7 @@ pub(super) fn pass_by_regions<'p>(
         state.incumbents.all().iter().map(|o| improved_by_slack(o, slack)).collect();
     // Fewer incumbents leave a larger region open, so nothing is missed. The cells are narrower than the slack, so the
     // gap is still proved.
-    found = thinned(found, THINNED * slack, |o| o);
+    found = thinned(found, THINNING_CELL * slack, |o| o);
     let below = LocalUpperBounds::new(&mut found, problem.limits());
     let (seen_to, mut work) = (state.incumbents.all().len(), Work::default());
     let subproblems = boxes.iter().filter_map(|of| Subproblem::of_box(problem, of, seen_to, &mut work));

@@ -8,7 +8,7 @@
 use rayon::prelude::*;
 
 /// Number of tasks in a round. With more tasks more threads are busy, but the findings of each task become known later.
-const TASKS: usize = 32;
+const TASKS_PER_ROUND: usize = 32;
 
 /// The result of a task: its findings, and the new tasks that it leaves. The last of the new tasks is done first.
 pub(super) struct Done<T, F> {
@@ -29,7 +29,7 @@ pub(super) fn in_rounds<K: Sync, T: Send, F: Send>(
 ) -> Vec<T> {
     let mut tasks = first;
     while !tasks.is_empty() && !stopped() {
-        let round = tasks.split_off(tasks.len().saturating_sub(TASKS));
+        let round = tasks.split_off(tasks.len().saturating_sub(TASKS_PER_ROUND));
         let done: Vec<Done<T, F>> = round.into_par_iter().map(|one| task(known, one)).collect();
         for one in done {
             tasks.extend(one.tasks);

@@ -17,7 +17,7 @@
 //! negative, the weighted sum of the rows then has one too. This is the Lagrangian relaxation of the region;
 //! [`lagrangian`](super::lagrangian) minimizes the sum.
 
-use super::bound::{BoxBound, DesignBox, STARTS};
+use super::bound::{BoxBound, DesignBox, START_SHAPES};
 use super::drives_by_curve::{FeasibleDrives, PricedDrives};
 use super::dual_price::Gear;
 use super::local_upper_bounds::LocalUpperBound;
@@ -214,7 +214,7 @@ impl<'a> Rows<'a> {
         rows.first_mode = rows.scale.len();
         rows.priced = rows.priced_drives();
         for (place, shape) in warm_start.shapes.iter().enumerate() {
-            rows.push_mode(place / STARTS.len(), place % STARTS.len(), shape.clone());
+            rows.push_mode(place / START_SHAPES.len(), place % START_SHAPES.len(), shape.clone());
         }
         rows
     }
@@ -338,7 +338,7 @@ impl<'a> Rows<'a> {
         warm_start.multipliers.extend(&multipliers[..=tips]);
         warm_start.multipliers.resize(1 + tips + kept, 0.0);
         for (m, mode) in self.modes.drain(..).enumerate() {
-            let place = mode.judged * STARTS.len() + mode.start;
+            let place = mode.judged * START_SHAPES.len() + mode.start;
             warm_start.multipliers[1 + tips + place] += multipliers.get(self.first_mode + m).unwrap_or(&0.0);
             warm_start.shapes[place] = mode.shape;
         }

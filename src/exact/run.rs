@@ -32,16 +32,16 @@ use std::time::Instant;
 pub const WORKER_STACK_BYTES: usize = 64 << 20;
 
 /// Number of designs above which a space is searched in passes with less and less slack.
-const LARGE: f64 = 1e9;
+const LARGE_SPACE: f64 = 1e9;
 /// Number of designs above which a space is searched region by region and not box by box.
 pub const VAST: f64 = 1e14;
 /// Number of designs below which a region is searched box by box.
-const FEW: f64 = 1e6;
+const SMALL_REGION: f64 = 1e6;
 /// Number of probes per squared decade of designs: a space of `10^n` designs gets `0.12 n²` probes. More probes shorten
 /// the search only in a large space.
-const PROBES: f64 = 0.12;
+const PROBES_PER_SQUARED_DECADE: f64 = 0.12;
 /// Number of probes per squared decade of designs if the genetic algorithm ([`evolve`]) follows. It is a third of
-/// [`PROBES`].
+/// [`PROBES_PER_SQUARED_DECADE`].
 const PROBES_TO_EVOLVE: f64 = 0.04;
 /// Default of the greatest number of designs that are listed with all their ties. A tie is a design that differs from
 /// another only in drives of equal mass, torsion curve and bearing stiffness.
@@ -117,7 +117,7 @@ impl<'p> Exact<'p> {
             only: None,
             shard: Shard::WHOLE,
             regions_from: VAST,
-            regions_to: FEW,
+            regions_to: SMALL_REGION,
             most_with_ties: MOST_WITH_TIES,
             live: Live::default(),
             journal: Journal::default(),
@@ -139,7 +139,7 @@ impl<'p> Exact<'p> {
     /// changes the time of the search, not its result.
     #[must_use]
     pub fn by_regions_from(self, designs: f64) -> Self {
-        Self { regions_from: designs, regions_to: designs.min(FEW), ..self }
+        Self { regions_from: designs, regions_to: designs.min(SMALL_REGION), ..self }
     }
 
     /// Sets the greatest number of designs up to which every tie is listed. Ties are designs that differ only in drives
@@ -295,7 +295,7 @@ impl<'p> Exact<'p> {
     ) -> Ended {
         let (designs, by_regions) = (whole.designs() as f64, self.is_by_regions(whole));
         // Small spaces need no passes with slack. If designs are given, boxes can be pruned from the start.
-        let in_passes = is_new && (by_regions || designs > LARGE);
+        let in_passes = is_new && (by_regions || designs > LARGE_SPACE);
         let early = live.filter(|_| in_passes).map(|live| Early::new(&self.budget, whole, live));
         let mut begun = self.journal.begun();
         match &mut begun {
@@ -352,7 +352,7 @@ impl<'p> Exact<'p> {
         let tell = |found: &[Objectives], designs: u64| {
             early.into_iter().for_each(|early| early.tell(found, designs));
         };
-        let per_decade = if by_regions { PROBES_TO_EVOLVE } else { PROBES };
+        let per_decade = if by_regions { PROBES_TO_EVOLVE } else { PROBES_PER_SQUARED_DECADE };
         let probes = (per_decade * libm::log10(whole.designs() as f64).powi(2)) as usize;
         let probed = probe(&self.budget, whole, probes, state);
         tell(&state.front(), state.evaluated);

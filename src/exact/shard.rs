@@ -22,7 +22,7 @@ use std::collections::BinaryHeap;
 
 /// Number of subtrees of each shard in a search by boxes. With several small subtrees in each shard, no single shard
 /// gets all the hard ones.
-const SUBTREES: usize = 8;
+const SUBTREES_PER_SHARD: usize = 8;
 /// Number of subtrees of each shard in a search by regions. It is one, because the search of each subtree goes through
 /// all regions.
 const SUBTREES_BY_REGIONS: usize = 1;
@@ -70,7 +70,7 @@ impl<'p> Exact<'p> {
     /// The subtrees of this search: their names and boxes.
     pub(super) fn subtrees(&self, whole: &Problem, by_regions: bool) -> (Vec<String>, Vec<DesignBox>) {
         let Shard { number, of } = self.shard;
-        let each = if by_regions { SUBTREES_BY_REGIONS } else { SUBTREES };
+        let each = if by_regions { SUBTREES_BY_REGIONS } else { SUBTREES_PER_SHARD };
         let most = if self.shard == Shard::WHOLE { 1 } else { of as usize * each };
         let dealt = whole.divided(most).into_iter().skip(number as usize - 1).step_by(of as usize);
         dealt.unzip()

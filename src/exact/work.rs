@@ -68,7 +68,7 @@ pub(super) struct Work {
     /// Buffers of the inverse iteration that improves trial shapes.
     pub(super) shape: ShapeWork,
     /// The trial shape (motion that bounds the lowest mode) with the least Rayleigh quotient, given by the index of its
-    /// judged case and the index of its starting acceleration ([`STARTS`](super::bound::STARTS)).
+    /// judged case and the index of its starting acceleration ([`START_SHAPES`](super::bound::START_SHAPES)).
     pub(super) worst: (usize, usize),
 }
 

@@ -18,7 +18,7 @@ const MASS_OCTAVES: (i32, i32) = (-7, 17);
 const DEFLECTION_OCTAVES: (i32, i32) = (-23, 4);
 /// Smallest relative difference between the lowest modes of a rejected design and of the design that dominates it.
 /// It is far above the rounding errors of the fast model, on which the table works.
-const MARGIN: f64 = 1e-5;
+const MODE_MARGIN: f64 = 1e-5;
 
 /// The table of best frequencies. All threads share it.
 pub(crate) struct Archive {
@@ -54,7 +54,7 @@ impl Archive {
         );
         let (Some(row), Some(column)) = (row, column) else { return 0.0 };
         let best = f32::from_bits(self.best_hz[row * self.columns + column].load(Ordering::Relaxed));
-        f64::from(best) * (1.0 - MARGIN)
+        f64::from(best) * (1.0 - MODE_MARGIN)
     }
 
     /// Enters a design. If two threads write one cell at the same time, the better entry may be lost. The table

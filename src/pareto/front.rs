@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 /// Number of significant decimal digits that count when two objectives are compared. Smaller differences are rounding
 /// errors.
-const DIGITS: i32 = 12;
+const DIGITS_COMPARED: i32 = 12;
 /// If two numbers differ by at least this fraction, they surely differ after rounding to twelve digits.
 const SURELY_APART: f64 = 1e-10;
 
@@ -29,7 +29,7 @@ pub fn rounded(x: f64) -> f64 {
     if x == 0.0 || !x.is_finite() {
         return x;
     }
-    let scale = 10f64.powi(DIGITS - 1 - libm::log10(x.abs()).floor() as i32);
+    let scale = 10f64.powi(DIGITS_COMPARED - 1 - libm::log10(x.abs()).floor() as i32);
     // the scale of numbers below 1e-297 overflows, so they are not rounded
     if scale.is_finite() { (x * scale).round() / scale } else { x }
 }

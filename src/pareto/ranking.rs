@@ -95,12 +95,12 @@ fn sorted<O: Ord + Send>(
 }
 
 const DIGIT_BITS: u32 = 11;
-const DIGITS: usize = 3;
+const DIGITS_COMPARED: usize = 3;
 
 /// Stable radix sort, least significant digit first. A digit that all codes share is skipped.
 fn by_code(mut items: Vec<Coded>) -> Vec<Coded> {
     let digit = |code: u32, place: usize| (code >> (DIGIT_BITS * place as u32)) as usize % (1 << DIGIT_BITS);
-    let mut counts = vec![[0usize; 1 << DIGIT_BITS]; DIGITS];
+    let mut counts = vec![[0usize; 1 << DIGIT_BITS]; DIGITS_COMPARED];
     for item in &items {
         for (place, counts) in counts.iter_mut().enumerate() {
             counts[digit(item.code, place)] += 1;

@@ -36,11 +36,11 @@ use std::cell::OnceCell;
 
 /// An effect is only suspected if it raises the natural logarithm of the evidence by less than this. Such evidence is
 /// not yet strong (Kass and Raftery 1995, table of Bayes factors).
-const WEAK: f64 = 3.0;
+const WEAK_EVIDENCE: f64 = 3.0;
 /// Reason that is written for the verdict `no_gap`.
 const NOTHING_MISSING: &str = "noise and calibration within tolerance explain every reading";
 /// Reason that is written for the verdict `no_gap` if a calibrated factor is outside its tolerance.
-const BEYOND: &str = "noise and calibration explain every reading, but not within tolerance";
+const BEYOND_TOLERANCE: &str = "noise and calibration explain every reading, but not within tolerance";
 
 /// Reconciles the displacements, frequencies and bench readings of a campaign with its arm. Absolute positions and
 /// records are not used here.
@@ -115,10 +115,10 @@ fn sought(campaign: &Campaign, forward: &Forward, nuisance: &Nuisance, few: bool
     candidates
 }
 
-/// Whether the evidence for the best effects is weak: their score exceeds that of the baseline by less than [`WEAK`].
+/// Whether the evidence for the best effects is weak: their score exceeds that of the baseline by less than [`WEAK_EVIDENCE`].
 /// False if there are no effects.
 fn is_weak(selection: &Selection) -> bool {
-    !selection.best.effects.is_empty() && selection.best.score - selection.baseline.score < WEAK
+    !selection.best.effects.is_empty() && selection.best.score - selection.baseline.score < WEAK_EVIDENCE
 }
 
 /// Finds the effects and the noise. If the noise of a channel shows that its readings are in another unit than stated,
@@ -213,7 +213,7 @@ impl Analysis<'_> {
             let shown = if verdict == Verdict::NoGap { &self.baseline } else { &self.best };
             if let Some(text) = caution::beyond_tolerance(fitted::tolerances(shown), &calibrated) {
                 let within = reasons.iter_mut().filter(|reason| *reason == NOTHING_MISSING);
-                within.for_each(|reason| *reason = BEYOND.into());
+                within.for_each(|reason| *reason = BEYOND_TOLERANCE.into());
                 reasons.push(text);
             }
         }

@@ -17,7 +17,7 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SupportedConeT};
 
 /// Number of options that are added to each slot of the solver's program in one step.
-const ADDED: usize = 3;
+const OPTIONS_ADDED: usize = 3;
 
 /// The linear program, and the options over which it is solved.
 pub(super) struct Program {
@@ -121,7 +121,7 @@ impl Program {
         let mut grew = false;
         for (seen, reduced) in self.seen.iter_mut().zip(reduced) {
             let mut order: Vec<usize> = (0..reduced.len()).collect();
-            let most = ADDED.min(order.len());
+            let most = OPTIONS_ADDED.min(order.len());
             // Only the least are needed; a full sort would cost more.
             if most < order.len() {
                 order.select_nth_unstable_by(most, |&a, &b| reduced[a].total_cmp(&reduced[b]));

@@ -9,7 +9,7 @@ use crate::pareto::objectives::Objectives;
 use crate::space::problem::ArmProblem;
 
 /// Greatest number of rounds of solving and dropping options.
-const ROUNDS: usize = 4;
+const MOST_ROUNDS: usize = 4;
 /// Greatest number of solutions of the program in a round. After each solution, trial shapes or options are added.
 const STEPS: usize = 40;
 /// Relative amount by which a required objective is relaxed, as a margin for rounding.
@@ -97,7 +97,7 @@ struct Search<'a> {
 impl Search<'_> {
     /// Alternates between solving and dropping options until nothing changes.
     fn run(&mut self) {
-        for round in 0..ROUNDS {
+        for round in 0..MOST_ROUNDS {
             self.reduce();
             let before: usize = self.parts.alive.iter().map(Vec::len).sum();
             self.solve();

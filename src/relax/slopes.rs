@@ -3,7 +3,7 @@
 use crate::arm::joint_law::{Curve, JointLaw};
 
 /// Relative margin within which a torque counts as being at a break point, because of rounding.
-const NEAR: f64 = 1e-12;
+const ROUNDING: f64 = 1e-12;
 
 /// Least and greatest tangent compliance of a joint with the law `law` \[rad/(N m)\], under torques in the interval
 /// `torque_nm`.
@@ -42,7 +42,7 @@ fn as_it_twists(law: &JointLaw) -> JointLaw {
 
 /// Least and greatest magnitude of a torque in an interval \[N m\].
 fn size_range([low, high]: [f64; 2]) -> [f64; 2] {
-    [low.max(-high).max(0.0) * (1.0 - NEAR), high.max(-low) * (1.0 + NEAR)]
+    [low.max(-high).max(0.0) * (1.0 - ROUNDING), high.max(-low) * (1.0 + ROUNDING)]
 }
 
 /// Least and greatest tangent compliance of a torsion curve at torque magnitudes in an interval \[rad/(N m)\].

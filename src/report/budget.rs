@@ -20,7 +20,7 @@ pub struct Gain {
 impl Gain {
     /// Whether one more kilogram lowers the deflection or raises the lowest mode by more than rounding errors.
     pub fn helps(&self) -> bool {
-        self.mm_per_kg < -NOTHING || self.hz_per_kg > NOTHING
+        self.mm_per_kg < -LEAST_CHANGE_PER_KG || self.hz_per_kg > LEAST_CHANGE_PER_KG
     }
 }
 
@@ -180,7 +180,7 @@ impl PickBudget {
     fn mode_advice(&self, told: &BudgetRow) -> String {
         let rises = self.rows.iter().filter_map(|r| Some((r, r.in_place?.hz_per_kg)));
         let best = rises.max_by(|a, b| a.1.total_cmp(&b.1));
-        best.filter(|(row, hz)| row.piece != told.piece && *hz > NOTHING).map_or(
+        best.filter(|(row, hz)| row.piece != told.piece && *hz > LEAST_CHANGE_PER_KG).map_or(
             String::new(),
             |(row, hz)| {
                 format!(" The lowest mode rises most at {}, by {} Hz/kg.", row.piece, significant(hz, 2))
@@ -203,14 +203,14 @@ impl PickBudget {
 }
 
 /// Changes per kilogram below this are rounding errors \[mm/kg or Hz/kg\].
-const NOTHING: f64 = 1e-6;
+const LEAST_CHANGE_PER_KG: f64 = 1e-6;
 
 /// The change of deflection and lowest mode in words:
 /// `lowers the deflection by 0.021 mm/kg and raises the mode by 0.40 Hz/kg`. The numbers are rates, because a kilogram
 /// may be more than the piece weighs.
 fn effect(gain: &Gain) -> String {
     let part = |change: f64, what: &str, unit: &str| {
-        if change.abs() < NOTHING {
+        if change.abs() < LEAST_CHANGE_PER_KG {
             return format!("does not change the {what}");
         }
         let verb = if change < 0.0 { "lowers" } else { "raises" };
@@ -231,7 +231,7 @@ fn signed(value: f64) -> String {
     if rises { format!("+{text}") } else { text }
 }
 
-const FULL: [&str; 9] = [
+const FULL_HEADERS: [&str; 9] = [
     "piece",
     "mass [kg]",
     "share of deflection [%]",
@@ -242,7 +242,7 @@ const FULL: [&str; 9] = [
     "with it: tip [mm/kg]",
     "mode [Hz/kg]",
 ];
-const NARROW: [&str; 9] =
+const NARROW_HEADERS: [&str; 9] =
     ["piece", "mass kg", "% of tip", "mm/kg", "Hz/kg", "", "next: kg", "mm/kg", "Hz/kg"];
 
 /// The stiffness budget of a pick as a table, with `headers` as the headers of its columns. A column with an empty
@@ -318,7 +318,7 @@ fn opposed(budgets: &[PickBudget]) -> bool {
 pub fn budget_text(budgets: &[PickBudget], width: usize) -> String {
     let Some(pick) = shown(budgets) else { return String::new() };
     let mut out = format!("What one more kilogram buys at each joint and link: {}\n", pick.title());
-    out.push_str(&budget_table(pick, NARROW).to_text());
+    out.push_str(&budget_table(pick, NARROW_HEADERS).to_text());
     out.push_str(&wrap(&pick.advice(), width, ""));
     if let Some(table) = bounds_table(budgets) {
         out.push_str(&format!("\n{}", table.to_text()));
@@ -338,7 +338,7 @@ pub fn budget_markdown(budgets: &[PickBudget]) -> String {
     let mut out = String::from("\n## Stiffness budget\n\n");
     budgets.iter().for_each(|pick| out.push_str(&format!("- {}\n", pick.advice())));
     for pick in budgets {
-        out.push_str(&format!("\n{}:\n\n{}", pick.title(), budget_table(pick, FULL).to_markdown()));
+        out.push_str(&format!("\n{}:\n\n{}", pick.title(), budget_table(pick, FULL_HEADERS).to_markdown()));
     }
     out.push_str(&format!("\n{IN_PLACE_WORDS}\n"));
     if let Some(table) = bounds_table(budgets) {
@@ -354,7 +354,9 @@ pub fn budget_markdown(budgets: &[PickBudget]) -> String {
 pub fn budget_extra(budgets: &[PickBudget]) -> Option<PageSection> {
     let mut tables: Vec<(String, Table)> = budgets
         .iter()
-        .map(|pick| (format!("What one more kilogram buys: {}", pick.title()), budget_table(pick, FULL)))
+        .map(|pick| {
+            (format!("What one more kilogram buys: {}", pick.title()), budget_table(pick, FULL_HEADERS))
+        })
         .collect();
     let mut words: Vec<String> = budgets.iter().map(PickBudget::advice).collect();
     words.push(IN_PLACE_WORDS.into());

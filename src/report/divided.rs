@@ -6,7 +6,7 @@ use crate::arm::load::LoadCase;
 use crate::mechanics::chain::Chain;
 
 /// Smallest part of the lowest mode that is remarked.
-const REMARKED: f64 = 0.005;
+const REMARKED_SHARE: f64 = 0.005;
 
 /// The lowest mode \[Hz\] of an arm in a case, with every tube divided at the bodies on it. `None` if no tube has a body
 /// between its ends.
@@ -22,7 +22,7 @@ pub(crate) fn divided_lowest_hz(arm: &Arm, case: &LoadCase) -> Option<f64> {
 /// `None` if the two differ by little.
 pub(crate) fn too_high(printed_hz: f64, divided_hz: f64) -> Option<String> {
     let part = (printed_hz - divided_hz) / printed_hz;
-    (part > REMARKED).then(|| {
+    (part > REMARKED_SHARE).then(|| {
         format!(
             "lowest mode {} Hz, {} lower than printed, if its tubes are divided at the bodies on them: the inertia of a \
              body twists a part of its tube only",

@@ -18,10 +18,10 @@ const WIDTH_PX: f64 = 900.0;
 const HEIGHT_PX: f64 = 460.0;
 /// An axis whose ends differ by more than this factor is logarithmic. On a linear axis light arms would crowd at
 /// the left.
-pub(crate) const WIDE: f64 = 5.0;
+pub(crate) const LOGARITHMIC_ABOVE: f64 = 5.0;
 /// Of the designs of one front that are closer together than this fraction of each axis, only one is drawn.
-const GRAIN: f64 = 1.0 / 200.0;
-/// Least distance between two markers on the line of best designs of a front, in units of [`GRAIN`].
+const DRAWN_DISTANCE: f64 = 1.0 / 200.0;
+/// Least distance between two markers on the line of best designs of a front, in units of [`DRAWN_DISTANCE`].
 const MARKER_STEPS: f64 = 3.0;
 
 /// Entry of the legend for what has no marker there.
@@ -152,11 +152,11 @@ impl FrontPicture<'_> {
     }
 }
 
-/// An axis for an objective: logarithmic if the values span more than the factor [`WIDE`].
+/// An axis for an objective: logarithmic if the values span more than the factor [`LOGARITHMIC_ABOVE`].
 fn axis(objective: Objective, shown: &[&Design]) -> Axis {
     let values = || shown.iter().map(|d| objective.of(d));
     let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max));
-    let scale = if low > 0.0 && high > WIDE * low { Scale::Log } else { Scale::Linear };
+    let scale = if low > 0.0 && high > LOGARITHMIC_ABOVE * low { Scale::Log } else { Scale::Linear };
     let label = match objective {
         Objective::Deflection => "tip deflection [mm]",
         Objective::Mass => "mass of links and drives [kg]",
@@ -178,7 +178,7 @@ impl Grain {
             let values = || shown.iter().map(|d| place(axis, d));
             (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max))
         });
-        let step = ends.map(|(low, high)| ((high - low) * GRAIN).max(f64::MIN_POSITIVE));
+        let step = ends.map(|(low, high)| ((high - low) * DRAWN_DISTANCE).max(f64::MIN_POSITIVE));
         Self { axes, low: ends.map(|e| e.0), step }
     }
 

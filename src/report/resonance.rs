@@ -7,7 +7,7 @@ use super::number::significant;
 use super::picks::Pick;
 
 /// A warning is given if the cruising speed is within this fraction of the critical speed.
-const NEAR: f64 = 0.15;
+const NEAR_CRITICAL_SPEED: f64 = 0.15;
 
 /// Warnings for the picks of a front in words, one for each joint and pick near resonance.
 pub(crate) fn warnings(front: &FrontTable, picks: &[Pick]) -> Vec<String> {
@@ -19,7 +19,7 @@ fn warning(front: &FrontTable, joint: &str, pick: &Pick) -> Option<String> {
     let number = |what: &str| front.numbers(&format!("{joint}_{what}"))[pick.design.row];
     let (cruising_rpm, critical_rpm) = (number("input_rpm")?, number("critical_rpm")?);
     let apart = cruising_rpm / critical_rpm - 1.0;
-    (apart.abs() < NEAR).then(|| {
+    (apart.abs() < NEAR_CRITICAL_SPEED).then(|| {
         format!(
             "{} ({}): the motor of {joint} cruises at {cruising_rpm:.0} rpm, {} % {} the {critical_rpm:.0} rpm at which its \
              gear excites the lowest mode",

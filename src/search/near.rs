@@ -158,7 +158,7 @@ struct Seeker<'s> {
 }
 
 /// Number of designs that a task collects before it adds them to the shared list.
-pub(crate) const BUFFER: usize = 1 << 12;
+pub(crate) const BUFFERED_DESIGNS: usize = 1 << 12;
 
 /// Collects the near designs that one task finds.
 struct Worker<'s> {
@@ -180,7 +180,7 @@ impl Keep for Worker<'_> {
         }
         self.found += 1;
         self.buffer.push(NearDesign { candidate: Candidate { number, objectives }, shortfall });
-        if self.buffer.len() >= BUFFER {
+        if self.buffer.len() >= BUFFERED_DESIGNS {
             self.hand_over();
         }
     }
@@ -198,7 +198,7 @@ impl Worker<'_> {
         let most = self.seeker.slack.most;
         let mut all = self.seeker.nearest.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         all.append(&mut self.buffer);
-        if all.len() > 2 * most + BUFFER {
+        if all.len() > 2 * most + BUFFERED_DESIGNS {
             keep_nearest(&mut all, most);
         }
     }

@@ -19,7 +19,7 @@ const TASKS: u128 = 512;
 const LEAST_TASKS: u128 = 64;
 /// Largest number of rows in a batch. All rows of a batch are evaluated together, so that each chunk of the row level
 /// is read from memory once for the batch.
-const BATCH: usize = 16;
+const ROWS_PER_BATCH: usize = 16;
 /// Largest number of designs in a batch.
 const BATCH_DESIGNS: usize = 1 << 18;
 
@@ -88,7 +88,7 @@ impl Tasks {
         let Levels { row, inner, .. } = Levels::of(problem);
         let choices = product(inner);
         let (start, rows) = (blocks.start * choices, (blocks.end - blocks.start) * choices);
-        let balanced = (rows / TASKS).max((BATCH as u128).min(rows / LEAST_TASKS));
+        let balanced = (rows / TASKS).max((ROWS_PER_BATCH as u128).min(rows / LEAST_TASKS));
         let each = balanced.min(TASK_DESIGNS / u128::from(row.max(1))).max(1);
         Self { start, rows, each, number: u64::try_from(rows.div_ceil(each)).unwrap_or(u64::MAX) }
     }
@@ -170,7 +170,7 @@ impl<'v, 'p, P: FinishRows, K: Keep> Walker<'v, 'p, P, K> {
             return true;
         }
         let Levels { outer, row: length, inner } = Levels::of(problem);
-        let batch = (BATCH_DESIGNS / length.max(1) as usize).clamp(1, BATCH);
+        let batch = (BATCH_DESIGNS / length.max(1) as usize).clamp(1, ROWS_PER_BATCH);
         // the rows with the same arm outboard follow each other, one for each combination of options inboard
         let choices = product(inner);
         let mut row = rows.start;

@@ -271,14 +271,14 @@ pub(super) fn actuator_stop_of_rotor_nm(drive: &Drive, motion: &JointMotion) -> 
 /// Source: Harmonic Drive AG, manual 1019658, glossary (momentary peaks only in an emergency, their number by the selection
 /// procedure); the formula as in the public program AimanHaidar/harmonic-drive-selector.
 pub(super) fn stops_allowed(gear: &Gear, motion: &JointMotion) -> Option<f64> {
-    const WAVES: f64 = 1e4;
+    const LIFE_WAVES: f64 = 1e4;
     // a study states whole numbers of stops, and speeds are converted to rad/s
     const ROUNDING: f64 = 1e-9;
     if gear.kind != GearKind::StrainWave {
         return None;
     }
     let waves_in_a_stop = 2.0 * input_speed_rpm(gear, motion) / 60.0 * motion.stop_time_s();
-    Some(WAVES / waves_in_a_stop.max(1.0) * (1.0 + ROUNDING))
+    Some(LIFE_WAVES / waves_in_a_stop.max(1.0) * (1.0 + ROUNDING))
 }
 
 /// Whether a gear has no limit for the check `kind`, so that the check is left out.

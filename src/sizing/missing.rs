@@ -7,7 +7,7 @@ use crate::catalog::motor::Motor;
 use crate::catalog::needs::{Lack, words};
 
 /// Number of groups of parts that a message names.
-const NAMED: usize = 4;
+const GROUPS_NAMED: usize = 4;
 /// Number of parts of a group that a message names.
 const NAMED_OF_GROUP: usize = 3;
 
@@ -37,9 +37,9 @@ impl DriveTable<'_> {
         }
         let named = groups
             .iter()
-            .take(NAMED)
+            .take(GROUPS_NAMED)
             .map(|(lacks, names)| format!("{}: {lacks}", first_names(names, NAMED_OF_GROUP)));
-        let more: usize = groups.iter().skip(NAMED).map(|(_, names)| names.len()).sum();
+        let more: usize = groups.iter().skip(GROUPS_NAMED).map(|(_, names)| names.len()).sum();
         let more = (more > 0).then(|| format!("and {more} more parts"));
         (!groups.is_empty()).then(|| named.chain(more).collect::<Vec<_>>().join("; "))
     }

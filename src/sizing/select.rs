@@ -130,13 +130,13 @@ pub struct DriveTable<'c> {
     /// For each step of the ladder, the weakest value of each limit among the drives up to this step. If these limits
     /// do not meet a demand, no drive up to this step does, so the search for the lightest drive starts after it.
     ladder_reach: Vec<DriveLimits>,
-    /// For each flight, which is [`FLIGHT`] successive steps of the ladder, the weakest value of each limit.
+    /// For each flight, which is [`STEPS_OF_FLIGHT`] successive steps of the ladder, the weakest value of each limit.
     ladder_flights: Vec<DriveLimits>,
 }
 
 /// Number of successive steps of the ladder that form a flight. They are skipped together if even the weakest of their
 /// limits do not meet a demand.
-const FLIGHT: usize = 8;
+const STEPS_OF_FLIGHT: usize = 8;
 
 /// The ladder: the drives that can be the lightest one for some demand, lightest first.
 #[derive(Clone, Copy)]
@@ -148,13 +148,14 @@ pub(super) struct Ladder<'t> {
 }
 
 impl<'t> Ladder<'t> {
-    /// The steps of the ladder from `start` on, in flights of [`FLIGHT`] steps: the weakest limits of each flight, and
+    /// The steps of the ladder from `start` on, in flights of [`STEPS_OF_FLIGHT`] steps: the weakest limits of each flight, and
     /// the range of its steps.
     #[inline(always)]
     pub(super) fn flights_from(self, start: usize) -> impl Iterator<Item = (&'t DriveLimits, Range<usize>)> {
-        let flights = self.flights.iter().enumerate().skip(start / FLIGHT);
-        flights
-            .map(move |(k, most)| (most, (k * FLIGHT).max(start)..((k + 1) * FLIGHT).min(self.limits.len())))
+        let flights = self.flights.iter().enumerate().skip(start / STEPS_OF_FLIGHT);
+        flights.map(move |(k, most)| {
+            (most, (k * STEPS_OF_FLIGHT).max(start)..((k + 1) * STEPS_OF_FLIGHT).min(self.limits.len()))
+        })
     }
 }
 
@@ -242,7 +243,7 @@ impl<'c> DriveTable<'c> {
             if self.is_covered(&limits) {
                 continue;
             }
-            if self.ladder.len().is_multiple_of(FLIGHT) {
+            if self.ladder.len().is_multiple_of(STEPS_OF_FLIGHT) {
                 self.ladder_flights.push(limits);
             } else if let Some(most) = self.ladder_flights.last_mut() {
                 *most = most.max(&limits);
@@ -256,7 +257,7 @@ impl<'c> DriveTable<'c> {
     /// Whether some step of the ladder has no limit that is stricter than the same one of `limits`. No step of a flight
     /// is such a step if the weakest limits of the flight are not.
     fn is_covered(&self, limits: &DriveLimits) -> bool {
-        let flights = self.ladder_flights.iter().zip(self.ladder_limits.chunks(FLIGHT));
+        let flights = self.ladder_flights.iter().zip(self.ladder_limits.chunks(STEPS_OF_FLIGHT));
         let mut near = flights.filter(|(most, _)| most.cover(limits)).flat_map(|(_, flight)| flight);
         near.any(|lighter| lighter.cover(limits))
     }

@@ -52,7 +52,7 @@ pub struct StatedDemand {
 
 /// Relative tolerance within which the speed of a phase counts as half the speed of a neighbouring phase. Data sheets and
 /// worked examples print speeds with two or three digits.
-const ROUNDED: f64 = 0.05;
+const SPEED_TOLERANCE: f64 = 0.05;
 
 impl StatedDuty {
     /// Duration of the cycle \[s\].
@@ -100,7 +100,9 @@ impl StatedDuty {
         let count = self.phases.len();
         let is_half = |phase: &StatedPhase, of: &StatedPhase| {
             let full = of.speed_rpm.abs();
-            full > 0.0 && phase.time_s > 0.0 && (2.0 * phase.speed_rpm.abs() / full - 1.0).abs() < ROUNDED
+            full > 0.0
+                && phase.time_s > 0.0
+                && (2.0 * phase.speed_rpm.abs() / full - 1.0).abs() < SPEED_TOLERANCE
         };
         let ramp = |phase: &StatedPhase, of: &StatedPhase| of.speed_rpm.abs() * RAD_S_PER_RPM / phase.time_s;
         let of_phase = |(i, phase): (usize, &StatedPhase)| {

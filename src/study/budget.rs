@@ -34,7 +34,7 @@ use rayon::prelude::*;
 
 /// Fraction by which mass and stiffness of a piece are raised and lowered to find the effect of one more kilogram *in
 /// place*.
-const STEP: f64 = 1e-3;
+const MASS_STEP: f64 = 1e-3;
 /// Largest mass that a *next part* may add, as a fraction of the arm's mass.
 const MOST_OF_ARM: f64 = 0.25;
 
@@ -203,14 +203,14 @@ impl Shares {
 }
 
 /// Change of deflection and lowest mode per kilogram if mass and stiffness of the element with the index `piece` grow
-/// in proportion. It is a central difference, with the element made lighter and heavier by [`STEP`].
+/// in proportion. It is a central difference, with the element made lighter and heavier by [`MASS_STEP`].
 fn in_place(arm: &Arm, piece: usize, cases: &[LoadCase]) -> Gain {
     let mass_kg = arm.chain[piece].mass_kg();
     let with = |step: f64| Objectives {
         mass_kg: arm.mass_kg() + step * mass_kg,
         ..objectives_with(arm, cases, |structure| grow(&mut structure.pieces[piece], &arm.chain[piece], step))
     };
-    gain(&with(-STEP), &with(STEP))
+    gain(&with(-MASS_STEP), &with(MASS_STEP))
 }
 
 /// Increases mass and stiffness of `piece` by the fraction `step`, and also the tilting stiffness of a joint's bearing.

@@ -29,12 +29,12 @@ use std::time::Instant;
 const ROUNDING: f64 = 1e-6;
 /// Largest relative difference that is allowed between an objective that a row states and the same objective by the
 /// full model.
-const AGREE: f64 = 1e-9;
+const AGREEMENT: f64 = 1e-9;
 /// Part of the claimed gap by which two designs may differ so that one of them may represent the other. The search for
 /// missing designs then reports only one of such designs.
-const APART: f64 = 0.45;
+const PART_OF_GAP: f64 = 0.45;
 /// Largest number of faults of one kind that are listed one by one.
-const LISTED: usize = 10;
+const FAULTS_LISTED: usize = 10;
 
 /// The result of checking a finished front.
 #[derive(Debug, Clone, PartialEq)]
@@ -199,7 +199,7 @@ fn look_for_missing(
     let unseen = conditions(judge.question()).err();
     let (designs, boxes, open, lacks_ties) = match unseen {
         None => {
-            let settings = Settings { apart: APART * front.gap, ..Default::default() };
+            let settings = Settings { apart: PART_OF_GAP * front.gap, ..Default::default() };
             let keep = |state: &dyn Fn() -> Vec<u8>| {
                 let due = resume.filter(|resume| resume.keeper.is_due());
                 due.into_iter().for_each(|resume| resume.keeper.keep(&state()));
@@ -250,7 +250,8 @@ fn judge_rows(judge: &Judge, rows: &[Row], problem: &ArmProblem, faults: &mut Ve
             return Some(format!("design {id}: by the check's own drives and thresholds it does not hold"));
         };
         let told = row.design.design.objectives.minimized();
-        let differs = told.iter().zip(objectives.minimized()).any(|(a, b)| (a - b).abs() > AGREE * b.abs());
+        let differs =
+            told.iter().zip(objectives.minimized()).any(|(a, b)| (a - b).abs() > AGREEMENT * b.abs());
         differs.then(|| format!("design {id}: the check's own arm gives {objectives:?}"))
     };
     let found: Vec<String> = rows.par_iter().filter_map(fault).collect();
@@ -297,7 +298,7 @@ fn compare_rows(
 
 fn agree(a: &str, b: &str) -> bool {
     match (a.parse::<f64>(), b.parse::<f64>()) {
-        (Ok(a), Ok(b)) => (a - b).abs() <= AGREE * b.abs(),
+        (Ok(a), Ok(b)) => (a - b).abs() <= AGREEMENT * b.abs(),
         _ => a == b,
     }
 }
@@ -364,8 +365,8 @@ fn missing(
 /// Appends the first few of the faults `found` to `faults`, and then the number of the others. `what` are words for
 /// these faults, in the plural.
 fn list(faults: &mut Vec<String>, found: Vec<String>, what: &str) {
-    let more = found.len().saturating_sub(LISTED);
-    faults.extend(found.into_iter().take(LISTED));
+    let more = found.len().saturating_sub(FAULTS_LISTED);
+    faults.extend(found.into_iter().take(FAULTS_LISTED));
     if more > 0 {
         faults.push(format!("and {more} more {what}"));
     }

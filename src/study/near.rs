@@ -170,7 +170,7 @@ fn only_difference<'w>(one: &[String], other: &'w [String]) -> Option<&'w str> {
 }
 
 /// Number of near designs that an HTML page lists.
-const NEAREST: usize = 12;
+const DESIGNS_LISTED: usize = 12;
 
 impl NearFront {
     /// Sentences about the near designs for summaries and the terminal.
@@ -240,7 +240,7 @@ impl NearFront {
         let headers = words.map(|(_, header)| Column::left(header)).into_iter();
         let mut nearest = Table::new(headers.chain(numbers.map(|(_, h)| Column::right(h))).collect());
         let cell = |row: &[String], name: &str| self.table.column(name).map_or("", |c| &row[c]).to_string();
-        for row in self.table.rows.iter().take(NEAREST) {
+        for row in self.table.rows.iter().take(DESIGNS_LISTED) {
             let number = |(name, _): (&str, &str)| {
                 let cell = cell(row, name);
                 cell.parse().map_or(cell, |x| significant(x, 4))

@@ -52,7 +52,7 @@ pub(super) fn omissions(space: &DesignSpace) -> Vec<String> {
 /// Ratings of actuators that decide whether they hold and how far the arm deflects.
 const OF_ACTUATORS: [&str; 2] = ["rated_torque_nm", "tilting_stiffness_nm_per_rad"];
 /// Number of actuators that the remark on their ratings names.
-const NAMED: usize = 3;
+const ACTUATORS_NAMED: usize = 3;
 
 /// A sentence on the actuators that the joints may have and of which a rating was not seen as it is used; `None` if there
 /// are none.
@@ -71,7 +71,7 @@ pub(super) fn actuators_remark(space: &DesignSpace, catalogs: &Catalogs) -> Opti
         format!(
             "The rated torque or the tilting stiffness of {} is not the vendor's figure for this use: motor heat and \
              deflection may be worse. Their notes say why (armwright catalog show --part NAME).",
-            first_names(&names, NAMED)
+            first_names(&names, ACTUATORS_NAMED)
         )
     })
 }

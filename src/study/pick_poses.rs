@@ -21,7 +21,7 @@ use serde_json::{Map, Value, json};
 /// Key of this report in `run.json`.
 pub(crate) const KEY: &str = "worst_poses";
 /// Threshold: a pose is reported if it is worse than the judged cases by more than this fraction.
-const WORSE: f64 = 0.02;
+const WORSE_BY: f64 = 0.02;
 /// Remark on what this search for poses leaves out.
 const LEFT_OUT: &str = "Not modelled in these poses: an arm that passes through itself, its base or the floor. Drives and stresses are \
                         checked in the sizing poses only. The poses were found by a search; worse ones are not excluded.";
@@ -111,9 +111,9 @@ impl PickPoses {
     }
 
     /// Those of the two worst poses (for deflection and for lowest mode) in which the objective is worse than in the
-    /// judged cases by more than [`WORSE`].
+    /// judged cases by more than [`WORSE_BY`].
     fn worse(&self) -> impl Iterator<Item = (Objective, f64, &WorstPose)> {
-        self.both().into_iter().filter(|(_, _, pose)| pose.worse() > WORSE)
+        self.both().into_iter().filter(|(_, _, pose)| pose.worse() > WORSE_BY)
     }
 
     fn sentence(
@@ -171,7 +171,7 @@ impl PicksInPoses {
     }
 
     /// A sentence for each pick and each objective (deflection, lowest mode) that is worse in some pose than in the
-    /// judged cases by more than [`WORSE`].
+    /// judged cases by more than [`WORSE_BY`].
     fn worse(&self) -> Vec<String> {
         let driven = self.driven();
         let of_pick = |of: &PickPoses| {
@@ -187,12 +187,12 @@ impl PicksInPoses {
             true => format!(
                 "No pose within the ranges of the joints ({ranges}) was found in which a pick is more than {} worse than \
                  in the judged cases.",
-                percent(100.0 * WORSE, 0)
+                percent(100.0 * WORSE_BY, 0)
             ),
             false => format!(
                 "Picks that are more than {} worse in another pose within the ranges of the joints ({ranges}) than in \
                  the judged cases:",
-                percent(100.0 * WORSE, 0)
+                percent(100.0 * WORSE_BY, 0)
             ),
         }
     }

@@ -13,13 +13,13 @@ use rayon::prelude::*;
 /// sequence.
 const MOST_CORNERS: usize = 1024;
 /// Number of poses between the corners.
-const SPREAD: usize = 512;
+const POSES_BETWEEN_CORNERS: usize = 512;
 /// Number of poses from which a compass search (moves along one joint at a time) starts.
-const STARTS: usize = 6;
+const COMPASS_STARTS: usize = 6;
 /// Smallest distance between two starting poses: they differ by at least this angle in some joint \[deg\].
 const APART_DEG: f64 = 40.0;
 /// Number of coarse searches that are continued with fine steps.
-const FOLLOWED: usize = 2;
+const FINE_SEARCHES: usize = 2;
 /// Step sizes of a coarse search, one after the other \[deg\].
 const COARSE_DEG: [f64; 3] = [24.0, 12.0, 6.0];
 /// Step sizes of a fine search, one after the other \[deg\].
@@ -27,7 +27,7 @@ const FINE_DEG: [f64; 5] = [6.0, 2.0, 0.7, 0.3, 0.1];
 /// Largest number of moves with one step size. After this many the search continues with the next smaller step.
 const MOST_MOVES: usize = 60;
 /// Smallest relative increase of the score that counts as an improvement; less is rounding.
-const RISE: f64 = 1e-9;
+const LEAST_RISE: f64 = 1e-9;
 /// Bases of Halton's sequence, one for each joint.
 const PRIMES: [usize; 16] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53];
 
@@ -125,7 +125,7 @@ impl PoseRanges {
     pub(super) fn that_matter<const N: usize>(mut self, values: impl Fn(&[f64]) -> [f64; N]) -> Self {
         const TURNED_DEG: [f64; 2] = [31.7, 123.4];
         let differs =
-            |a: &[f64; N], b: &[f64; N]| a.iter().zip(b).any(|(a, b)| (a - b).abs() > RISE * a.abs());
+            |a: &[f64; N], b: &[f64; N]| a.iter().zip(b).any(|(a, b)| (a - b).abs() > LEAST_RISE * a.abs());
         let matters = |joint: usize| {
             (1..=2).any(|index| {
                 let pose_deg = self.spread(index);
@@ -158,7 +158,7 @@ impl PoseRanges {
             }
             pose_deg
         };
-        (0..count).map(corner).chain((1..=SPREAD).map(|index| self.spread(index))).collect()
+        (0..count).map(corner).chain((1..=POSES_BETWEEN_CORNERS).map(|index| self.spread(index))).collect()
     }
 
     /// The pose within the ranges that is nearest to `pose_deg`. Joints that do not influence the score are set as near
@@ -179,19 +179,21 @@ impl PoseRanges {
             .collect();
         climbed.sort_by(|a, b| b.score.total_cmp(&a.score));
         climbed.dedup_by(|a, b| a.pose_deg == b.pose_deg);
-        climbed.truncate(FOLLOWED);
+        climbed.truncate(FINE_SEARCHES);
         let followed: Vec<Scored> =
             climbed.into_par_iter().map(|start| self.climbed(start, &FINE_DEG, true, &score)).collect();
         followed.into_iter().reduce(|best, other| if other.score > best.score { other } else { best })
     }
 
-    /// The poses of `from` with the highest scores that are at least [`APART_DEG`] apart, at most [`STARTS`] of them.
+    /// The poses of `from` with the highest scores that are at least [`APART_DEG`] apart, at most [`COMPASS_STARTS`] of them.
     fn starts(&self, from: &[Scored]) -> Vec<Scored> {
         let mut order: Vec<&Scored> = from.iter().collect();
         order.sort_by(|a, b| b.score.total_cmp(&a.score));
         let mut out: Vec<Scored> = Vec::new();
         for scored in order {
-            if out.len() < STARTS && out.iter().all(|other| self.apart_deg(other, scored) >= APART_DEG) {
+            if out.len() < COMPASS_STARTS
+                && out.iter().all(|other| self.apart_deg(other, scored) >= APART_DEG)
+            {
                 out.push(scored.clone());
             }
         }
@@ -274,7 +276,7 @@ impl PoseRanges {
             return None;
         }
         let score = score(&pose_deg);
-        (score > from.score + RISE * from.score.abs()).then_some(Scored { pose_deg, score })
+        (score > from.score + LEAST_RISE * from.score.abs()).then_some(Scored { pose_deg, score })
     }
 
     /// The pose with the index `index` in Halton's sequence, within the ranges and in whole degrees.

@@ -18,12 +18,12 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// The bisection of a limit ends when the two ends of its interval differ by no more than this fraction.
-const CLOSE: f64 = 2e-6;
+const BISECTION_TOLERANCE: f64 = 2e-6;
 /// Lower end of the bisection if the stated limit is zero, as a fraction of the value that a design reaches. Bisection
 /// takes geometric means, so it must not start at zero.
-const LEAST: f64 = 1e-12;
+const LEAST_LIMIT: f64 = 1e-12;
 /// A gap so large that any design satisfies it. A search with this gap ends with the first design.
-const ANY: f64 = 1e9;
+const ANY_GAP: f64 = 1e9;
 
 /// Limits that have to be relaxed together, each with the value that is then reached.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,7 +54,7 @@ pub(super) struct Limited<'a> {
 impl Limited<'_> {
     /// Whether some design is feasible if all limits are dropped; `None` if time ran out before this was known.
     pub(super) fn holds_without_limits(&self) -> Option<bool> {
-        match self.find(&Constraints::default(), Quantity::Mass, |search| search.to_gap(ANY)) {
+        match self.find(&Constraints::default(), Quantity::Mass, |search| search.to_gap(ANY_GAP)) {
             Answer::Yes(_) => Some(true),
             Answer::No => Some(false),
             Answer::Unknown => None,
@@ -95,7 +95,11 @@ impl Limited<'_> {
                 Answer::Unknown => return Answer::Unknown,
             };
             // slightly more than the value reached, so that rounding does not exclude the design that reaches it
-            let roomy = if quantity.is_least() { reached / (1.0 + CLOSE) } else { reached * (1.0 + CLOSE) };
+            let roomy = if quantity.is_least() {
+                reached / (1.0 + BISECTION_TOLERANCE)
+            } else {
+                reached * (1.0 + BISECTION_TOLERANCE)
+            };
             quantity.set(&mut constraints, Some(roomy));
             limits.push((quantity, reached));
             is_smallest &= is_least;
@@ -109,7 +113,7 @@ impl Limited<'_> {
         if let Some(objective) = quantity.objective() {
             return self.find(constraints, quantity, |search| search.toward(objective));
         }
-        match self.find(constraints, quantity, |search| search.to_gap(ANY)) {
+        match self.find(constraints, quantity, |search| search.to_gap(ANY_GAP)) {
             Answer::Yes((reached, _)) => Answer::Yes(self.bisected(constraints, quantity, reached)),
             other => other,
         }
@@ -121,12 +125,12 @@ impl Limited<'_> {
         // the cost of a limit rises from the stated limit to the value reached; for lower limits it is the reciprocal
         let cost = |value: f64| if quantity.is_least() { value.recip() } else { value };
         let asked = quantity.asked(&self.space.constraints).unwrap_or_default();
-        let (mut in_vain, mut enough) = (cost(asked).max(cost(reached) * LEAST), cost(reached));
-        while enough > in_vain * (1.0 + CLOSE) {
+        let (mut in_vain, mut enough) = (cost(asked).max(cost(reached) * LEAST_LIMIT), cost(reached));
+        while enough > in_vain * (1.0 + BISECTION_TOLERANCE) {
             let middle = (in_vain * enough).sqrt();
             let mut tried = *constraints;
             quantity.set(&mut tried, Some(cost(middle)));
-            match self.find(&tried, quantity, |search| search.to_gap(ANY)) {
+            match self.find(&tried, quantity, |search| search.to_gap(ANY_GAP)) {
                 Answer::Yes((reached, _)) => enough = cost(reached).min(middle),
                 Answer::No => in_vain = middle,
                 Answer::Unknown => return (cost(enough), false),

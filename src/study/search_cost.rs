@@ -20,7 +20,7 @@ use std::sync::atomic::AtomicBool;
 /// to 50e-9.
 const VISIT_S: f64 = 25e-9;
 /// Time for a design that is excluded early, as a fraction of the time for a feasible design.
-const EXCLUDED: f64 = 0.1;
+const COST_OF_EXCLUDED: f64 = 0.1;
 /// Processor time of an exact search for each box, piece and case \[s\], measured with the built-in studies.
 const BOX_S: f64 = 2.5e-6;
 /// If an exhaustive search takes less than this, it runs without an estimate of the exact search \[s\].
@@ -29,10 +29,10 @@ const QUICK_S: f64 = 10.0;
 /// \[s\].
 const HOPELESS_S: f64 = 1e6;
 /// Largest numbers of designs of the two thinned spaces.
-const THINNED: [f64; 2] = [1e4, 1e5];
+const THINNED_DESIGNS: [f64; 2] = [1e4, 1e5];
 /// Factor by which an exact search must be cheaper to be chosen. An exhaustive search relies on no bounds, and it
 /// counts the designs that each limit excludes.
-const CHEAPER: f64 = 2.0;
+const LEAST_SAVING: f64 = 2.0;
 
 /// Estimated processor times of both searches on one core \[s\].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,9 +52,10 @@ impl SearchCost {
         if !(QUICK_S..HOPELESS_S).contains(&exhaustive_core_s) {
             return Self { exhaustive_core_s, exact_core_s: None };
         }
-        let [small, large] = THINNED.map(|most| Trial::new(&thinned(space, catalogs, most), catalogs));
+        let [small, large] =
+            THINNED_DESIGNS.map(|most| Trial::new(&thinned(space, catalogs, most), catalogs));
         Self {
-            exhaustive_core_s: exhaustive_core_s * (large.held + EXCLUDED * (1.0 - large.held)),
+            exhaustive_core_s: exhaustive_core_s * (large.held + COST_OF_EXCLUDED * (1.0 - large.held)),
             exact_core_s: Some(grown(&small, &large, designs) * each * BOX_S),
         }
     }
@@ -72,11 +73,11 @@ impl SearchCost {
         ))
     }
 
-    /// Whether the exact search is estimated to be cheaper by the factor [`CHEAPER`], or an exhaustive search is ruled
+    /// Whether the exact search is estimated to be cheaper by the factor [`LEAST_SAVING`], or an exhaustive search is ruled
     /// out.
     pub(crate) fn speaks_for_exact(&self) -> bool {
         match self.exact_core_s {
-            Some(exact_core_s) => exact_core_s * CHEAPER < self.exhaustive_core_s,
+            Some(exact_core_s) => exact_core_s * LEAST_SAVING < self.exhaustive_core_s,
             None => self.exhaustive_core_s >= HOPELESS_S,
         }
     }

@@ -38,7 +38,7 @@ use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Number of samples that are computed before they are counted.
-const BATCH: u32 = 256;
+const SAMPLES_PER_BATCH: u32 = 256;
 /// Number of standard deviations within which 95 % of a normal distribution lie.
 const SIGMAS_95: f64 = 1.959_963_984_540_054;
 
@@ -229,7 +229,7 @@ pub fn scatter_front(
     let mut tally = Tally::new(designs.len(), picks.len());
     let mut left = sampling.samples;
     while left > 0 {
-        let batch = left.min(BATCH);
+        let batch = left.min(SAMPLES_PER_BATCH);
         left -= batch;
         let draw = |_| streams.iter_mut().map(|(figure, s)| (figure.clone(), s.factor())).collect();
         let factors: Vec<Factors> = (0..batch).map(draw).collect();

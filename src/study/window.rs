@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 /// Largest amount that is tried, such as a payload \[kg\]. An arm that still holds it is reported as having no limit.
 pub(crate) const MOST_KG: f64 = 1e6;
 /// A bisection for an end of a window stops when its interval is this narrow, relative to the payload.
-const TOLERANCE: f64 = 1e-13;
+const BISECTION_TOLERANCE: f64 = 1e-13;
 /// Payload below which the tolerance does not shrink any more \[kg\].
 const SMALL_KG: f64 = 1e-3;
 
@@ -114,7 +114,7 @@ fn end_between(
     mut fails: Overload,
     overload: &dyn Fn(f64) -> Option<Overload>,
 ) -> (f64, Overload) {
-    while (failed - held).abs() > TOLERANCE * failed.max(held).max(SMALL_KG) {
+    while (failed - held).abs() > BISECTION_TOLERANCE * failed.max(held).max(SMALL_KG) {
         let middle = 0.5 * (held + failed);
         match overload(middle) {
             Some(found) => (failed, fails) = (middle, found),

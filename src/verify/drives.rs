@@ -10,7 +10,7 @@ use super::tree::Tree;
 
 /// For sets of at most this many drives, every drive is compared with the demand. In larger sets only the greatest
 /// ratings of the whole set are compared.
-const FEW: usize = 64;
+const SMALL_SET: usize = 64;
 
 /// The drives that a joint may have, as a list.
 pub(super) struct DriveOptions {
@@ -135,7 +135,7 @@ impl Drives {
     /// Least and greatest numbers of those drives below `node` that may meet a demand of at least `asked`. `None` if no
     /// drive can.
     pub(super) fn holding(&self, node: u32, asked: &Demand) -> Option<DriveRange> {
-        if self.tree.options(node).len() > FEW {
+        if self.tree.options(node).len() > SMALL_SET {
             let (range, ratings) = &self.nodes[node as usize];
             return ratings.hold(asked).then_some(*range);
         }

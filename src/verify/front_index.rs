@@ -3,9 +3,9 @@
 use crate::pareto::objectives::Objectives;
 
 /// Relative difference up to which two objectives count as equal.
-const TIE: f64 = 1e-9;
+const EQUAL_WITHIN: f64 = 1e-9;
 /// A design of the front discards a box only if it is better by this margin in at least one objective (relative).
-const BETTER: f64 = 1e-7;
+const BETTER_BY: f64 = 1e-7;
 
 /// The designs of a front, sorted by mass, in a form in which the highest frequency among the designs up to a given
 /// mass and deflection is found quickly. `blocks` is a Fenwick tree with positions counted from 1. The block at
@@ -57,10 +57,10 @@ impl FrontIndex {
     /// front. The dominating design is no worse in all three objectives, with ties counted in its favour, and better in
     /// one. Zero if the design is dominated at no frequency.
     pub(super) fn beaten_up_to_hz(&self, mass_kg: f64, tip_m: f64) -> f64 {
-        let lighter = self.highest_hz(mass_kg * (1.0 - BETTER), tip_m * (1.0 + TIE));
-        let stiffer = self.highest_hz(mass_kg * (1.0 + TIE), tip_m * (1.0 - BETTER));
-        let as_good = self.highest_hz(mass_kg * (1.0 + TIE), tip_m * (1.0 + TIE));
-        (lighter.max(stiffer) * (1.0 + TIE)).max(as_good * (1.0 - BETTER))
+        let lighter = self.highest_hz(mass_kg * (1.0 - BETTER_BY), tip_m * (1.0 + EQUAL_WITHIN));
+        let stiffer = self.highest_hz(mass_kg * (1.0 + EQUAL_WITHIN), tip_m * (1.0 - BETTER_BY));
+        let as_good = self.highest_hz(mass_kg * (1.0 + EQUAL_WITHIN), tip_m * (1.0 + EQUAL_WITHIN));
+        (lighter.max(stiffer) * (1.0 + EQUAL_WITHIN)).max(as_good * (1.0 - BETTER_BY))
     }
 
     /// Whether some design of the front dominates `design`.

@@ -12,7 +12,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Greatest number of halvings after which a branch is still recorded by itself. Deeper branches are recorded only as
 /// parts of these.
-const DEEPEST: u32 = 16;
+const MOST_HALVINGS: u32 = 16;
 
 /// A function that saves the state of a search, if a save is due. It gets a function that makes the state, and calls it
 /// only in this case.
@@ -48,7 +48,7 @@ impl Branch {
     pub(super) fn halves(self) -> [Self; 2] {
         match self.0 {
             0 => [Self::DEEP; 2],
-            deep if deep >> DEEPEST > 0 => [Self::DEEP; 2],
+            deep if deep >> MOST_HALVINGS > 0 => [Self::DEEP; 2],
             name => [Self(2 * name), Self(2 * name + 1)],
         }
     }
@@ -115,11 +115,11 @@ mod tests {
     fn branches_have_names_of_their_own_down_to_a_depth() {
         let mut level = vec![Branch::ROOT];
         let mut all = BTreeSet::new();
-        for _ in 0..=DEEPEST {
+        for _ in 0..=MOST_HALVINGS {
             all.extend(level.iter().map(|branch| branch.0));
             level = level.into_iter().flat_map(Branch::halves).collect();
         }
-        assert_eq!(all.len(), (1 << (DEEPEST + 1)) - 1);
+        assert_eq!(all.len(), (1 << (MOST_HALVINGS + 1)) - 1);
         assert!(level.iter().all(|branch| *branch == Branch::DEEP));
     }
 

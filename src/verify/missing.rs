@@ -21,7 +21,7 @@ use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 
 /// Number of single designs that are judged together. After each batch, the search checks whether it must stop.
-const BATCH: usize = 4096;
+const DESIGNS_PER_BATCH: usize = 4096;
 /// Largest number of designs up to which all ties are listed. If there are more, one design of each set of ties is
 /// listed.
 const MOST_TIES: f64 = 2e4;
@@ -91,7 +91,7 @@ impl Judge<'_> {
         let designs = halt.designs.lock().unwrap_or_else(PoisonError::into_inner).clone();
         let (designs, ties_listed) = one_by_one(&designs);
         let mut looked = Looked { candidates: Vec::new(), boxes: found.boxes, open: found.open, ties_listed };
-        for batch in designs.chunks(BATCH) {
+        for batch in designs.chunks(DESIGNS_PER_BATCH) {
             match halt.out_of_time() {
                 true => looked.open += batch.len() as u64,
                 false => looked.candidates.extend(self.unbeaten(batch, &index)),

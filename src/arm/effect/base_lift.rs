@@ -1,7 +1,7 @@
 //! `base_lift`: the feet of the base lift off the floor. About world x and y the base is rigid up to a preload
 //! moment, and deflects elastically beyond it.
 
-use super::kind::{Kind, Parameter, Place, RARE, Scale, Scope, Setting, Traits};
+use super::kind::{Kind, Parameter, Place, RARE_PRIOR, Scale, Scope, Setting, Traits};
 use super::subject::Subject;
 use crate::arm::base_lift::BaseLift;
 
@@ -19,7 +19,7 @@ pub(crate) const KIND: Kind = Kind {
     parameters: |_| PARAMETERS,
     apply,
     traits: Traits {
-        odds: RARE,
+        odds: RARE_PRIOR,
         starts,
         is_nonlinear: true,
         screens_at_starts: true,

@@ -1,7 +1,7 @@
 //! `joint_torque`: an undeclared torque on a joint, `a + b sin q + c cos q` with the joint angle q, such as that of a
 //! counterbalance, a cable or a spring. It moves the working point on the torsion curve of the gear.
 
-use super::kind::{Absent, Kind, Needs, Parameter, Place, RARE, Scale, Scope, Setting, Traits};
+use super::kind::{Absent, Kind, Needs, Parameter, Place, RARE_PRIOR, Scale, Scope, Setting, Traits};
 use super::subject::Subject;
 
 const fn torque(name: &'static str) -> Parameter {
@@ -26,7 +26,7 @@ pub(crate) const KIND: Kind = Kind {
             &[("sin_nm", None), ("cos_nm", None)],
             &[("offset_nm", None), ("sin_nm", None), ("cos_nm", None)],
         ],
-        odds: RARE,
+        odds: RARE_PRIOR,
         in_bounds: false,
         starts,
         is_nonlinear: true,

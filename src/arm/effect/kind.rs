@@ -246,7 +246,7 @@ pub(super) const EVERY_CHANNEL: &[Place] = &[
 ];
 
 /// Prior probability of an effect that is seldom met, relative to a usual one, before any reading is considered.
-pub const RARE: f64 = 0.3;
+pub const RARE_PRIOR: f64 = 0.3;
 
 /// Properties of a joint in a campaign, from which an effect at this joint derives the starting points of a fit.
 pub struct Setting<'a> {

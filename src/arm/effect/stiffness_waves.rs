@@ -1,7 +1,7 @@
 //! `stiffness_waves`: the stiffness of a joint varies once and twice in each turn,
 //! `k(q) = k / (1 + a sin(q + p) + b sin(2 q + r))`, because teeth, bearings or housings are not perfectly round.
 
-use super::kind::{Absent, Kind, Needs, Parameter, Place, RARE, Scale, Scope, Setting, Traits};
+use super::kind::{Absent, Kind, Needs, Parameter, Place, RARE_PRIOR, Scale, Scope, Setting, Traits};
 use super::subject::Subject;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -36,7 +36,7 @@ pub(crate) const KIND: Kind = Kind {
             &[("twice", None), ("phases_rad", Some(1))],
             &[("once", None), ("twice", None), ("phases_rad", None)],
         ],
-        odds: RARE,
+        odds: RARE_PRIOR,
         in_bounds: false,
         starts,
         is_nonlinear: true,

@@ -1,7 +1,7 @@
 //! `test_mass`: an additional mass at the tip in one kind of test, such as accelerometers and their cables.
 
 use super::channel::Channel;
-use super::kind::{Kind, Measure, Parameter, Place, RARE, Scale, Scope, Traits};
+use super::kind::{Kind, Measure, Parameter, Place, RARE_PRIOR, Scale, Scope, Traits};
 use super::subject::Subject;
 use nalgebra::Vector3;
 
@@ -28,7 +28,7 @@ pub(crate) const KIND: Kind = Kind {
         // static readings are differences to the unloaded arm, which has this mass too, so they cannot show it
         sought_in: &[Channel::Modal],
         variants: &[&[("mass_kg", None)], &[("mass_kg", None), ("cg_m", None)]],
-        odds: RARE,
+        odds: RARE_PRIOR,
         starts: |setting| vec![(0..setting.values_at_one.len()).map(|i| f64::from(i == 0)).collect()],
         ..Traits::USUAL
     },

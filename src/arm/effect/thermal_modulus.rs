@@ -1,7 +1,7 @@
 //! `thermal_modulus`: the moduli of all links change with the temperature of the arm, or with the order of the tests
 //! while it warms up.
 
-use super::kind::{Kind, Needs, Parameter, Place, RARE, Scale, Scope, Setting, Traits};
+use super::kind::{Kind, Needs, Parameter, Place, RARE_PRIOR, Scale, Scope, Setting, Traits};
 use super::subject::Subject;
 
 /// Name of the parameter for the relative change of the moduli per kelvin. It needs the temperature of each reading.
@@ -36,7 +36,7 @@ pub(crate) const KIND: Kind = Kind {
     traits: Traits {
         needs: Needs::BendingLink,
         variants: &[&[(PER_K, None)], &[("change", None), (ROWS, None)]],
-        odds: RARE,
+        odds: RARE_PRIOR,
         starts,
         is_nonlinear: true,
         screens_at_starts: true,

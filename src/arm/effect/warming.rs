@@ -14,7 +14,7 @@ pub struct Moment {
 pub(crate) const DRAWN_AT_C: f64 = 20.0;
 /// Smallest factor on a modulus or a compliance. A law that is extrapolated far beyond its readings must not make the
 /// factor zero or negative.
-const LEAST: f64 = 0.05;
+const LEAST_FACTOR: f64 = 0.05;
 
 /// How the compliance of a joint changes in the course of the tests of one channel: a gear warms up, bolts work loose.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,12 +31,12 @@ pub struct Softening {
 impl Softening {
     /// Factor on the compliance of the joint in a row of the channel's file, counted from 0.
     pub fn factor(&self, row: usize) -> f64 {
-        (1.0 + self.change * done(row, self.rows)).max(LEAST)
+        (1.0 + self.change * done(row, self.rows)).max(LEAST_FACTOR)
     }
 
     /// Factor on the compliance of the joint when the reference of the displacement in row `row` was read.
     pub fn reference_factor(&self, row: usize) -> f64 {
-        (1.0 + self.change * self.reference * done(row, self.rows)).max(LEAST)
+        (1.0 + self.change * self.reference * done(row, self.rows)).max(LEAST_FACTOR)
     }
 }
 
@@ -72,6 +72,6 @@ impl Warming {
     /// Factor on Young's modulus and the shear modulus at the time of a reading.
     pub fn factor(&self, when: &Moment) -> f64 {
         let warmer_k = when.temperature_c.map_or(0.0, |c| c - DRAWN_AT_C);
-        (1.0 + self.per_k * warmer_k + self.change * done(when.row, self.rows)).max(LEAST)
+        (1.0 + self.per_k * warmer_k + self.change * done(when.row, self.rows)).max(LEAST_FACTOR)
     }
 }

@@ -20,23 +20,23 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Probability that the parameter lies beyond the interval, at each of its two ends.
-const TAIL: f64 = 0.025;
+const TAIL_PROBABILITY: f64 = 0.025;
 /// The lower end of the interval is `None` if the probability density at the lower limit of the parameter's range is
 /// more than this fraction of its maximum. The same holds for the upper end and the upper limit. The fraction
 /// corresponds to a rise of the objective by 3.84: exp(-3.84 / 2).
-const OPEN: f64 = 0.146;
+const OPEN_END_DENSITY: f64 = 0.146;
 /// A pair of nodes (one value for each break point) is ruled out if its objective exceeds the smallest objective found
 /// by more than this. The probability density of the pair is then below a thousandth of the maximum: exp(-14 / 2).
 const RULED_OUT: f64 = 14.0;
 /// First step from the best fit to the next node, as a multiple of the standard deviation of the break point.
-const STEP: f64 = 0.5;
+const FIRST_STEP: f64 = 0.5;
 /// Smallest and largest value of the first step from the best fit to the next node \[ln of the torque\].
 const STEPS: (f64, f64) = (0.004, 0.08);
 /// Ratio of each step between nodes to the step before it, going outwards from the best fit.
-const GROWTH: f64 = 1.4;
+const STEP_RATIO: f64 = 1.4;
 /// Spacing of a coarse grid of node pairs, counted in nodes from the best fit. All pairs of this grid are fitted, so
 /// that no separate peak of the density is missed.
-const COARSE: usize = 3;
+const COARSE_SPACING: usize = 3;
 /// Largest number of steps, and tolerance, of a fit in which both break points are fixed.
 const HELD: Effort = Effort { steps: 4, tolerance: 0.05 };
 
@@ -81,9 +81,10 @@ impl Axis {
     fn new(best: &Fit, parameter: usize, deviation: f64) -> Self {
         let (low, high) = best.model.bounds(parameter);
         let at = best.point.u[parameter].clamp(low, high);
-        let first = (STEP * deviation).clamp(STEPS.0, STEPS.1);
+        let first = (FIRST_STEP * deviation).clamp(STEPS.0, STEPS.1);
         let outward = |side: f64, limit: f64| {
-            let offsets = (1..).map(move |n| at + side * first * (GROWTH.powi(n) - 1.0) / (GROWTH - 1.0));
+            let offsets =
+                (1..).map(move |n| at + side * first * (STEP_RATIO.powi(n) - 1.0) / (STEP_RATIO - 1.0));
             let mut nodes: Vec<f64> = offsets.take_while(|v| (limit - v) * side > 0.0).collect();
             if limit != at {
                 nodes.push(limit);
@@ -120,7 +121,8 @@ fn explore(forward: &Forward, best: &Fit, weights: &Weights, axes: &[Axis; 2]) -
     let centre = centre.map(|c| c.unwrap_or(0));
     // the second break point is above the first
     let ordered = |n: &Nodes| axes[0].nodes[n[0]] < axes[1].nodes[n[1]];
-    let coarse = |k: usize| (0..axes[k].nodes.len()).filter(move |n| n.abs_diff(centre[k]) % COARSE == 0);
+    let coarse =
+        |k: usize| (0..axes[k].nodes.len()).filter(move |n| n.abs_diff(centre[k]) % COARSE_SPACING == 0);
     let all = coarse(0).flat_map(|a| coarse(1).map(move |b| [a, b]));
     let mut frontier: Vec<(Nodes, Vec<f64>)> =
         all.filter(ordered).map(|nodes| (nodes, best.point.u.clone())).collect();
@@ -233,10 +235,10 @@ impl Posterior {
             }
             nodes.nodes[masses.len() - 1]
         };
-        let open = |n: usize| density(n) > OPEN * peak;
+        let open = |n: usize| density(n) > OPEN_END_DENSITY * peak;
         Interval {
-            low: (!open(0)).then(|| quantile(TAIL)),
-            high: (!open(masses.len() - 1)).then(|| quantile(1.0 - TAIL)),
+            low: (!open(0)).then(|| quantile(TAIL_PROBABILITY)),
+            high: (!open(masses.len() - 1)).then(|| quantile(1.0 - TAIL_PROBABILITY)),
         }
     }
 
@@ -271,10 +273,10 @@ impl Posterior {
             }
             0.5 * (from + to)
         };
-        let open = |limit: f64| density(limit) > OPEN * peak;
+        let open = |limit: f64| density(limit) > OPEN_END_DENSITY * peak;
         Interval {
-            low: (!open(low)).then(|| quantile(TAIL)),
-            high: (!open(high)).then(|| quantile(1.0 - TAIL)),
+            low: (!open(low)).then(|| quantile(TAIL_PROBABILITY)),
+            high: (!open(high)).then(|| quantile(1.0 - TAIL_PROBABILITY)),
         }
     }
 }

@@ -19,9 +19,9 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Residual beyond which Huber's loss grows linearly \[standard deviations\].
-const HUBER: f64 = 4.0;
+const HUBER_SIGMAS: f64 = 4.0;
 /// Step of a parameter by which numerical derivatives are computed, in the scaled parameters `u`.
-const STEP: f64 = 1e-4;
+const DERIVATIVE_STEP: f64 = 1e-4;
 
 /// Weights of the data in a fit: which data are used, and how much their declared standard deviations are enlarged.
 #[derive(Debug, Clone)]
@@ -131,14 +131,14 @@ pub fn objective(forward: &Forward, model: &Model, u: &[f64], predicted: &[f64],
 
 fn loss(r: f64) -> f64 {
     let size = r.abs();
-    if size <= HUBER { r * r } else { 2.0 * HUBER * size - HUBER * HUBER }
+    if size <= HUBER_SIGMAS { r * r } else { 2.0 * HUBER_SIGMAS * size - HUBER_SIGMAS * HUBER_SIGMAS }
 }
 
 /// Derivatives of all predicted readings at the point `at`: one row per datum, one column per parameter.
 pub fn jacobian(forward: &Forward, model: &Model, at: &Point) -> DMatrix<f64> {
     let stepped = |p: usize| {
         let (_, high) = model.bounds(p);
-        let step = if at.u[p] + STEP > high { -STEP } else { STEP };
+        let step = if at.u[p] + DERIVATIVE_STEP > high { -DERIVATIVE_STEP } else { DERIVATIVE_STEP };
         let mut u = at.u.clone();
         u[p] += step;
         (step, model.coefficients(forward, &u))
@@ -206,8 +206,9 @@ pub fn normal(
     let (mut factors, mut right) = (Vec::with_capacity(count), Vec::with_capacity(count));
     for ((datum, predicted), weight) in forward.data.iter().zip(predicted).zip(&weights.inverse) {
         let residual = (predicted - datum.value) * weight;
-        // iteratively reweighted least squares: the weight of a residual above HUBER is HUBER / |r|
-        let robust = if residual.abs() <= HUBER { 1.0 } else { (HUBER / residual.abs()).sqrt() };
+        // iteratively reweighted least squares: the weight of a residual above HUBER_SIGMAS is HUBER_SIGMAS / |r|
+        let robust =
+            if residual.abs() <= HUBER_SIGMAS { 1.0 } else { (HUBER_SIGMAS / residual.abs()).sqrt() };
         factors.push(robust * weight);
         right.push(residual * robust);
     }
@@ -221,7 +222,7 @@ pub fn normal(
 }
 
 /// Number of rows (data) whose products are computed together. These rows then stay in the processor's cache.
-const BLOCK: usize = 256;
+const ROWS_PER_BLOCK: usize = 256;
 
 /// Derivatives of the predicted readings (rows) with respect to parameters (columns), as several matrices whose
 /// columns follow one another. So columns that many models have in common need not be copied for each model.
@@ -239,8 +240,8 @@ impl Slopes<'_> {
     /// Linearized changes of the predicted readings, one per datum, if the parameters change by `step`.
     pub fn times(&self, step: &DVector<f64>) -> Vec<f64> {
         let mut out = DVector::zeros(self.rows());
-        for first in (0..self.rows()).step_by(BLOCK) {
-            let count = BLOCK.min(self.rows() - first);
+        for first in (0..self.rows()).step_by(ROWS_PER_BLOCK) {
+            let count = ROWS_PER_BLOCK.min(self.rows() - first);
             let mut at = 0;
             for part in self.0 {
                 let own = step.rows(at, part.ncols());
@@ -256,9 +257,9 @@ impl Slopes<'_> {
     fn products(&self, row_factors: &DVector<f64>, right: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
         let width = self.columns();
         let (mut gradient, mut curvature) = (DMatrix::zeros(width, 1), DMatrix::zeros(width, width));
-        let block = BLOCK.min(self.rows());
+        let block = ROWS_PER_BLOCK.min(self.rows());
         let mut scaled = DMatrix::zeros(block, width);
-        for first in (0..self.rows()).step_by(BLOCK) {
+        for first in (0..self.rows()).step_by(ROWS_PER_BLOCK) {
             let count = block.min(self.rows() - first);
             let factors = row_factors.rows(first, count);
             let own = self.0.iter().flat_map(|part| part.column_iter());
@@ -517,7 +518,7 @@ mod tests {
 
     #[test]
     fn slopes_side_by_side_are_one_matrix() {
-        let rows = 2 * BLOCK + 11;
+        let rows = 2 * ROWS_PER_BLOCK + 11;
         let whole = DMatrix::from_fn(rows, 5, |i, j| ((7 * i + 3 * j) % 11) as f64 - 5.0);
         let (left, right) = (whole.columns(0, 3).into_owned(), whole.columns(3, 2).into_owned());
         let parts = [&left, &right];

@@ -12,7 +12,7 @@ use crate::reconcile::model::parameters::Model;
 use rayon::prelude::*;
 
 /// Number of folds into which the poses are divided. One fold is held out at a time.
-const HANDS: usize = 4;
+const FOLDS: usize = 4;
 
 /// Root mean squares of held-out residuals, in standard deviations. These are the declared standard deviations times
 /// the factor by which the readings scatter more than declared, unless a field says otherwise.
@@ -34,7 +34,7 @@ pub(crate) fn fold_of(forward: &Forward, datum: usize) -> Option<usize> {
         true => datum,
         false => Some(forward.data[datum].group).filter(|group| *group != usize::MAX)?,
     };
-    Some(group % HANDS)
+    Some(group % FOLDS)
 }
 
 /// Residual of every datum, predicted with its pose held out, measured minus predicted \[declared standard
@@ -46,7 +46,7 @@ pub(crate) fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &W
     let mut model = model.clone();
     model.held = model.break_points().into_iter().map(|p| (p, u[p])).collect();
     let model = &model;
-    let hands: Vec<Vec<(usize, f64)>> = (0..HANDS)
+    let hands: Vec<Vec<(usize, f64)>> = (0..FOLDS)
         .into_par_iter()
         .map(|hand| {
             let out = |i: usize| fold_of(forward, i) == Some(hand);

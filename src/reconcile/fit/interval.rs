@@ -18,7 +18,7 @@ use rayon::prelude::*;
 /// Standard normal deviate of a two-sided probability of 95 %.
 const Z95: f64 = 1.959_964;
 /// Rise of the objective at the ends of a 95 % interval: the 95 % quantile of chi-squared with one degree of freedom.
-const RISE: f64 = 3.841_459;
+const RISE_AT_95: f64 = 3.841_459;
 
 /// Standard deviation of every parameter of the fit, in `u`, from the curvature of the objective; infinite if the
 /// curvature is singular.
@@ -101,7 +101,7 @@ fn refit(forward: &Forward, mut model: Model, u: &[f64], weights: &Weights, enou
 }
 
 /// One end of the 95 % interval of the parameter with index `p`: the value at which the objective, with all other
-/// parameters refitted, has risen by [`RISE`]. `side` is -1 for the lower end and 1 for the upper end; `sd` is the
+/// parameters refitted, has risen by [`RISE_AT_95`]. `side` is -1 for the lower end and 1 for the upper end; `sd` is the
 /// standard deviation from which the first guess comes. `None` if the objective does not rise so much within the
 /// range of the parameter.
 fn profile(forward: &Forward, best: &Fit, weights: &Weights, p: usize, side: f64, sd: f64) -> Option<f64> {
@@ -112,7 +112,7 @@ fn profile(forward: &Forward, best: &Fit, weights: &Weights, p: usize, side: f64
         let mut model = best.model.clone();
         model.held = vec![(p, value)];
         let objective = best.point.objective;
-        refit(forward, model, &best.point.u, weights, objective + RISE) - objective
+        refit(forward, model, &best.point.u, weights, objective + RISE_AT_95) - objective
     };
     let clamp = |value: f64| value.clamp(low, high);
     // the profile starts at the best value, where the rise is zero
@@ -120,20 +120,20 @@ fn profile(forward: &Forward, best: &Fit, weights: &Weights, p: usize, side: f64
     let mut value = clamp(u + side * Z95 * sd.clamp(1e-6, 10.0));
     for _ in 0..6 {
         let here = rise(value);
-        if (here - RISE).abs() < 0.4 {
+        if (here - RISE_AT_95).abs() < 0.4 {
             return Some(value);
         }
-        if here < RISE && value == limit {
+        if here < RISE_AT_95 && value == limit {
             return None;
         }
         // secant method on the square root of the rise, which is nearly linear
         let (a, b) = (near.1, here.max(1e-3).sqrt());
         let slope = (value - near.0) / (b - a);
-        if here < RISE {
+        if here < RISE_AT_95 {
             near = (value, b);
         }
         let next = if slope.is_finite() && slope * side > 0.0 {
-            value + (RISE.sqrt() - b) * slope
+            value + (RISE_AT_95.sqrt() - b) * slope
         } else {
             u + (value - u) * 1.7
         };

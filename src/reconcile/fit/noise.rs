@@ -21,11 +21,11 @@ pub struct Noise {
 }
 
 /// A reading is a gross error if its residual is at least this many standard deviations.
-const GROSS: f64 = 5.5;
+const GROSS_SIGMAS: f64 = 5.5;
 /// A row is a gross error, before any effect is sought, only if its residual is larger than this \[standard
 /// deviations\]. The limit is high, because play or a break point can shift a single reading by ten standard
 /// deviations.
-const UNMISTAKABLE: f64 = 16.0;
+const UNMISTAKABLE_SIGMAS: f64 = 16.0;
 /// Largest fraction of a channel's rows, or of the positions, that can be gross errors. If there are more, the cause is
 /// something that the model lacks.
 pub(crate) const FEW: f64 = 0.10;
@@ -43,14 +43,14 @@ const CHANNELS: [Channel; 3] = [Channel::Static, Channel::Modal, Channel::Windup
 const LARGEST_SCALE: f64 = 1.4;
 /// A model fits most readings of a channel if the robust standard deviation of its residuals exceeds the declared one
 /// by at most this fraction. For a channel with few readings, [`BY_CHANCE`] allows more.
-const CLOSE: f64 = 0.5;
+const CLOSE_FIT: f64 = 0.5;
 /// Allowance for chance when the robust standard deviation of n residuals is tested: it may exceed the declared one
 /// by the fraction `BY_CHANCE / √n`. This is three times its own standard deviation, which is 1.17 / √n of the
 /// declared one, because it comes from the median of absolute values.
 const BY_CHANCE: f64 = 3.5;
 /// Weight of the declared standard deviation when its factor is estimated from the residuals, as a number of
 /// readings.
-const TRUST: f64 = 15.0;
+const WEIGHT_OF_DECLARED: f64 = 15.0;
 
 impl Default for Noise {
     fn default() -> Self {
@@ -77,7 +77,7 @@ impl Noise {
         let residuals = declared_residuals(forward, &fit.point.predicted);
         CHANNELS.into_iter().all(|channel| {
             let own = &residuals[forward.range(channel)];
-            spread(own) < 1.0 + CLOSE.max(BY_CHANCE / (own.len() as f64).sqrt())
+            spread(own) < 1.0 + CLOSE_FIT.max(BY_CHANCE / (own.len() as f64).sqrt())
         })
     }
 
@@ -86,7 +86,7 @@ impl Noise {
     /// calibration.
     pub fn without_worst(forward: &Forward, fit: &Fit, weights: &Weights) -> Self {
         let mut outliers = misses(forward, fit, weights);
-        outliers.retain(|(_, _, size)| *size > UNMISTAKABLE);
+        outliers.retain(|(_, _, size)| *size > UNMISTAKABLE_SIGMAS);
         let mut left = CHANNELS.map(|channel| at_most(FEW_UNSEEN, rows(forward, channel)));
         outliers.retain(|(channel, _, _)| {
             let of_channel = &mut left[*channel as usize];
@@ -101,7 +101,7 @@ impl Noise {
     /// such rows, or more than two.
     pub fn with_slips(&self, forward: &Forward, fit: &Fit) -> Option<Self> {
         let mut slips = misses(forward, fit, &self.weights(forward));
-        slips.retain(|(_, _, size)| *size > GROSS);
+        slips.retain(|(_, _, size)| *size > GROSS_SIGMAS);
         slips.retain(|slip| !self.outliers.iter().any(|(c, row, _)| (c, row) == (&slip.0, &slip.1)));
         let residuals = declared_residuals(forward, &fit.point.predicted);
         let slips: Vec<(Channel, usize, f64)> = CHANNELS
@@ -138,7 +138,7 @@ impl Noise {
         }
         let residuals = declared_residuals(forward, &baseline.point.predicted);
         let mut outliers = Self::from_fit(forward, baseline, weights).outliers;
-        outliers.retain(|(_, _, size)| *size > UNMISTAKABLE);
+        outliers.retain(|(_, _, size)| *size > UNMISTAKABLE_SIGMAS);
         let in_channel = |channel| outliers.iter().filter(|(c, _, _)| *c == channel).count();
         let few: Vec<Channel> = CHANNELS
             .into_iter()
@@ -158,7 +158,7 @@ impl Noise {
             let range = forward.range(channel);
             let own = &residuals[range.clone()];
             // if the model fits badly, only rows that differ from the other rows are gross errors
-            let limit = GROSS * spread(own).clamp(1.0, 3.0);
+            let limit = GROSS_SIGMAS * spread(own).clamp(1.0, 3.0);
             let data = &forward.data[range.clone()];
             let mut gross = largest_of_rows(data.iter().zip(own.iter().map(|r| r.abs())));
             gross.retain(|(_, size)| *size > limit);
@@ -180,7 +180,7 @@ impl Noise {
     /// than a third of the lists are so.
     pub fn uncertain_lists(forward: &Forward, coefficients: &Coefficients) -> Option<Self> {
         let residuals = declared_residuals(forward, &forward.predict(coefficients));
-        let far = |datum: usize| residuals[datum].abs() > UNMISTAKABLE;
+        let far = |datum: usize| residuals[datum].abs() > UNMISTAKABLE_SIGMAS;
         let is_doubtful = |test: &&ModalTest| test.modes.iter().filter(|(datum, _)| far(*datum)).count() > 1;
         let doubtful: Vec<&ModalTest> = forward.modal.iter().filter(is_doubtful).collect();
         if doubtful.is_empty() || doubtful.len() > at_most(FEW_LISTS, forward.modal.len()) {
@@ -315,8 +315,9 @@ fn spread(residuals: &[f64]) -> f64 {
 /// because the parameters absorb the rest. A factor that could be chance is applied too: waiting for significance would
 /// leave intervals too narrow in channels with few readings.
 fn scale(kept: impl Iterator<Item = (f64, f64)>) -> f64 {
-    let (sum, count) =
-        kept.fold((TRUST, TRUST), |(sum, count), (r, leverage)| (sum + r * r, count + 1.0 - leverage));
+    let (sum, count) = kept.fold((WEIGHT_OF_DECLARED, WEIGHT_OF_DECLARED), |(sum, count), (r, leverage)| {
+        (sum + r * r, count + 1.0 - leverage)
+    });
     (sum / count).sqrt().clamp(1.0, LARGEST_SCALE)
 }
 

@@ -15,7 +15,7 @@ use crate::reconcile::readings::components::{DISPLACEMENT, FEWEST_ALIKE};
 
 /// Largest difference between the logarithm of the ratio of readings to nominal predictions and the logarithm of the
 /// factor between two units. It is wide, because an effect that is still missing changes the ratio.
-const NEAR: f64 = 0.25;
+const UNIT_TOLERANCE: f64 = 0.25;
 
 /// A suspicion that the declared standard deviations of a channel are too small by a factor, because its readings are
 /// in another unit than stated.
@@ -65,7 +65,7 @@ pub(crate) fn stretches(forward: &Forward, best: &Coefficients) -> Vec<Stretch> 
             apart(a).total_cmp(&apart(b))
         })?;
         let misses = own.iter().zip(&predicted[range]).map(|(d, model)| ((d.value - model) / d.sigma).abs());
-        let is_slip = square > 0.0 && ratio > 0.0 && libm::log(ratio / factor).abs() < NEAR;
+        let is_slip = square > 0.0 && ratio > 0.0 && libm::log(ratio / factor).abs() < UNIT_TOLERANCE;
         (is_slip && median(misses.collect()) > factor.sqrt()).then_some(Stretch { channel, factor })
     };
     [Channel::Static, Channel::Modal, Channel::Windup].into_iter().filter_map(of_channel).collect()
@@ -73,10 +73,10 @@ pub(crate) fn stretches(forward: &Forward, best: &Coefficients) -> Vec<Stretch> 
 
 /// Reversed signs are suspected if the cosine of the angle between the vector of all readings of one component and
 /// the vector of their predictions is below this.
-const OPPOSITE: f64 = -0.9;
+const OPPOSITE_COSINE: f64 = -0.9;
 /// Reversed signs are reported only if reversing them divides the root mean square difference between the readings
 /// and the nominal arm by at least this factor.
-const NEARER: f64 = 3.0;
+const LEAST_IMPROVEMENT: f64 = 3.0;
 
 /// One sentence for each component of the displacement whose readings seem to have the opposite sign. An example is a
 /// dial gauge that reads positive when its plunger is pushed in.
@@ -89,7 +89,7 @@ pub(crate) fn other_signs(forward: &Forward) -> Vec<String> {
         let sum = |of: fn(&(f64, f64)) -> f64| own.iter().map(of).sum::<f64>();
         let cosine = sum(|(d, m)| d * m) / (sum(|(d, _)| d * d) * sum(|(_, m)| m * m)).sqrt();
         let nearer = (sum(|(d, m)| (d - m).powi(2)) / sum(|(d, m)| (d + m).powi(2))).sqrt();
-        (own.len() >= FEWEST_ALIKE && cosine < OPPOSITE && nearer > NEARER).then(|| {
+        (own.len() >= FEWEST_ALIKE && cosine < OPPOSITE_COSINE && nearer > LEAST_IMPROVEMENT).then(|| {
             format!(
                 "{} is {} times nearer to the arm as given with the other sign: does the instrument count the other way? \
                  It was taken as it is",

@@ -30,16 +30,16 @@ const SPARE_SHAPES: usize = 12;
 
 /// Upper limit of the cost of one frequency (its squared residual) when two numberings of a list are compared
 /// \[squared standard deviations\].
-const MISS: f64 = 400.0;
+const LARGEST_COST: f64 = 400.0;
 
 /// Upper limit of the misfit of one frequency when two numberings of a list are compared to put it in order. The misfit
 /// is the magnitude of the logarithm of measured over predicted frequency. The limit is larger than the misfit that a
 /// change of stiffnesses and masses within tolerance causes.
-const OFF: f64 = 0.05;
+const LARGEST_LOG_RATIO: f64 = 0.05;
 
 /// A list is out of order if a mode has a frequency lower than that of a mode with a smaller number, by more than
 /// this \[standard deviations of the difference\]. Noise does not produce such a fall.
-const UNMISTAKABLE: f64 = 5.0;
+const OUT_OF_ORDER_SIGMAS: f64 = 5.0;
 
 /// The modal test of one pose and payload: the list of its measured modes, and what their computation needs.
 pub struct ModalTest {
@@ -329,7 +329,7 @@ impl ModalTest {
         self.modes.iter().any(|(a, low)| {
             self.modes.iter().any(|(b, high)| {
                 let (a, b) = (&data[*a], &data[*b]);
-                low < high && a.value - b.value > UNMISTAKABLE * libm::hypot(a.sigma, b.sigma)
+                low < high && a.value - b.value > OUT_OF_ORDER_SIGMAS * libm::hypot(a.sigma, b.sigma)
             })
         })
     }
@@ -344,7 +344,9 @@ impl ModalTest {
         let spectrum = self.spectrum(layout, coefficients, self.mode_count());
         let cost = |modes: &[(usize, usize)]| -> f64 {
             let off = |&(datum, mode): &(usize, usize)| {
-                spectrum.get(mode).map_or(OFF, |hz| libm::log(data[datum].value / hz).abs().min(OFF))
+                spectrum.get(mode).map_or(LARGEST_LOG_RATIO, |hz| {
+                    libm::log(data[datum].value / hz).abs().min(LARGEST_LOG_RATIO)
+                })
             };
             modes.iter().map(off).sum()
         };
@@ -379,7 +381,9 @@ impl ModalTest {
             let miss = |&(datum, mode): &(usize, usize)| {
                 let counted = if mode >= missed { mode + 1 } else { mode };
                 let d: &Datum = &data[datum];
-                spectrum.get(counted).map_or(MISS, |f| ((f - d.value) / d.sigma).powi(2).min(MISS))
+                spectrum
+                    .get(counted)
+                    .map_or(LARGEST_COST, |f| ((f - d.value) / d.sigma).powi(2).min(LARGEST_COST))
             };
             self.modes.iter().map(miss).sum()
         };
@@ -388,7 +392,7 @@ impl ModalTest {
         let (best, missed) =
             (0..self.mode_count()).map(|m| (cost(m), m)).min_by(|a, b| a.0.total_cmp(&b.0))?;
         // renumbering must remove one full error and most of the misfit; a smaller gain could come from noise
-        if none < best + MISS || best > 0.2 * none {
+        if none < best + LARGEST_COST || best > 0.2 * none {
             return None;
         }
         self.modes.iter_mut().filter(|(_, mode)| *mode >= missed).for_each(|(_, mode)| *mode += 1);
@@ -481,24 +485,24 @@ enum UnitStrains {
 
 /// A combination of trial shapes is taken as a rounding error, and is dropped, if its strain energy is less than this
 /// fraction of the largest strain energy of a combination.
-const RANK: f64 = 1e-10;
+const LEAST_ENERGY: f64 = 1e-10;
 
 /// A Cholesky factor is taken as singular if the ratio of its smallest to its largest pivot is below this.
-const SINGULAR: f64 = 1e-6;
+const SINGULAR_PIVOT_RATIO: f64 = 1e-6;
 
 /// The basis in which the strain energy matrix `strain` becomes the unit matrix, and the reduced mass matrix in this
 /// basis. `None` if there is no strain energy.
 fn unit_strains(strain: DMatrix<f64>, reduced_mass: &DMatrix<f64>) -> Option<(UnitStrains, DMatrix<f64>)> {
     if let Some(cholesky) = Cholesky::new(strain.clone()) {
         let l = cholesky.l();
-        if l.diagonal().min() > SINGULAR * l.diagonal().max() {
+        if l.diagonal().min() > SINGULAR_PIVOT_RATIO * l.diagonal().max() {
             let half = l.solve_lower_triangular(reduced_mass)?;
             let a = l.solve_lower_triangular(&half.transpose())?;
             return Some((UnitStrains::Factor(l), a));
         }
     }
     let eigen = SymmetricEigen::new(strain);
-    let floor = RANK * eigen.eigenvalues.max();
+    let floor = LEAST_ENERGY * eigen.eigenvalues.max();
     let columns: Vec<DVector<f64>> = (0..eigen.eigenvalues.len())
         .filter(|&i| eigen.eigenvalues[i] > floor)
         .map(|i| eigen.eigenvectors.column(i) / eigen.eigenvalues[i].sqrt())

@@ -36,10 +36,10 @@ pub struct FreeParameter {
 }
 
 /// All sizes below this fraction of the width of the expected range have equal prior probability.
-const SMALL: f64 = 0.01;
+const SMALL_SIZE: f64 = 0.01;
 
 /// Largest compliance that is sought in a connection, bearing or base, as a multiple of the joint's compliance.
-const SOFTEST: f64 = 100.0;
+const LARGEST_COMPLIANCE: f64 = 100.0;
 
 /// Stiffness that stands for a rigid part \[N m/rad\]. No reading can tell it from an infinite one.
 const RIGID_NM_PER_RAD: f64 = 1e15;
@@ -66,7 +66,9 @@ impl FreeParameter {
             Scale::Stiffness if parameter.absent == Absent::Never => {
                 (joint_stiffness, expected, expected, None)
             }
-            Scale::Stiffness => (joint_stiffness, (expected.0, expected.1.max(SOFTEST)), expected, Some(0.0)),
+            Scale::Stiffness => {
+                (joint_stiffness, (expected.0, expected.1.max(LARGEST_COMPLIANCE)), expected, Some(0.0))
+            }
             Scale::Reciprocal => (1.0, (1.0 / high, 1.0 / low), expected, Some(1.0)),
             Scale::Log => {
                 (1.0, (libm::log(low), libm::log(high)), (libm::log(expected.0), libm::log(expected.1)), None)
@@ -194,7 +196,7 @@ impl FreeParameter {
         let range = self.expected.1 - self.expected.0;
         let Some(absent) = self.absent else { return range };
         // a density that falls as 1/size, cut off near zero where it would diverge
-        let small = SMALL * range;
+        let small = SMALL_SIZE * range;
         let decades = |end: f64| libm::log1p((end - absent).abs() / small);
         (decades(self.low) + decades(self.high)) * ((u - absent).abs() + small)
     }

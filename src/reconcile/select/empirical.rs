@@ -27,12 +27,12 @@ use rayon::prelude::*;
 const MOST_LAWS: usize = 3;
 /// A law is accepted if the logarithm of the evidence, less the logarithm of the number of places where a law is
 /// tried, rises by more than this.
-const BETTER: f64 = 2.0;
+const LEAST_GAIN: f64 = 2.0;
 /// A joint is not tried if its largest torque is less than this fraction of the largest torque on any joint.
-const UNLOADED: f64 = 1e-3;
+const UNLOADED_SHARE: f64 = 1e-3;
 /// Largest size of a law of a joint (a further twist) that is sought, as a multiple of the joint's nominal twist at
 /// its largest torque.
-const LARGEST: f64 = 3.0;
+const LARGEST_TWIST: f64 = 3.0;
 
 /// Channels in whose tests a joint may soften, in the order of their parameters.
 const SOFTENING_IN: [Channel; 2] = [Channel::Static, Channel::Modal];
@@ -41,7 +41,7 @@ const SOFTENING_IN: [Channel; 2] = [Channel::Static, Channel::Modal];
 const SOFTENED_AFTER: [f64; 2] = [0.08, 0.5];
 /// Largest compliance of a base against tilt that is sought, as a multiple of the compliance of the first compliant
 /// joint.
-const SOFTEST: f64 = 100.0;
+const LARGEST_BASE_COMPLIANCE: f64 = 100.0;
 /// Smallest number of poses that must come before a turn of the base, and of poses that must come after it.
 const FEWEST_POSES: usize = 2;
 
@@ -57,7 +57,7 @@ pub(crate) fn laws(forward: &Forward, baseline: &Fit, weights: &Weights) -> Vec<
     // a law at a joint with the name of the base could not be written: the name means the base
     for ((slot, law), torque_nm) in joints.filter(|((slot, _), _)| slot.name != BASE) {
         out.extend(housing(forward, &slot.name, torque_nm));
-        if !law.is_rigid() && torque_nm > UNLOADED * largest {
+        if !law.is_rigid() && torque_nm > UNLOADED_SHARE * largest {
             out.extend(twists(&slot.name, torque_nm, law.angle_rad(torque_nm).abs()));
             out.extend((0..SOFTENING_IN.len()).filter_map(|c| softening(forward, &slot.name, torque_nm, c)));
         }
@@ -135,7 +135,10 @@ fn housing(forward: &Forward, joint: &str, torque_nm: f64) -> Option<Candidate> 
 fn leaning(forward: &Forward, at: &str, numbers: Vec<Number>) -> Option<Candidate> {
     let laws = forward.coefficients(&forward.nominal).laws;
     let size = laws.iter().map(|law| law.tangent_compliance_rad_per_nm(0.0)).find(|c| *c > 0.0)?;
-    let tilt = Parameter { count: 2, ..Parameter::number(LEAN, 0.0, SOFTEST * size, size, Scale::Linear) };
+    let tilt = Parameter {
+        count: 2,
+        ..Parameter::number(LEAN, 0.0, LARGEST_BASE_COMPLIANCE * size, size, Scale::Linear)
+    };
     let starts = vec![vec![0.1, 0.5], vec![0.5, 0.1]];
     Some(Candidate { numbers, starts, ..law(at, tilt, 0.0) })
 }
@@ -225,7 +228,7 @@ pub(crate) fn in_words(candidate: &Candidate) -> String {
 }
 
 /// Adds laws without a name to the model `from`, one after the other, as long as each raises the score by more than
-/// [`BETTER`]. The laws are the candidates of `search` from the index `first` on. `None` if no law does.
+/// [`LEAST_GAIN`]. The laws are the candidates of `search` from the index `first` on. `None` if no law does.
 pub(crate) fn with_laws<'a>(search: &Search<'a>, first: usize, from: &Scored) -> Option<(Scored, Fit<'a>)> {
     let mut best: Option<(Scored, Fit)> = None;
     for _ in 0..MOST_LAWS {
@@ -237,7 +240,7 @@ pub(crate) fn with_laws<'a>(search: &Search<'a>, first: usize, from: &Scored) ->
 }
 
 /// The fit of the model `from` with that law added which raises its score most; `None` if the rise is not more than
-/// [`BETTER`].
+/// [`LEAST_GAIN`].
 fn next_law<'a>(search: &Search<'a>, first: usize, from: &Scored) -> Option<(Scored, Fit<'a>)> {
     let laws = (first..search.candidates.len()).filter(|law| !from.effects.contains(law));
     let starts: Vec<(usize, &Vec<f64>)> =
@@ -253,13 +256,13 @@ fn next_law<'a>(search: &Search<'a>, first: usize, from: &Scored) -> Option<(Sco
     let promising = tried.into_iter().max_by(|a, b| a.score.total_cmp(&b.score))?;
     let fit = search.fit(&promising.effects, &promising.u, Effort::default());
     let scored = search.scored(&promising.effects, &fit);
-    (scored.score > from.score + BETTER).then_some((scored, fit))
+    (scored.score > from.score + LEAST_GAIN).then_some((scored, fit))
 }
 
 /// Two laws of a joint as candidates: a further twist that is an odd function of the joint's torque, and one that is an
 /// even function. `torque_nm` is the largest torque on the joint, and `twist_rad` its twist under this torque.
 fn twists(joint: &str, torque_nm: f64, twist_rad: f64) -> [Candidate; 2] {
-    let most = LARGEST * twist_rad;
+    let most = LARGEST_TWIST * twist_rad;
     let sized =
         |name| Parameter { count: 2, ..Parameter::number(name, -most, most, twist_rad, Scale::Linear) };
     // the stiffness does not change meanwhile

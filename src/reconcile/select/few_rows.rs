@@ -28,17 +28,17 @@ pub(crate) const FEWEST_ROWS: usize = 11;
 const MOST_FITS: usize = 6000;
 /// A set of effects explains the readings if chance gives a misfit at least as large as its own with a probability
 /// above this.
-const IMPROBABLE: f64 = 0.01;
+const LEAST_PROBABILITY: f64 = 0.01;
 /// Sets that explain the readings are left out if the logarithm of their evidence is this far below the best. The
 /// limit is wide, because with few readings the evidence mostly repeats the prior.
-const IMPLAUSIBLE: f64 = 15.0;
+const EVIDENCE_BELOW_BEST: f64 = 15.0;
 /// A missing mass is reported if in every set the mass outboard of a joint differs from that of the arm file by more
 /// than this fraction.
-const MATERIAL: f64 = 0.02;
+const LEAST_MASS_CHANGE: f64 = 0.02;
 /// A stiffness is not identified if the ratio of its largest to its smallest possible value is larger than this.
-const WIDE: f64 = 1.2;
+const WIDEST_STIFFNESS_RATIO: f64 = 1.2;
 /// Factors by which a stiffness is divided, and then multiplied, to find its possible range.
-const FACTORS: [f64; 9] = [1.1, 1.2, 1.4, 1.7, 2.0, 3.0, 4.0, 6.0, 10.0];
+const STIFFNESS_FACTORS: [f64; 9] = [1.1, 1.2, 1.4, 1.7, 2.0, 3.0, 4.0, 6.0, 10.0];
 /// Largest number of explaining sets, the best first, for which the stiffnesses are varied.
 const MOST_PROFILES: usize = 6;
 
@@ -74,7 +74,7 @@ fn explaining(search: &Search, tried: Vec<Scored>) -> Vec<Scored> {
     let mut out: Vec<Scored> = all.iter().filter(|s| !all.iter().any(|t| within(t, s))).cloned().collect();
     out.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.effects.cmp(&b.effects)));
     let top = out.first().map_or(0.0, |s| s.score);
-    out.retain(|s| s.score > top - IMPLAUSIBLE);
+    out.retain(|s| s.score > top - EVIDENCE_BELOW_BEST);
     out
 }
 
@@ -84,12 +84,12 @@ fn explains(search: &Search, scored: &Scored) -> bool {
 }
 
 /// Whether chance leaves a misfit (chi-squared) as large as `misfit`, for the parameters of the set `set`, with a
-/// probability of at least [`IMPROBABLE`].
+/// probability of at least [`LEAST_PROBABILITY`].
 fn is_probable(search: &Search, set: &Scored, misfit: f64) -> bool {
     let readings = search.forward.data.len();
     let free = free_parameters(search, &set.effects);
     let dof = readings.saturating_sub(free).max(1) as f64;
-    ln_chi_squared_tail(misfit, dof) > libm::log(IMPROBABLE)
+    ln_chi_squared_tail(misfit, dof) > libm::log(LEAST_PROBABILITY)
 }
 
 fn free_parameters(search: &Search, effects: &[usize]) -> usize {
@@ -227,7 +227,7 @@ fn missing_mass(
         let (word, low, high) = if high < 0.0 { ("too much", -high, -low) } else { ("missing", low, high) };
         let kg =
             if high - low < 0.005 { format!("{low:.2} kg") } else { format!("{low:.2} to {high:.2} kg") };
-        (low > MATERIAL * known_kg).then(|| {
+        (low > LEAST_MASS_CHANGE * known_kg).then(|| {
             format!(
                 "with the stiffnesses as given the masses cannot give the readings: {kg} are {word} at and beyond {joint}, \
                  where the arm file and the payload have {known_kg:.2} kg; most probably {} with {:.2} kg",
@@ -284,7 +284,7 @@ fn unidentified_stiffnesses(search: &Search, explaining: &[Scored], subjects: &[
             let (low, high) = span(ends.into_iter().flat_map(|(low, high)| [low, high]));
             (joint.name.clone(), low, high)
         })
-        .filter(|(_, low, high)| high / low > WIDE)
+        .filter(|(_, low, high)| high / low > WIDEST_STIFFNESS_RATIO)
         .collect();
     ranges.sort_by(|a, b| (b.2 / b.1).total_cmp(&(a.2 / a.1)));
     ranges
@@ -327,7 +327,7 @@ fn free_factors(search: &Search, set: &Scored, joint: &str) -> (f64, f64) {
         }
         reached
     };
-    (reach(&FACTORS.map(|f| 1.0 / f)), reach(&FACTORS))
+    (reach(&STIFFNESS_FACTORS.map(|f| 1.0 / f)), reach(&STIFFNESS_FACTORS))
 }
 
 fn span(values: impl Iterator<Item = f64>) -> (f64, f64) {

@@ -33,24 +33,24 @@ pub struct LackOfFit {
 
 /// The model fails the test for lack of fit if chi-squared per degree of freedom exceeds this. Wrongly declared
 /// standard deviations seldom explain a larger value.
-const MATERIAL: f64 = 2.5;
+const LARGEST_REDUCED_CHI_SQUARED: f64 = 2.5;
 /// If a structure of the residuals is suspected, the model fails the test already above this chi-squared per degree
 /// of freedom.
-const SUSPICIOUS: f64 = 1.8;
+const SUSPICIOUS_REDUCED_CHI_SQUARED: f64 = 1.8;
 /// A structure of the residuals whose probability by chance is below this, after correction for the number of tests,
 /// is no chance result.
-const CHANCE: f64 = 1e-3;
+const CERTAIN_PROBABILITY: f64 = 1e-3;
 /// A structure of the residuals whose probability by chance is below this, after correction for the number of tests,
 /// is suspected.
-const SUSPECTED: f64 = 0.02;
+const SUSPECTED_PROBABILITY: f64 = 0.02;
 /// Largest number of structures that are described in words.
-const TOLD: usize = 3;
+const STRUCTURES_NAMED: usize = 3;
 
 impl LackOfFit {
     /// Sentences on up to three structures that are no chance result, the most improbable first. No quantity of a
     /// channel is mentioned twice.
     pub fn sentences(&self) -> Vec<String> {
-        self.sentences_on(|s| s.ln_p < libm::log(CHANCE))
+        self.sentences_on(|s| s.ln_p < libm::log(CERTAIN_PROBABILITY))
     }
 
     /// The same for structures that are no chance result even if all readings scatter as much as the residuals do, and
@@ -60,7 +60,7 @@ impl LackOfFit {
         self.sentences_on(|s| {
             let [declared, scattered] =
                 [1.0, scatter].map(|variance| ln_chi_squared_tail(s.statistic / variance, s.dof));
-            s.ln_p - declared + scattered < libm::log(CHANCE)
+            s.ln_p - declared + scattered < libm::log(CERTAIN_PROBABILITY)
         })
     }
 
@@ -71,7 +71,7 @@ impl LackOfFit {
                 told.push(structure);
             }
         }
-        told.into_iter().take(TOLD).map(Structure::sentence).collect()
+        told.into_iter().take(STRUCTURES_NAMED).map(Structure::sentence).collect()
     }
 }
 
@@ -95,15 +95,15 @@ pub(crate) fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, wei
     let chi2_per_dof = tester.chi2_per_dof(forward, fit);
     let ln_p = structures.first().map_or(0.0, |s| s.ln_p);
     // without a large chi-squared, a structure must be no chance result; a very large chi-squared fails by itself
-    let fails = ln_p < libm::log(CHANCE)
-        || chi2_per_dof > MATERIAL
-        || (ln_p < libm::log(SUSPECTED) && chi2_per_dof > SUSPICIOUS);
+    let fails = ln_p < libm::log(CERTAIN_PROBABILITY)
+        || chi2_per_dof > LARGEST_REDUCED_CHI_SQUARED
+        || (ln_p < libm::log(SUSPECTED_PROBABILITY) && chi2_per_dof > SUSPICIOUS_REDUCED_CHI_SQUARED);
     LackOfFit { structures, chi2_per_dof, fails }
 }
 
 /// A linear combination of the columns of a test is dropped if the model already explains all but this fraction of its
 /// sum of squares. The remainder would only show how well the fit converged.
-const ABSORBED: f64 = 1e-3;
+const ABSORBED_FRACTION: f64 = 1e-3;
 
 /// Scales every column of the matrix to length 1. A column of zeros stays.
 fn unit_columns(mut x: DMatrix<f64>) -> DMatrix<f64> {
@@ -155,7 +155,7 @@ impl Tester {
         let largest = eigen.eigenvalues.max();
         let (mut statistic, mut dof) = (0.0, 0.0);
         for (value, vector) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
-            if *value > ABSORBED * largest && *value > 1e-9 {
+            if *value > ABSORBED_FRACTION * largest && *value > 1e-9 {
                 statistic += vector.dot(&z).powi(2) / value;
                 dof += 1.0;
             }

@@ -12,7 +12,7 @@ use crate::reconcile::fit::descent::{
     Effort, Fit, Normal, Point, Slopes, Weights, bounded_step, change, descent, evaluate, evaluate_near, fit,
     jacobian, normal, objective,
 };
-use crate::reconcile::fit::steps::WIDE;
+use crate::reconcile::fit::steps::WIDE_SMOOTHING;
 use crate::reconcile::model::parameters::Model;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -21,36 +21,36 @@ use std::cell::OnceCell;
 /// Smallest rise of the score \[ln of the evidence\] for which a second or third effect is accepted. It is above
 /// zero, because two missing effects are less probable than one. A first effect needs no more than a rise, because a
 /// missing effect is as probable as none.
-const WORTH: f64 = 3.0;
+const LEAST_GAIN: f64 = 3.0;
 /// The listed alternatives to an effect are as many as are needed so that the effect and they together contain the
 /// right one with this probability.
-const CREDIBLE: f64 = 0.95;
+const CREDIBLE_PROBABILITY: f64 = 0.95;
 /// A model whose score after a few steps of a fit is below the best score by more than this is not fitted further \[ln
 /// of the evidence\].
-const HOPELESS: f64 = 40.0;
+const HOPELESS_DEFICIT: f64 = 40.0;
 /// A model whose score is below the best of its stage by less than this may still be the best one, and is refined or
 /// fitted again \[ln of the evidence\].
-const PROMISING: f64 = 12.0;
+const PROMISING_DEFICIT: f64 = 12.0;
 /// Largest number of effects in a model.
 pub(crate) const MOST_EFFECTS: usize = 3;
 /// If a law without a name raises the logarithm of the evidence by this much more than the best effects do, these
 /// effects are not the cause, and the search ends.
-const SETTLES: f64 = 12.0;
+const SETTLING_GAIN: f64 = 12.0;
 /// Largest number of variants of one effect (the same effect with different parameters free) among the candidates
 /// that are fitted in full.
 const MOST_VARIANTS: usize = 2;
 /// If the objectives of two fits of the same model differ by more than this, the fit with the larger one had not
 /// converged.
-const CONVERGED: f64 = 0.5;
+const CONVERGED_WITHIN: f64 = 0.5;
 /// Models whose objective after a few steps exceeds the lowest by less than this fraction are fitted further. Where
 /// no model is near an explanation, a few steps do not show how good a model is.
-const UNDECIDED: f64 = 0.1;
+const UNDECIDED_FRACTION: f64 = 0.1;
 /// Sizes of effects at which candidates are tried if much is missing, as fractions of the sizes at which their fits
 /// start.
-const SIZES: [f64; 3] = [0.1, 0.3, 1.0];
+const TRIED_SIZES: [f64; 3] = [0.1, 0.3, 1.0];
 /// If chi-squared of a model is below this fraction of its expectation, the residuals are far below the declared
 /// noise.
-const BELOW: f64 = 0.5;
+const FAR_BELOW_NOISE: f64 = 0.5;
 /// Number of candidates that are fitted in full when one effect is to be added.
 const FULL_FITS: usize = 7;
 
@@ -99,7 +99,7 @@ impl<'a> Search<'a> {
             let tried = self.extend(&best, &seen);
             seen.extend(tried.iter().cloned());
             // several missing effects are less probable than one
-            let worth = if best.effects.is_empty() { 0.0 } else { WORTH };
+            let worth = if best.effects.is_empty() { 0.0 } else { LEAST_GAIN };
             let Some(next) = better(&tried, best.score + worth) else { break };
             best = self.settled(next);
             if let Some(lower) = self.lower_baseline(&best, &baseline) {
@@ -125,7 +125,7 @@ impl<'a> Search<'a> {
     }
 
     /// Fits the calibration alone once more, from the calibrated parameters of `best`, the model with its first
-    /// effect. Returns this fit if its objective is lower than that of `baseline` by more than [`CONVERGED`],
+    /// effect. Returns this fit if its objective is lower than that of `baseline` by more than [`CONVERGED_WITHIN`],
     /// otherwise `None`. A lower objective shows that `baseline` had not converged, and that the effect may only
     /// compensate for this.
     fn lower_baseline(&self, best: &Scored, baseline: &Scored) -> Option<Fit<'a>> {
@@ -134,17 +134,17 @@ impl<'a> Search<'a> {
         }
         let (effects, u) = self.without(best, 0);
         let again = self.fit(&effects, &u, Effort::default());
-        (again.point.objective < baseline.objective - CONVERGED).then_some(again)
+        (again.point.objective < baseline.objective - CONVERGED_WITHIN).then_some(again)
     }
 
     /// Whether the search ends because the law without a name `law` raises the logarithm of the evidence above `best`
-    /// by more than [`SETTLES`]. If `best` has one effect so far, the law must also leave no more than noise, because
+    /// by more than [`SETTLING_GAIN`]. If `best` has one effect so far, the law must also leave no more than noise, because
     /// two effects could still be better.
     fn is_settled_by(&self, law: &Option<Better>, baseline: &Scored, best: &Scored) -> bool {
         let readings = self.forward.data.len() as f64;
         let noise = readings + 2.0 * (2.0 * readings).sqrt();
         law.as_ref().is_some_and(|law| {
-            baseline.score + law.gain > best.score + SETTLES
+            baseline.score + law.gain > best.score + SETTLING_GAIN
                 && (best.effects.len() > 1 || law.objective < noise)
         })
     }
@@ -154,7 +154,7 @@ impl<'a> Search<'a> {
     /// named only because of the earlier weights.
     pub(crate) fn weigh_again(&self, before: &Selection) -> Selection {
         let mut promising: Vec<Scored> = vec![before.baseline.clone()];
-        let near = before.others.iter().filter(|s| s.score > before.best.score - PROMISING).cloned();
+        let near = before.others.iter().filter(|s| s.score > before.best.score - PROMISING_DEFICIT).cloned();
         let parts = self.parts(&before.best);
         for scored in [before.best.clone()].into_iter().chain(parts).chain(near) {
             if promising.iter().all(|p| !same_set(&p.effects, &scored.effects)) {
@@ -170,7 +170,7 @@ impl<'a> Search<'a> {
         };
         let mut seen: Vec<Scored> = promising.par_iter().map(again).collect();
         let baseline = seen.remove(0);
-        let net = |s: &&Scored| s.score - s.effects.len().saturating_sub(1) as f64 * WORTH;
+        let net = |s: &&Scored| s.score - s.effects.len().saturating_sub(1) as f64 * LEAST_GAIN;
         let is_more = |s: &&Scored| {
             let is_part = |part: &Scored| {
                 part.effects.len() < s.effects.len() && part.effects.iter().all(|e| s.effects.contains(e))
@@ -192,7 +192,7 @@ impl<'a> Search<'a> {
         let fitted = self.model(&scored.effects).free_parameters().count() as f64;
         let expected = (counted - fitted).max(1.0);
         !scored.effects.is_empty()
-            && scored.objective < BELOW * expected
+            && scored.objective < FAR_BELOW_NOISE * expected
             && scored.objective < expected - 3.0 * (2.0 * expected).sqrt()
     }
 
@@ -208,7 +208,7 @@ impl<'a> Search<'a> {
                 let swapped = self.extend(&dropped, seen);
                 seen.push(dropped.clone());
                 seen.extend(swapped.iter().cloned());
-                let fewer = (dropped.score + WORTH > best.score).then(|| dropped.clone());
+                let fewer = (dropped.score + LEAST_GAIN > best.score).then(|| dropped.clone());
                 if let Some(next) = fewer.or_else(|| better(&swapped, best.score + 1e-3)) {
                     best = next;
                     improved = true;
@@ -263,13 +263,14 @@ impl<'a> Search<'a> {
         let top = first.iter().chain(&known).map(|f| f.score).fold(f64::NEG_INFINITY, f64::max);
         // a few steps show which models are poor; the others are fitted in full
         let lowest = first.iter().map(|f| f.objective).fold(f64::INFINITY, f64::min);
-        let (near, far): (Vec<Scored>, Vec<Scored>) =
-            first.into_iter().partition(|s| s.score > top - HOPELESS.max(UNDECIDED * lowest / 2.0));
+        let (near, far): (Vec<Scored>, Vec<Scored>) = first
+            .into_iter()
+            .partition(|s| s.score > top - HOPELESS_DEFICIT.max(UNDECIDED_FRACTION * lowest / 2.0));
         let effort = Effort { steps: 14, tolerance: 0.02 };
         let in_full = |s: Scored| self.scored(&s.effects, &self.fit(&s.effects, &s.u, effort));
         let mut fits: Vec<Scored> = near.into_par_iter().map(in_full).collect();
         let top = fits.iter().chain(&known).map(|f| f.score).fold(f64::NEG_INFINITY, f64::max);
-        self.regrid(&mut fits, top - PROMISING);
+        self.regrid(&mut fits, top - PROMISING_DEFICIT);
         fits.extend(far);
         fits.extend(known);
         fits
@@ -337,7 +338,7 @@ impl<'a> Search<'a> {
         // jumps too
         let is_curved = |law: &JointLaw| matches!(law.curve, Curve::Windup(_));
         let smooth = sharp.here.coefficients.laws.iter().any(is_curved).then(|| {
-            let model = Model { smoothing: WIDE, ..model.clone() };
+            let model = Model { smoothing: WIDE_SMOOTHING, ..model.clone() };
             self.linearized(&model, &base.u)
         });
         // a further effect moves torques across the break points that were found, and the linearized model does not
@@ -392,7 +393,7 @@ impl<'a> Search<'a> {
                     _ => least(starts.map(|u| (misfit(&u, &smooth), u))).map(|(_, u)| u),
                 }
             };
-            let tried = SIZES.into_iter().filter_map(best_start);
+            let tried = TRIED_SIZES.into_iter().filter_map(best_start);
             let (objective, u) = least(tried.map(|u| (misfit(&u, self.weights), u)))?;
             Some((index, u, -0.5 * objective))
         };
@@ -424,7 +425,7 @@ impl<'a> Search<'a> {
         let Linearized { here, slopes } = about;
         let candidate = &self.candidates[index];
         let mut model = base.with(candidate);
-        model.smoothing = if self.is_smoothed(base, index) { WIDE } else { 0.0 };
+        model.smoothing = if self.is_smoothed(base, index) { WIDE_SMOOTHING } else { 0.0 };
         // break points are held fixed, because the linearized model does not contain the jumps of the frequencies there
         model.held =
             model.break_points().into_iter().filter(|p| *p < base.len()).map(|p| (p, here.u[p])).collect();
@@ -517,7 +518,7 @@ impl<'a> Search<'a> {
                 let all = 1.0 + competitors.iter().map(odds).sum::<f64>();
                 let mut held = 1.0;
                 competitors.retain(|s| {
-                    let needed = held < CREDIBLE * all;
+                    let needed = held < CREDIBLE_PROBABILITY * all;
                     held += odds(s);
                     needed
                 });

@@ -4,7 +4,7 @@
 //! model therefore start with a smoothed curve, and end with a direct search over the break points.
 
 use crate::reconcile::fit::descent::{Effort, Fit, Point, Weights, descent, evaluate_near, fit};
-use crate::reconcile::fit::steps::{self, NARROW, WIDE};
+use crate::reconcile::fit::steps::{self, NARROW_SMOOTHING, WIDE_SMOOTHING};
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::calibration::Nuisance;
 use crate::reconcile::model::parameters::{Candidate, Model};
@@ -82,9 +82,9 @@ impl<'a> Search<'a> {
         let few = Effort { steps: 4, tolerance: 0.02 };
         if model.effects.last().is_some_and(|e| e.kind.traits.steps_frequencies()) {
             let smoothed = Effort { steps: 6, tolerance: 0.05 };
-            model.smoothing = WIDE;
+            model.smoothing = WIDE_SMOOTHING;
             start = self.descent(&model, &start, smoothed).u;
-            model.smoothing = NARROW;
+            model.smoothing = NARROW_SMOOTHING;
         }
         fit(self.forward, &model, &start, self.weights, few)
     }
@@ -129,18 +129,18 @@ impl<'a> Search<'a> {
     /// the objective is nearly constant, and fits the other parameters again. A small change of the torques then does
     /// not move a test across the jump.
     pub(super) fn centre_breaks(&self, model: Model<'a>, best: Point) -> Fit<'a> {
-        const STEP: f64 = 0.002;
+        const DERIVATIVE_STEP: f64 = 0.002;
         let mut u = best.u.clone();
         for p in model.break_points() {
             let flat = |side: f64| {
                 let rises = (1..=10).map(|i| {
                     let mut moved = u.clone();
-                    moved[p] += side * STEP * i as f64;
+                    moved[p] += side * DERIVATIVE_STEP * i as f64;
                     evaluate_near(self.forward, &model, &moved, self.weights, Some(&best)).objective
                 });
                 rises.take_while(|o| *o < best.objective + 1.0).count() as f64
             };
-            let middle = 0.5 * STEP * (flat(1.0) - flat(-1.0));
+            let middle = 0.5 * DERIVATIVE_STEP * (flat(1.0) - flat(-1.0));
             u[p] += middle;
         }
         let mut held = model.clone();

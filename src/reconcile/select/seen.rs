@@ -8,10 +8,10 @@ use crate::reconcile::model::parameters::{Candidate, Model};
 /// An effect of its usual size is left out if it changes no reading by more than this \[standard deviations\]. The
 /// largest size that is sought is at most a thousand times the usual one. So even an effect of the largest size would
 /// not be seen.
-const UNSEEN: f64 = 1e-6;
+const UNSEEN_SIGMAS: f64 = 1e-6;
 
 /// Fraction of its range by which a parameter is changed to find out whether readings change.
-const STEP: f64 = 0.01;
+const RANGE_STEP: f64 = 0.01;
 
 /// Those of the `candidates` that change at least one reading. A bench, for example, shows no payload, base or mass.
 /// An effect that changes no reading fits as well as calibration alone, and would be listed as an alternative of
@@ -32,7 +32,7 @@ pub(crate) fn seen(forward: &Forward, nuisance: &Nuisance, mut candidates: Vec<C
         sizes(candidate).iter().any(|own| {
             let u = [here.u.as_slice(), own].concat();
             let moved = change(forward, &model, &here, &u);
-            moved.iter().zip(&weights.inverse).any(|(delta, weight)| (delta * weight).abs() > UNSEEN)
+            moved.iter().zip(&weights.inverse).any(|(delta, weight)| (delta * weight).abs() > UNSEEN_SIGMAS)
         })
     });
     candidates
@@ -43,7 +43,7 @@ pub(crate) fn seen(forward: &Forward, nuisance: &Nuisance, mut candidates: Vec<C
 fn sizes(candidate: &Candidate) -> Vec<Vec<f64>> {
     let further = |start: &Vec<f64>, p: usize| {
         let parameter = &candidate.free_parameters[p];
-        let step = STEP * (parameter.high - parameter.low);
+        let step = RANGE_STEP * (parameter.high - parameter.low);
         let mut out = start.clone();
         out[p] += if out[p] + step > parameter.high { -step } else { step };
         out

@@ -17,18 +17,18 @@ use crate::reconcile::readings::campaign::Campaign;
 
 /// Charge for a gross error that is assumed instead of an effect \[ln of the evidence\]. About one row in a thousand
 /// is a gross error, and ln 1000 is about 7.
-const SLIP: f64 = 7.0;
+const GROSS_ERROR_CHARGE: f64 = 7.0;
 
 /// Largest tolerable error of a frequency that comes from computing it with fixed trial shapes \[standard deviations
 /// of the reading\].
-const INEXACT: f64 = 0.5;
+const LARGEST_SHAPE_ERROR: f64 = 0.5;
 
 /// Largest number of times that the trial shapes of the modes are replaced by those of the best model.
-const SHAPES: usize = 2;
+const MOST_SHAPE_CHANGES: usize = 2;
 
 /// Largest number of times that the worst readings are left out to see whether calibration alone fits the other
 /// readings.
-const LOOKS: usize = 4;
+const MOST_TRIMS: usize = 4;
 
 /// The result of the search for effects and of the judgement of the readings' quality.
 pub(crate) struct Settled {
@@ -108,10 +108,10 @@ struct Round {
 }
 
 impl Round {
-    /// The score of the best model, less [`SLIP`] for each reading that was left out of the fit as a gross error
+    /// The score of the best model, less [`GROSS_ERROR_CHARGE`] for each reading that was left out of the fit as a gross error
     /// \[ln of the evidence\].
     fn score(&self) -> f64 {
-        self.selection.best.score - SLIP * self.noise.outliers.len() as f64
+        self.selection.best.score - GROSS_ERROR_CHARGE * self.noise.outliers.len() as f64
     }
 }
 
@@ -150,7 +150,7 @@ impl Settling<'_> {
             return (with_all, declared);
         }
         let mut without = Noise::without_worst(self.forward, &with_all, &declared);
-        for _ in 0..LOOKS {
+        for _ in 0..MOST_TRIMS {
             let (baseline, weights) = calibrated(without);
             if Noise::is_close(self.forward, &baseline) {
                 return (baseline, weights);
@@ -201,7 +201,7 @@ impl Settling<'_> {
     /// name would compensate for the error. If the new shapes change the predicted readings noticeably, the whole
     /// search is repeated.
     fn with_exact_modes(&mut self, mut round: Round) -> Round {
-        for _ in 0..SHAPES {
+        for _ in 0..MOST_SHAPE_CHANGES {
             if round.selection.best.effects.is_empty() {
                 break;
             }
@@ -212,7 +212,7 @@ impl Settling<'_> {
             let moved =
                 pairs.map(|(d, (before, after))| ((after - before) / d.sigma).abs()).fold(0.0, f64::max);
             // the trial shapes were good enough: only the comparison is repeated
-            if moved < INEXACT {
+            if moved < LARGEST_SHAPE_ERROR {
                 if round.hopeful {
                     round = self.run(round.noise, Before::Weights(&round.selection));
                 }

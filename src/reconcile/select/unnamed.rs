@@ -17,15 +17,15 @@ use std::f64::consts::TAU;
 
 /// All sizes of a law below this fraction of its full size have equal prior probability. At full size a stiffness or
 /// a reading changes by 100 %.
-const SMALL: f64 = 0.02;
+const SMALL_SIZE: f64 = 0.02;
 /// Largest number of steps of the linearized fit. The weights of the readings are computed again at each step.
 const STEPS: usize = 6;
 /// The linearized fit ends when a step changes the objective by less than this.
-const SETTLED: f64 = 0.01;
+const CONVERGED_WITHIN: f64 = 0.01;
 /// A law without a name is preferred to named effects if the logarithm of its evidence, less the charge for its
 /// place, is higher by more than this. If no effect is named, a law is mentioned if it is better than calibration by
 /// as much.
-const BETTER: f64 = 2.0;
+const LEAST_GAIN: f64 = 2.0;
 
 /// A competing model: a fitted model to which a law without a name was added.
 struct Competitor {
@@ -93,14 +93,14 @@ pub(crate) fn instead(search: &Search, best: &Scored, baseline: &Fit) -> Option<
 }
 
 /// The best of the `competitors` by evidence, if its evidence, less a charge for having tried `places` places, is
-/// higher than `evidence` by more than [`BETTER`]; otherwise `None`. `evidence` is that of the model with which they
+/// higher than `evidence` by more than [`LEAST_GAIN`]; otherwise `None`. `evidence` is that of the model with which they
 /// compete. Effects that are in both models are not charged for their places.
 fn best_of(competitors: Vec<Competitor>, evidence: f64, places: f64) -> Option<Better> {
     let gain = |r: &Competitor| r.evidence - libm::log(places) - evidence;
     let best = competitors.into_iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
     let better =
         Better { gain: gain(&best), what: best.what, numbers: best.numbers, objective: best.objective };
-    (better.gain > BETTER).then_some(better)
+    (better.gain > LEAST_GAIN).then_some(better)
 }
 
 /// Fits each law without a name together with the parameters of the model `fit`. Laws that are the same as an effect
@@ -146,7 +146,7 @@ fn competitor(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Com
         predicted = at(&u);
         let before = here;
         here = objective(forward, &fit.model, u.as_slice(), &predicted, weights);
-        if (before - here).abs() < SETTLED {
+        if (before - here).abs() < CONVERGED_WITHIN {
             break;
         }
     }
@@ -169,6 +169,6 @@ fn competitor(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Com
 fn width(fit: &Fit, own: usize, p: usize, u: f64) -> f64 {
     match p < own {
         true => fit.model.free_parameters().nth(p - fit.model.calibrated()).map_or(1.0, |k| k.width(u)),
-        false => 2.0 * libm::log1p(1.0 / SMALL) * (u.abs() + SMALL),
+        false => 2.0 * libm::log1p(1.0 / SMALL_SIZE) * (u.abs() + SMALL_SIZE),
     }
 }

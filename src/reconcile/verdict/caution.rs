@@ -13,13 +13,13 @@ use crate::reconcile::readings::campaign::Campaign;
 
 /// Two places are neighbours if they are at most this many elements of the chain apart, such as two joints with a link
 /// between them.
-const NEAR: usize = 2;
+const NEIGHBOUR_DISTANCE: usize = 2;
 /// Tolerance of a calibrated factor, as a multiple of the standard deviation of the factor's logarithm.
-const TOLERANCE: f64 = 2.0;
+const TOLERANCE_SIGMAS: f64 = 2.0;
 /// A calibrated factor is called improbable if fewer than one in this many faultless parts deviate so far.
-const RARE: f64 = 200.0;
+const RARE_PARTS: f64 = 200.0;
 /// A calibrated factor that at most one in this many faultless parts has is no matter of tolerance.
-const IMPOSSIBLE: f64 = 1e6;
+const IMPOSSIBLE_PARTS: f64 = 1e6;
 
 /// Sentence that two effects of the model have opposite signs at neighbouring places; `None` if no two have. The two
 /// effects are of the same kind, or both are masses. Each then cancels a part of the other. Together they describe one
@@ -36,7 +36,9 @@ pub(crate) fn opposed(forward: &Forward, fit: &Fit) -> Option<String> {
         let (Some((a, by)), Some((b, other))) = (size(i), size(j)) else { return false };
         let is_mass = |p: &FreeParameter| p.name.contains("kg");
         let alike = effects[i].kind.name == effects[j].kind.name || (is_mass(a) && is_mass(b));
-        alike && by * other < 0.0 && distance(forward, effects[i], effects[j]).is_some_and(|d| d <= NEAR)
+        alike
+            && by * other < 0.0
+            && distance(forward, effects[i], effects[j]).is_some_and(|d| d <= NEIGHBOUR_DISTANCE)
     };
     let (i, j) = pairs.into_iter().find(is_opposed)?;
     Some(format!(
@@ -106,10 +108,10 @@ pub(crate) fn beyond_tolerance(
     let beyond = deviations.zip(calibrated).filter_map(|(sd, of)| {
         let one_in = one_in(sd, of);
         let words = format!("{}; {})", departure_words(sd, of), rarity_words(one_in));
-        ((of.factor.value - 1.0).abs() > TOLERANCE * sd).then_some((one_in, words))
+        ((of.factor.value - 1.0).abs() > TOLERANCE_SIGMAS * sd).then_some((one_in, words))
     });
     let (rarity, beyond): (Vec<f64>, Vec<String>) = beyond.unzip();
-    let doubt = match rarity.iter().any(|one_in| *one_in > RARE) {
+    let doubt = match rarity.iter().any(|one_in| *one_in > RARE_PARTS) {
         true => {
             ". So far off is seldom a matter of tolerance: the part may be another than the arm file says, or \
              something else deflects or has mass there that these readings do not tell from it"
@@ -126,7 +128,7 @@ pub(crate) fn impossible_calibration(
     deviations: impl Iterator<Item = f64>,
     calibrated: &[Calibrated],
 ) -> Option<String> {
-    let impossible = deviations.zip(calibrated).filter(|(sd, of)| one_in(*sd, of) > IMPOSSIBLE);
+    let impossible = deviations.zip(calibrated).filter(|(sd, of)| one_in(*sd, of) > IMPOSSIBLE_PARTS);
     let words = impossible.map(|(sd, of)| format!("{})", departure_words(sd, of)));
     let words: Vec<String> = words.collect();
     if words.is_empty() {
@@ -147,7 +149,7 @@ pub(crate) fn impossible_calibration(
 /// A calibrated factor, its departure from nominal and its tolerance, in words with an open bracket. `sd` is the standard
 /// deviation of its logarithm by the tolerance.
 fn departure_words(sd: f64, of: &Calibrated) -> String {
-    let (part, tolerance) = (of.factor.value - 1.0, TOLERANCE * sd);
+    let (part, tolerance) = (of.factor.value - 1.0, TOLERANCE_SIGMAS * sd);
     format!("{} by {:+.1} % (tolerance {:.1} %", of.name, 100.0 * part, 100.0 * tolerance)
 }
 

@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 
 /// A model with more parameters is taken only if it lowers the error on held-out readings by at least this fraction
 /// compared with the simpler one.
-const WORTHWHILE: f64 = 0.02;
+const LEAST_IMPROVEMENT: f64 = 0.02;
 
 /// A model that the corrected arm could have, with its error on held-out readings.
 #[derive(Debug, Clone, PartialEq)]
@@ -83,11 +83,11 @@ fn row(model: String, kept_out_rms_sigma: f64) -> Row {
 }
 
 /// Index of the chosen row: starting with the simplest model, a later row is taken whenever its error is lower than
-/// that of the row taken so far by [`WORTHWHILE`] or more.
+/// that of the row taken so far by [`LEAST_IMPROVEMENT`] or more.
 fn simplest_of_the_best(rows: &[Row]) -> usize {
     let mut chosen = 0;
     for (i, row) in rows.iter().enumerate() {
-        if row.kept_out_rms_sigma < (1.0 - WORTHWHILE) * rows[chosen].kept_out_rms_sigma {
+        if row.kept_out_rms_sigma < (1.0 - LEAST_IMPROVEMENT) * rows[chosen].kept_out_rms_sigma {
             chosen = i;
         }
     }

@@ -34,10 +34,10 @@ const STATIC_POSES: usize = 24;
 const MODAL_POSES: usize = 4;
 const PROPOSALS: usize = 4;
 /// Difference of the predictions of two models that suffices to decide between them \[standard deviations\].
-pub(crate) const ENOUGH: f64 = 4.0;
-/// Least separation with which a test is proposed \[standard deviations\]. A hundred readings of it are [`ENOUGH`], because
+pub(crate) const DECIDING_SIGMAS: f64 = 4.0;
+/// Least separation with which a test is proposed \[standard deviations\]. A hundred readings of it are [`DECIDING_SIGMAS`], because
 /// the mean of a hundred is ten times as sharp as one.
-pub(crate) const LEAST_SIGMAS: f64 = ENOUGH / 10.0;
+pub(crate) const LEAST_SIGMAS: f64 = DECIDING_SIGMAS / 10.0;
 /// Largest number of readings that is printed.
 const MOST_READINGS: f64 = 9999.0;
 /// Standard deviation of a displacement that is assumed if the campaign has no displacements \[mm\].
@@ -112,7 +112,7 @@ pub(crate) fn propose(question: &Question) -> Vec<NextTest> {
 /// Number of readings that suffice to decide between two models whose predictions differ by `sigmas` standard
 /// deviations in one reading.
 pub(crate) fn readings_needed(sigmas: f64) -> usize {
-    (ENOUGH / sigmas).powi(2).ceil().min(MOST_READINGS) as usize
+    (DECIDING_SIGMAS / sigmas).powi(2).ceil().min(MOST_READINGS) as usize
 }
 
 /// A test in words, for the case that no reading of the arm separates the model `best` from the `competitors`.
@@ -362,7 +362,7 @@ mod tests {
 
     #[test]
     fn a_test_is_worth_a_hundred_readings_at_most() {
-        assert_eq!([ENOUGH, 0.5 * ENOUGH, LEAST_SIGMAS].map(readings_needed), [1, 4, 100]);
+        assert_eq!([DECIDING_SIGMAS, 0.5 * DECIDING_SIGMAS, LEAST_SIGMAS].map(readings_needed), [1, 4, 100]);
         assert_eq!(readings_needed(0.0), MOST_READINGS as usize, "models that do not differ");
     }
 }

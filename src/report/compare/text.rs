@@ -8,9 +8,9 @@ use crate::report::table::{Column, Table, csv_line};
 use crate::report::words::wrap;
 
 /// Width of text tables, unless the labels need more \[characters\].
-const WIDTH: usize = 80;
+const TABLE_WIDTH: usize = 80;
 /// Labels longer than this are shortened in text tables \[characters\].
-const LABEL: usize = 24;
+const LONGEST_LABEL: usize = 24;
 
 impl Comparison {
     /// A table of the best value of each objective that each front reaches, without any limit.
@@ -55,11 +55,11 @@ impl Comparison {
             }
         }
         for moved in &self.moved {
-            out.push_str(&format!("\n{}", wrap(&moved.words, WIDTH, "")));
+            out.push_str(&format!("\n{}", wrap(&moved.words, TABLE_WIDTH, "")));
         }
         if !self.remarks.is_empty() {
             out.push('\n');
-            self.remarks.iter().for_each(|words| out.push_str(&wrap(words, WIDTH, "")));
+            self.remarks.iter().for_each(|words| out.push_str(&wrap(words, TABLE_WIDTH, "")));
         }
         out
     }
@@ -269,7 +269,7 @@ fn groups<'a>(rows: &[&'a Row], labels: &[String]) -> Vec<Vec<&'a Row>> {
         let fits = |group: &Vec<&'a Row>| {
             let tried: Vec<&Row> = group.iter().chain([row]).copied().collect();
             let text = table(&tried, labels).to_text();
-            text.lines().all(|l| l.chars().count() + 2 <= WIDTH)
+            text.lines().all(|l| l.chars().count() + 2 <= TABLE_WIDTH)
         };
         match out.last_mut() {
             Some(group) if fits(group) => group.push(row),
@@ -314,7 +314,7 @@ pub(crate) fn short_labels(labels: &[String]) -> Vec<String> {
 
 /// Removes text in brackets and abbreviates common words. If the label is still too long, cuts it.
 fn shorten(label: &str) -> String {
-    if label.chars().count() <= LABEL {
+    if label.chars().count() <= LONGEST_LABEL {
         return label.to_string();
     }
     let mut out = String::new();
@@ -333,10 +333,10 @@ fn shorten(label: &str) -> String {
         out = out.replace(long, short);
     }
     let out = out.split_whitespace().collect::<Vec<_>>().join(" ");
-    if out.chars().count() <= LABEL {
+    if out.chars().count() <= LONGEST_LABEL {
         return out;
     }
-    let cut: String = out.chars().take(LABEL - 1).collect();
+    let cut: String = out.chars().take(LONGEST_LABEL - 1).collect();
     format!("{}…", cut.trim_end())
 }
 
@@ -345,7 +345,7 @@ fn indent(text: &str) -> String {
 }
 
 fn item(sentence: &str) -> String {
-    wrap(sentence, WIDTH, "    ").replacen("    ", "  - ", 1)
+    wrap(sentence, TABLE_WIDTH, "    ").replacen("    ", "  - ", 1)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use crate::report::picks::{Design, Objective, best};
 use serde::Serialize;
 
 /// Number of limits that are chosen for each question.
-const CHOSEN: usize = 3;
+const LIMITS_PER_QUESTION: usize = 3;
 
 /// Limits at which fronts are compared. A question whose list is empty is not asked.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
@@ -42,7 +42,7 @@ impl Thresholds {
         }
         let choose = |limited| {
             let (strict, loose) = overlap(limited, fronts);
-            round_between(strict.min(loose), strict.max(loose), CHOSEN, limited)
+            round_between(strict.min(loose), strict.max(loose), LIMITS_PER_QUESTION, limited)
         };
         Self {
             deflection_mm: choose(Objective::Deflection),

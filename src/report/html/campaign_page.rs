@@ -22,7 +22,7 @@ const MOST_ROWS: usize = 26;
 /// Scores below this are drawn at the edge of the picture.
 const LEAST_SCORE: f64 = -30.0;
 /// Number of equal parts into which each joint's range is divided.
-const THIRDS: usize = 3;
+const PARTS_OF_RANGE: usize = 3;
 const BEFORE_AFTER: [&str; 2] = ["before: the model as given, calibrated", "after: with what was found"];
 
 impl CampaignPage {
@@ -146,7 +146,7 @@ impl CampaignPage {
         let ranges: Vec<(f64, f64)> = (0..self.joints.len()).map(range).collect();
         let part = |j: usize, third: usize| {
             let (low, high) = ranges[j];
-            let end = |i: usize| fixed(low + (high - low) * i as f64 / THIRDS as f64, 0);
+            let end = |i: usize| fixed(low + (high - low) * i as f64 / PARTS_OF_RANGE as f64, 0);
             let DrivenJoint { name, motion } = &self.joints[j];
             match motion {
                 Motion::Turns => format!("{name} at {}° to {}°", end(third), end(third + 1)),
@@ -158,14 +158,14 @@ impl CampaignPage {
             let moves = pose.iter().zip(&ranges).enumerate().filter(|(_, (_, (low, high)))| high > low);
             moves
                 .map(|(j, (a, (low, high)))| {
-                    let third = (THIRDS as f64 * (a - low) / (high - low)).floor() as usize;
-                    part(j, third.min(THIRDS - 1))
+                    let third = (PARTS_OF_RANGE as f64 * (a - low) / (high - low)).floor() as usize;
+                    part(j, third.min(PARTS_OF_RANGE - 1))
                 })
                 .collect()
         };
         let mut rows = self.split(names);
         let order = |c: &Compared| {
-            let all = (0..self.joints.len()).flat_map(|j| (0..THIRDS).map(move |t| (j, t)));
+            let all = (0..self.joints.len()).flat_map(|j| (0..PARTS_OF_RANGE).map(move |t| (j, t)));
             all.filter(|(j, _)| ranges[*j].0 < ranges[*j].1).position(|(j, t)| part(j, t) == c.part)
         };
         rows.sort_by_key(order);

@@ -6,7 +6,7 @@
 //! their mass in a view get up to half of the places. The others are thinned evenly along the mass.
 
 use super::packed::{self, packed};
-use crate::report::front_svg::WIDE;
+use crate::report::front_svg::LOGARITHMIC_ABOVE;
 use crate::report::front_table::FrontTable;
 use crate::report::number::significant;
 use crate::report::picks::Objective;
@@ -25,10 +25,10 @@ pub(crate) const MOST_ROWS: usize = 20_000;
 /// Largest size of the data on the page \[bytes\].
 pub(crate) const MOST_BYTES: usize = 1_200_000;
 /// Axes with at most this many distinct values have one label per value.
-const FEW: usize = 18;
+const MOST_LABELS: usize = 18;
 /// Distinct values get one label each only if neighbours differ by at least this fraction of the range. Otherwise
 /// labels would overlap.
-const APART: f64 = 0.04;
+const LEAST_LABEL_DISTANCE: f64 = 0.04;
 
 /// A group of designs that are drawn in the same style.
 #[derive(Debug, Clone, PartialEq)]
@@ -281,11 +281,11 @@ fn number_axis(empty: Axis, numbers: &[Option<f64>]) -> Axis {
     distinct.sort_by(f64::total_cmp);
     distinct.dedup();
     let (low, high) = (distinct.first().copied().unwrap_or(1.0), distinct.last().copied().unwrap_or(10.0));
-    let scale = if low > 0.0 && high > WIDE * low { Scale::Log } else { Scale::Linear };
+    let scale = if low > 0.0 && high > LOGARITHMIC_ABOVE * low { Scale::Log } else { Scale::Linear };
     let ruling = rule(scale, low, high, 6);
     let mut axis = Axis { range: Some((ruling.low, ruling.high, scale)), values, ..empty };
     let nearest = distinct.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
-    if distinct.len() <= FEW && distinct.len() > 1 && nearest >= APART * (high - low) {
+    if distinct.len() <= MOST_LABELS && distinct.len() > 1 && nearest >= LEAST_LABEL_DISTANCE * (high - low) {
         let margin = 0.04 * (high - low);
         axis.range = Some((low - margin, high + margin, Scale::Linear));
         axis.ticks = distinct.iter().map(|v| (axis.place(*v), crate::report::number::shortest(*v))).collect();

@@ -66,11 +66,11 @@ impl Gallery {
 }
 
 /// A column gets the wide style if a cell has more letters than this.
-const WORDY: usize = 40;
+const WORDY_LETTERS: usize = 40;
 
 /// A table in the form that templates need: headers and rows of cells, with a style class for each column.
 pub(super) fn table(table: &Table) -> Value {
-    let is_wordy = |i: usize| table.rows().iter().any(|row| row[i].chars().count() > WORDY);
+    let is_wordy = |i: usize| table.rows().iter().any(|row| row[i].chars().count() > WORDY_LETTERS);
     let columns: Vec<Value> = table
         .columns()
         .iter()

@@ -26,10 +26,10 @@ use nalgebra::Vector3;
 use serde_json::{Value, json};
 
 /// Number of modes that are drawn.
-const MODES: usize = 3;
+const MODES_DRAWN: usize = 3;
 /// The arm is drawn from above if its motion out of the vertical plane is at least this fraction of the largest
 /// motion.
-const SIDEWAYS: f64 = 0.5;
+const SIDEWAYS_SHARE: f64 = 0.5;
 
 /// A picked design with everything that its card on the page shows.
 #[derive(Debug, Clone, PartialEq)]
@@ -305,7 +305,7 @@ fn solve<'a>(arm: &Arm, case: &'a LoadCase) -> Solved<'a> {
     let posed = chain.pose(case);
     let statics = posed.statics();
     let pose_rad = chain.pose_si(&case.pose_deg);
-    let modes = posed.modes(&statics, MODES);
+    let modes = posed.modes(&statics, MODES_DRAWN);
     Solved {
         case,
         tip_mm: statics.tip_displacement_m.norm() * 1e3,
@@ -395,7 +395,7 @@ impl View {
         let most =
             |of: &dyn Fn(&Vector3<f64>) -> f64| moving.iter().map(|s| of(&s.moved_m)).fold(0.0, f64::max);
         let sideways = most(&|m| m.dot(&side.across()).abs());
-        if keep_upright || sideways < SIDEWAYS * most(&|m| m.norm()) {
+        if keep_upright || sideways < SIDEWAYS_SHARE * most(&|m| m.norm()) {
             return side;
         }
         Self { right, up: Vector3::z().cross(&right), upright: false, words: "Seen from above." }

@@ -13,7 +13,7 @@ use crate::report::table::csv_line;
 /// Number of bins into which each joint's range is divided.
 const BINS: usize = 9;
 /// A bin with fewer positions than this gets no median.
-const FEWEST: usize = 4;
+const FEWEST_IN_BIN: usize = 4;
 /// Largest number of joints that are drawn: those whose angle has the most effect on the error.
 const MOST_JOINTS: usize = 8;
 const NAMES: [&str; 3] = ["before", "after", "after, pose held out"];
@@ -197,7 +197,7 @@ struct Bin {
     after_mm: f64,
 }
 
-/// Median position errors in each bin of the range of the joint with the index `joint`. Bins with fewer than [`FEWEST`]
+/// Median position errors in each bin of the range of the joint with the index `joint`. Bins with fewer than [`FEWEST_IN_BIN`]
 /// positions are left out.
 fn bins(positions: &[Position], joint: usize) -> Vec<Bin> {
     let angles = || positions.iter().filter_map(|p| p.pose_deg.get(joint).copied());
@@ -216,7 +216,7 @@ fn bins(positions: &[Position], joint: usize) -> Vec<Bin> {
     (0..BINS)
         .filter_map(|bin| {
             let own: Vec<&Position> = positions.iter().filter(|p| part(p, bin)).collect();
-            (own.len() >= FEWEST).then(|| Bin {
+            (own.len() >= FEWEST_IN_BIN).then(|| Bin {
                 centre_deg: low + width * (bin as f64 + 0.5),
                 count: own.len(),
                 before_mm: median(&own, |p| &p.before_mm),

@@ -3,7 +3,7 @@
 //! Links have their length and outer size to scale. Joints are symbols: a circle if the axis is perpendicular to
 //! the drawing, a bar along the axis if it lies in the plane, a square if the joint slides.
 
-use super::draw::{CHARACTER, FONT_PX, INK, NOTE_PX, escape, head, line, px, text, text_px, wrap};
+use super::draw::{CHARACTER_WIDTH, FONT_PX, INK, NOTE_PX, escape, head, line, px, text, text_px, wrap};
 use crate::report::number::shortest;
 use std::fmt::Write;
 
@@ -256,7 +256,7 @@ impl ArmSketch {
 
     /// The caption, broken into rows that are no wider than the drawing.
     fn caption_rows(&self) -> Vec<String> {
-        wrap(&self.caption, ((self.width_px - 2.0 * EDGE_PX) / (CHARACTER * NOTE_PX)) as usize)
+        wrap(&self.caption, ((self.width_px - 2.0 * EDGE_PX) / (CHARACTER_WIDTH * NOTE_PX)) as usize)
     }
 }
 

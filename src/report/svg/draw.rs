@@ -21,7 +21,7 @@ pub(crate) const TITLE_PX: f64 = 16.0;
 pub(crate) const NOTE_PX: f64 = 12.0;
 /// Width of an average character, divided by the font size. It is rounded up, so that no text needs more space than
 /// was reserved.
-pub(crate) const CHARACTER: f64 = 0.62;
+pub(crate) const CHARACTER_WIDTH: f64 = 0.62;
 
 /// The head of an SVG file: size, white background, and title and description for readers who cannot see it.
 pub(crate) fn head(title: &str, description: &str, width_px: f64, height_px: f64) -> String {
@@ -99,7 +99,7 @@ pub(crate) fn text(out: &mut String, at: (f64, f64), anchor: &str, more: &str, w
 
 /// Width of a text, estimated so that it is rather too large \[px\].
 pub(crate) fn text_px(words: &str, font_px: f64) -> f64 {
-    words.chars().count() as f64 * CHARACTER * font_px
+    words.chars().count() as f64 * CHARACTER_WIDTH * font_px
 }
 
 /// A coordinate with at most two decimals.

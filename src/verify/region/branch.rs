@@ -16,18 +16,18 @@ use super::weights::{Member, Reduced};
 /// Smallest score for which a level or torque is branched, as a fraction of what the upper bound allows. If no
 /// score is larger, the level with the most options is branched.
 const WORTH_IT: f64 = 1e-4;
-/// If a row's value for the mixture is within this distance of zero (its limit), [`SAY`] is added to the weight of the
+/// If a row's value for the mixture is within this distance of zero (its limit), [`EXTRA_WEIGHT`] is added to the weight of the
 /// row in the score.
-const NEAR: f64 = 0.2;
-const SAY: f64 = 0.1;
+const NEAR_LIMIT: f64 = 0.2;
+const EXTRA_WEIGHT: f64 = 0.1;
 /// A member with a smaller weight in the mixture than this has no influence on the torque at which an interval is
 /// divided.
-const SHARE: f64 = 1e-3;
+const LEAST_MIXTURE_WEIGHT: f64 = 1e-3;
 /// A torque is not branched if its interval is narrower than this fraction of the torque's greatest magnitude.
-const KNOWN: f64 = 2e-3;
+const KNOWN_TORQUE_WIDTH: f64 = 2e-3;
 /// If the torque of the mixture is nearer to an end of the interval than this fraction of the interval's width, the
 /// interval is divided elsewhere.
-const EDGE: f64 = 0.1;
+const EDGE_SHARE: f64 = 0.1;
 
 /// One way to divide a subproblem in two.
 pub(super) enum Branching {
@@ -122,13 +122,13 @@ impl Rows<'_> {
         }
     }
 
-    /// Weight of a row in the score of a branching: its multiplier, and [`SAY`] more if the mixture, with the numbers
+    /// Weight of a row in the score of a branching: its multiplier, and [`EXTRA_WEIGHT`] more if the mixture, with the numbers
     /// `between`, is close to the row's limit. Rows of torque intervals have weight zero.
     fn says(&self, row: usize, between: &[f64], left: &Reduced) -> f64 {
-        let near = self.rows[row].value(between) > -NEAR;
+        let near = self.rows[row].value(between) > -NEAR_LIMIT;
         match (self.first_interval..self.first_mode).contains(&row) {
             true => 0.0,
-            false => left.weights[row] + if near { SAY } else { 0.0 },
+            false => left.weights[row] + if near { EXTRA_WEIGHT } else { 0.0 },
         }
     }
 
@@ -233,12 +233,13 @@ impl Rows<'_> {
     /// `None` if the interval is narrow enough already.
     fn branching_nm(&self, case: usize, joint: usize, torque_nm: f64, left: &Reduced) -> Option<f64> {
         let Span { least, most } = self.torques[case][joint];
-        let edge = EDGE * (most - least);
-        (most - least > KNOWN * most.abs().max(least.abs())).then_some(())?;
-        let breaks = left.mixed.iter().filter(|(share, _)| *share > SHARE).flat_map(|(_, member)| {
-            let stiff = self.table.joints[joint].range(member.drives[joint]).stiff;
-            [stiff.t1_nm, stiff.t2_nm, -stiff.t1_nm, -stiff.t2_nm]
-        });
+        let edge = EDGE_SHARE * (most - least);
+        (most - least > KNOWN_TORQUE_WIDTH * most.abs().max(least.abs())).then_some(())?;
+        let breaks =
+            left.mixed.iter().filter(|(share, _)| *share > LEAST_MIXTURE_WEIGHT).flat_map(|(_, member)| {
+                let stiff = self.table.joints[joint].range(member.drives[joint]).stiff;
+                [stiff.t1_nm, stiff.t2_nm, -stiff.t1_nm, -stiff.t2_nm]
+            });
         let beyond = breaks.filter(|at_nm| at_nm.abs() >= torque_nm.abs() && *at_nm > least && *at_nm < most);
         let nearest = beyond.min_by(|a, b| (a - torque_nm).abs().total_cmp(&(b - torque_nm).abs()));
         let inside = Some(torque_nm).filter(|nm| *nm > least + edge && *nm < most - edge);

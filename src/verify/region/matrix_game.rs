@@ -11,18 +11,18 @@
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
-/// Barrier parameter `μ` before the first stage, which already uses [`STAGE`] times this value. It is also how far `t`
+/// Barrier parameter `μ` before the first stage, which already uses [`BARRIER_FACTOR`] times this value. It is also how far `t`
 /// starts below the least row sum.
-const FIRST: f64 = 0.3;
+const FIRST_BARRIER: f64 = 0.3;
 /// Factor by which `μ` is reduced from stage to stage.
-const STAGE: f64 = 0.2;
+const BARRIER_FACTOR: f64 = 0.2;
 /// The stages end at `μ` = this divided by the number of rows and columns together.
-const LAST: f64 = 3e-4;
+const LAST_BARRIER: f64 = 3e-4;
 /// Largest number of Newton steps at each stage.
 const STEPS: usize = 4;
 /// Upper limit of the weight of a condition (a column of a pair of opposite sign). It is needed because the sum of the
 /// weights does not limit these weights.
-const MOST: f64 = 3.0;
+const LARGEST_WEIGHT: f64 = 3.0;
 /// Largest fraction of the distance to the nearest limit that a step may take, so that weights and slacks stay
 /// positive.
 const SHORT_OF: f64 = 0.95;
@@ -38,7 +38,7 @@ pub(super) struct Minimax {
 
 /// The weights of the columns for which the smallest weighted row sum is greatest.
 ///
-/// The sum of the weights, which is one, does not include the weights of conditions. Each of these is at most [`MOST`]
+/// The sum of the weights, which is one, does not include the weights of conditions. Each of these is at most [`LARGEST_WEIGHT`]
 /// instead. Conditions come in pairs of opposite sign (a torque is at least a value, and at most another). If the sum
 /// included them, equal weights on both columns of a pair would use up a part of it without any effect.
 pub(super) fn solve(rows: &[Vec<f64>], conditions: Range<usize>) -> Minimax {
@@ -49,12 +49,12 @@ pub(super) fn solve(rows: &[Vec<f64>], conditions: Range<usize>) -> Minimax {
     let counts: Vec<f64> = (0..width).map(|column| if is_counted(&column) { 1.0 } else { 0.0 }).collect();
     let sums = |w: &[f64]| -> Vec<f64> { rows.iter().map(|row| dot(row, w)).collect() };
     let least = |sums: &[f64]| sums.iter().copied().fold(f64::INFINITY, f64::min);
-    let last = LAST / (count + width) as f64;
-    let mut mu = FIRST;
-    let mut t = least(&sums(&w)) - FIRST;
+    let last = LAST_BARRIER / (count + width) as f64;
+    let mut mu = FIRST_BARRIER;
+    let mut t = least(&sums(&w)) - FIRST_BARRIER;
     let mut shares = vec![1.0 / count as f64; count];
     while mu > last {
-        mu = (mu * STAGE).max(last);
+        mu = (mu * BARRIER_FACTOR).max(last);
         for _ in 0..STEPS {
             let slack: Vec<f64> = sums(&w).iter().map(|sum| sum - t).collect();
             let Some(step) = newton(rows, &w, &counts, &slack, mu) else { break };
@@ -62,7 +62,7 @@ pub(super) fn solve(rows: &[Vec<f64>], conditions: Range<usize>) -> Minimax {
             let falls = rows.iter().map(|row| dot(row, dw) - dt).zip(&slack);
             let falls = falls.map(|(fall, left)| (fall, *left));
             let down = dw.iter().copied().zip(w.iter().copied());
-            let conditions = conditions.clone().map(|k| (-dw[k], MOST - w[k]));
+            let conditions = conditions.clone().map(|k| (-dw[k], LARGEST_WEIGHT - w[k]));
             let bounds = falls.chain(down).chain(conditions).filter(|(fall, _)| *fall < 0.0);
             let room = bounds.map(|(fall, left)| -left / fall).fold(f64::INFINITY, f64::min);
             let length = (SHORT_OF * room).min(1.0);
@@ -78,7 +78,8 @@ pub(super) fn solve(rows: &[Vec<f64>], conditions: Range<usize>) -> Minimax {
     }
     let mixed = |column: usize| rows.iter().zip(&shares).map(|(row, share)| row[column] * share).sum::<f64>();
     let of_counted = (0..width).filter(is_counted).map(mixed).fold(f64::NEG_INFINITY, f64::max);
-    let most = of_counted + conditions.clone().map(|column| MOST * mixed(column).max(0.0)).sum::<f64>();
+    let most =
+        of_counted + conditions.clone().map(|column| LARGEST_WEIGHT * mixed(column).max(0.0)).sum::<f64>();
     Minimax { weights: w, shares, most }
 }
 
@@ -91,7 +92,7 @@ fn newton(rows: &[Vec<f64>], w: &[f64], counts: &[f64], slack: &[f64], mu: f64) 
         curvature[(k, k)] = 1.0 / (w * w);
         (sides[(k, 0)], sides[(k, 1)]) = (1.0 / w, counts[k]);
         if counts[k] == 0.0 {
-            let left = MOST - w;
+            let left = LARGEST_WEIGHT - w;
             curvature[(k, k)] += 1.0 / (left * left);
             sides[(k, 0)] -= 1.0 / left;
         }

@@ -11,7 +11,7 @@ use std::collections::HashSet;
 
 /// Relative amount by which a dominating design must be better in at least one objective. All objectives of the
 /// front's designs are made worse by this amount before the bounds are computed.
-const BETTER: f64 = 2e-7;
+const BETTER_BY: f64 = 2e-7;
 
 /// A binary tree over the local upper bounds of a front. The root is node 0.
 pub(super) struct UpperBounds(Vec<Node>);
@@ -41,7 +41,7 @@ impl UpperBounds {
 }
 
 /// One design of the front for each cell of a logarithmic grid with steps of `apart` (relative), or all designs if
-/// `apart` is zero. The objectives of each are made worse by [`BETTER`].
+/// `apart` is zero. The objectives of each are made worse by [`BETTER_BY`].
 fn thinned(front: &[Objectives], apart: f64) -> Vec<UpperBound> {
     let mut taken = HashSet::new();
     let step = libm::log1p(apart);
@@ -51,9 +51,9 @@ fn thinned(front: &[Objectives], apart: f64) -> Vec<UpperBound> {
         step == 0.0 || taken.insert(cells)
     });
     let worse = |row: &Objectives| UpperBound {
-        mass_kg: row.mass_kg * (1.0 + BETTER),
-        tip_m: row.tip_deflection_m * (1.0 + BETTER),
-        hz: row.lowest_mode_hz * (1.0 - BETTER),
+        mass_kg: row.mass_kg * (1.0 + BETTER_BY),
+        tip_m: row.tip_deflection_m * (1.0 + BETTER_BY),
+        hz: row.lowest_mode_hz * (1.0 - BETTER_BY),
     };
     rows.map(worse).collect()
 }

@@ -20,15 +20,15 @@ const MOST_SHAPES: usize = 3;
 const TO_NARROW: usize = 4;
 /// The search for weights ends if no weighting can raise the least weighted sum by more than this. Rows are scaled, so
 /// it has no unit.
-const SETTLED: f64 = 5e-4;
+const WEIGHT_CONVERGENCE: f64 = 5e-4;
 /// Values of rows are limited to this magnitude, so that a row far from its limit does not outweigh the others.
-const FAR: f64 = 10.0;
+const LARGEST_ROW: f64 = 10.0;
 /// Margin for rounding in sums whose terms are about one.
 pub(super) const ROUNDING: f64 = 1e-9;
 /// Number of weightings that are used to exclude options: those with the greatest least sums.
-const STRICTEST: usize = 12;
+const WEIGHTINGS_USED: usize = 12;
 /// Approximate number of nodes into which the tubes of a link are divided when options are excluded.
-const NODES: usize = 128;
+const NODES_PER_LINK: usize = 128;
 
 /// A weighting of the rows: the weights, the least value of the weighted sum over all members (`least`), and the amount
 /// that each part adds to it.
@@ -154,7 +154,7 @@ impl Rows<'_> {
             to_narrow += usize::from(minimax.most <= ROUNDING);
             if surrogates.len() >= MOST_SURROGATES
                 || to_narrow > TO_NARROW
-                || minimax.most <= nearest + SETTLED
+                || minimax.most <= nearest + WEIGHT_CONVERGENCE
             {
                 break minimax;
             }
@@ -191,7 +191,7 @@ impl Rows<'_> {
     }
 
     fn values(&self, member: &Member) -> Vec<f64> {
-        self.rows.iter().map(|row| row.value(&member.numbers).clamp(-FAR, FAR)).collect()
+        self.rows.iter().map(|row| row.value(&member.numbers).clamp(-LARGEST_ROW, LARGEST_ROW)).collect()
     }
 
     /// Adds the row of a mode in every case in which a mixture has a mode below the upper bound's frequency. The
@@ -219,7 +219,7 @@ impl Rows<'_> {
         mut surrogates: Vec<Surrogate>,
     ) -> Option<[Vec<Vec<u32>>; 2]> {
         surrogates.sort_by(|a, b| b.least.total_cmp(&a.least));
-        surrogates.truncate(STRICTEST);
+        surrogates.truncate(WEIGHTINGS_USED);
         let rooms: Vec<(Vec<f64>, f64, Surrogate)> = surrogates
             .into_iter()
             .map(|mut surrogate| {
@@ -246,7 +246,7 @@ impl Rows<'_> {
                 (Prices::new(&prices[self.columns.of_part(part)]), surrogate.parts[part] + room)
             };
             let limits: Vec<(Prices, f64)> = rooms.iter().map(limit).collect();
-            let kept = affordable(&self.table.tubes[tube], kept, &limits, NODES);
+            let kept = affordable(&self.table.tubes[tube], kept, &limits, NODES_PER_LINK);
             (!kept.is_empty()).then_some(kept)
         });
         Some([joints.collect::<Option<_>>()?, tubes.collect::<Option<_>>()?])

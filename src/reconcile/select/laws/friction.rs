@@ -6,7 +6,7 @@
 use super::{Builder, Law};
 
 /// Friction torques as parts of the torque. The lag is not linear in them, so a small and a large one are tried.
-const PARTS: [f64; 2] = [0.02, 0.1];
+const TRIED_PARTS: [f64; 2] = [0.02, 0.1];
 
 impl Builder<'_> {
     /// For each compliant joint, laws of a friction torque in proportion to its torque.
@@ -22,7 +22,7 @@ impl Builder<'_> {
                 effect: None,
                 columns: vec![self.friction_column(joint, part)],
             };
-            out.extend(PARTS.map(law));
+            out.extend(TRIED_PARTS.map(law));
         }
         out
     }

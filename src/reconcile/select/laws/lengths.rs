@@ -6,9 +6,9 @@ use crate::reconcile::readings::campaign::Campaign;
 use rayon::prelude::*;
 
 /// Part of the length by which a link is lengthened for the comparison.
-const STEP: f64 = 1e-3;
+const LENGTH_STEP: f64 = 1e-3;
 /// Part of the length that counts as the full size of the law.
-const FULL: f64 = 0.1;
+const FULL_PART: f64 = 0.1;
 
 impl Builder<'_> {
     /// For each link, the law that it is longer or shorter than drawn.
@@ -29,20 +29,24 @@ impl Builder<'_> {
         let stated = self.nominal_readings(self.campaign);
         let column = |name: &&str| {
             let longer = self.nominal_readings(&lengthened(self.campaign, name));
-            longer.iter().zip(&stated).map(|(longer, stated)| FULL / STEP * (longer - stated)).collect()
+            longer
+                .iter()
+                .zip(&stated)
+                .map(|(longer, stated)| FULL_PART / LENGTH_STEP * (longer - stated))
+                .collect()
         };
         names.par_iter().map(column).collect()
     }
 }
 
-/// The campaign with the link `name` of its arm lengthened by [`STEP`].
+/// The campaign with the link `name` of its arm lengthened by [`LENGTH_STEP`].
 fn lengthened(campaign: &Campaign, name: &str) -> Campaign {
     let mut out = campaign.clone();
     for element in &mut out.arm.chain {
         if let Element::Link(link) = element
             && link.name == name
         {
-            link.vector_m *= 1.0 + STEP;
+            link.vector_m *= 1.0 + LENGTH_STEP;
         }
     }
     out

@@ -80,10 +80,10 @@ impl Builder<'_> {
     /// The derivative of every reading with respect to the size of a change of the coefficients, at size zero.
     /// `changed` makes the change of a given size in the coefficients.
     fn changed_column(&self, changed: &dyn Fn(&mut Coefficients, f64)) -> Vec<f64> {
-        const PART: f64 = 1e-4;
+        const DERIVATIVE_STEP: f64 = 1e-4;
         let mut moved = self.fit.point.coefficients.clone();
-        changed(&mut moved, PART);
-        change_to(self.forward, &self.fit.point, moved).into_iter().map(|d| d / PART).collect()
+        changed(&mut moved, DERIVATIVE_STEP);
+        change_to(self.forward, &self.fit.point, moved).into_iter().map(|d| d / DERIVATIVE_STEP).collect()
     }
 
     /// The change of every reading, in its unit, by additional compliances. Each entry of `further` is a pair: index of

@@ -92,7 +92,7 @@ impl Builder<'_> {
     /// Adds to `column`, a column of the static readings under payloads, the change of the frequencies if all
     /// payloads are heavier in the same proportion.
     fn heavier_payloads(&self, mut column: Vec<f64>) -> Vec<f64> {
-        const PART: f64 = 1e-4;
+        const DERIVATIVE_STEP: f64 = 1e-4;
         let forward = self.forward;
         let from = &self.fit.point.coefficients;
         let mut truth = vec![0.0; forward.data.len()];
@@ -100,11 +100,11 @@ impl Builder<'_> {
             let Some((datum, _)) = test.modes.first() else { continue };
             let payload_kg = self.campaign.modal[datum - forward.starts[1]].payload.mass_kg;
             let mut to = from.clone();
-            to.payload_delta_kg += PART * payload_kg;
+            to.payload_delta_kg += DERIVATIVE_STEP * payload_kg;
             test.change(&forward.layout, solved, from, &to, &mut truth);
         }
         let modal = self.read(&truth);
-        column.iter_mut().zip(modal).for_each(|(own, change)| *own += change / PART);
+        column.iter_mut().zip(modal).for_each(|(own, change)| *own += change / DERIVATIVE_STEP);
         column
     }
 
