@@ -368,7 +368,7 @@ pub(crate) fn motor_side_kg(object: &Object, catalogs: &Catalogs) -> Option<f64>
 }
 
 /// Reads which mass of a joint's gear counts: component set, or housed unit, which is the default.
-fn read_gear_mass(object: &Object) -> Option<GearMass> {
+pub(crate) fn read_gear_mass(object: &Object) -> Option<GearMass> {
     object.or("gear_mass", GearMass::HousedUnit, |n| match n.string()? {
         "component_set" => Some(GearMass::ComponentSet),
         "housed_unit" => Some(GearMass::HousedUnit),

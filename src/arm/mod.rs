@@ -20,6 +20,7 @@ pub(crate) mod element_names;
 pub(crate) mod extras;
 pub(crate) mod file;
 pub(crate) mod file_keys;
+pub(crate) mod halton;
 pub(crate) mod joint_law;
 pub(crate) mod joint_torque;
 pub(crate) mod keys;

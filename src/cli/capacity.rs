@@ -27,8 +27,8 @@ use std::path::{Path, PathBuf};
                         state a payload of their own keep it. The largest speed is that of the tip with the study's payload; joints are faster by \
                         the same factor, and the times of the cycle are those of the study. \
                         An arm with springs or counterweights may need a smallest payload, which is then named too.\n\n\
-                        Of an arm file, which says nothing of motion, the static torques are judged, and the forces of prismatic joints: \
-                        by the limits of --limits, or of import.json in its folder, or by the catalog's gears and motors that it names. \
+                        An arm file states no motion. Therefore only static torques are checked, and forces of prismatic joints. \
+                        The limits come from --limits, else from import.json in its folder, else from the catalog's gears and motors. \
                         Output bearings are judged at rest by their ratings.\n\n\
                         The reach is the distance of the tip from the base: across gravity for an arm that stands or hangs (gravity along \
                         its z axis), the whole distance for any other, such as an arm on a wall."

@@ -17,10 +17,11 @@ use std::path::PathBuf;
     URDF files, the files of imports and exports, and folders of any of them or of results. What belongs together is read together: readings with their campaign, cases with the arm.json in \
     their folder, a catalog with its folder, a stiffness file with the arm.json in its folder. The files of a result are compared with the hashes in it. The exit code is 3 if \
     a file has a fault, 9 if a result is not what was written or is incomplete, 7 if a file cannot be read.\n\n\
-    --same compares two folders of results byte by byte, outside the places that tell of time and machine: elapsed_s, \
-    designs_per_s, threads, platform and files of run.json and shard.json, files of verdict.json, the marked timing of summary.md \
-    and report.html, and the folder's own name in the commands there, in the folder and in those in it. Shards are compared if \
-    the folder has nothing else. The exit code is 9 if they differ, 7 if there is nothing to compare.")]
+    --same compares two folders of results, with the folders in them, byte by byte. It ignores:\n  \
+    elapsed_s, designs_per_s, threads, platform and files of run.json and shard.json;\n  \
+    files of verdict.json;\n  \
+    the marked timing of summary.md and report.html, and the folder's own name in the commands there.\n\
+    Shards are compared if the folder has nothing else. The exit code is 9 if the folders differ, 7 if there is nothing to compare.")]
 pub(crate) struct CheckArgs {
     /// Files and folders
     #[arg(value_name = "FILE", required_unless_present = "same", conflicts_with = "same")]

@@ -1,7 +1,7 @@
 //! Compares two folders of results, without the numbers that depend on the time and on the machine.
 
 use super::failure::Failure;
-use super::manifest::{CHOICES, MANIFESTS, RUN, SHARD, VERDICT};
+use super::manifest::{CHOICES, MANIFESTS, OF_A_RUN, PAGE, RUN, SHARD, SUMMARY, VERDICT};
 use super::result_folder::complete;
 use crate::report::summary::TIMING;
 use crate::report::whole_file::folder_of;
@@ -10,9 +10,6 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Keys of run.json and shard.json that differ from run to run: times, the machine, and the hashes of files that contain
-/// times.
-const OF_A_RUN: [&str; 5] = ["elapsed_s", "designs_per_s", "threads", "platform", "files"];
 /// Commands in summary.md and report.html after which the folder of results is named. The name is left out of the
 /// comparison, because each result is in a folder of its own.
 const COMMANDS: [&str; 5] =
@@ -81,9 +78,10 @@ fn neutral(folder: &Path, name: &str) -> Result<Vec<u8>, Failure> {
     let inside = folder_of(&folder.join(name));
     // a folder of a campaign has results of studies in folders of their own
     Ok(match Path::new(name).file_name().and_then(|name| name.to_str()) {
-        Some(RUN | SHARD | CHOICES) => without_keys(bytes, &OF_A_RUN),
+        // the hashes of files that contain times differ from run to run as well
+        Some(RUN | SHARD | CHOICES) => without_keys(bytes, &[&OF_A_RUN[..], &["files"]].concat()),
         Some(VERDICT) => without_keys(bytes, &["files"]),
-        Some("summary.md" | "report.html") => without_timing(bytes, typed_as(&inside).as_deref()),
+        Some(SUMMARY | PAGE) => without_timing(bytes, typed_as(&inside).as_deref()),
         _ => bytes,
     })
 }
@@ -111,6 +109,6 @@ fn without_timing(bytes: Vec<u8>, folder: Option<&str>) -> Vec<u8> {
 
 /// The folder of results as the user typed it when the results were written, taken from a command in the summary.
 fn typed_as(folder: &Path) -> Option<String> {
-    let summary = std::fs::read_to_string(folder.join("summary.md")).ok()?;
+    let summary = std::fs::read_to_string(folder.join(SUMMARY)).ok()?;
     summary.lines().find_map(|line| line.strip_prefix(COMMANDS[2])).map(String::from)
 }

@@ -1,15 +1,15 @@
 //! Runs a study that leaves values of springs or counterweights open: it searches one choice after the other, each in a
 //! folder of its own, and joins their fronts.
 
-use super::beside::{another_stands, say_missing};
 use super::compare::files_of_comparison;
 use super::compare_remarks::{remarks, said_by};
 use super::corrections;
 use super::exit::{Answer, Exit};
+use super::extra_files::{another_stands, say_missing};
 use super::failure::Failure;
 use super::finished::{Written, catalogs_hash, pretty};
 use super::log::Log;
-use super::manifest::{CHOICES, hash};
+use super::manifest::{CHOICES, FRONT, PAGE, PICTURE, STUDY, SUMMARY, hash};
 use super::result_folder::{ResultFolder, unfinished_in};
 use super::results::Results;
 use super::search::SearchArgs;
@@ -35,7 +35,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// Names of the files of the joint result, without the folders of the choices.
-const FILES: [&str; 6] = ["front.csv", "study.json", CHOICES, "front.svg", "summary.md", "report.html"];
+const FILES: [&str; 6] = [FRONT, STUDY, CHOICES, PICTURE, SUMMARY, PAGE];
 
 /// Number of letters of a hash in the name of a choice's folder.
 const HASH_LETTERS: usize = 6;
@@ -163,7 +163,7 @@ fn front_of(dir: &Path, at: usize, choice: &BalanceChoice, ended: Ended) -> Resu
         Ended::Written => {
             let results = Results::open(&dir.join(&folder))?;
             let status = results.run["status"].as_str().unwrap_or_default().to_string();
-            (status, results.run["gap"].as_f64(), results.front("front.csv")?)
+            (status, results.run["gap"].as_f64(), results.front(FRONT)?)
         }
     };
     let (words, values) = (choice.words.clone(), choice.values.clone());
@@ -192,9 +192,9 @@ fn publish(
     let joint = joint_front(fronts);
     let (comparison, contenders) = compared(dir, &with_designs)?;
     let mut files = vec![
-        ("front.csv".to_string(), joint.to_csv()),
-        ("study.json".to_string(), asked.text.as_bytes().to_vec()),
-        ("summary.md".to_string(), summary(asked, fronts, &joint, &comparison).into_bytes()),
+        (FRONT.to_string(), joint.to_csv()),
+        (STUDY.to_string(), asked.text.as_bytes().to_vec()),
+        (SUMMARY.to_string(), summary(asked, fronts, &joint, &comparison).into_bytes()),
         (CHOICES.to_string(), pretty(&manifest(asked, fronts, &joint, catalogs))),
     ];
     files.extend(pictures(&comparison, &contenders));
@@ -234,7 +234,7 @@ fn pictures(comparison: &Comparison, contenders: &[Contender]) -> Vec<(String, V
     let files = files_of_comparison(comparison, contenders).into_iter();
     files
         .filter_map(|(name, bytes)| match name.as_str() {
-            "compare.svg" => Some(("front.svg".to_string(), bytes)),
+            "compare.svg" => Some((PICTURE.to_string(), bytes)),
             "compare.md" | "compare.csv" => None,
             _ => Some((name, bytes)),
         })

@@ -3,6 +3,7 @@
 use super::compare_remarks::{remarks, said_by};
 use super::failure::Failure;
 use super::finished::front_of_material;
+use super::manifest::FRONT;
 use super::own_files::write_own;
 use super::result_folder::complete;
 use super::results::Results;
@@ -159,7 +160,7 @@ fn load(results: &[PathBuf]) -> Result<Loaded, Failure> {
 fn front_at(path: &Path) -> Result<FrontTable, Failure> {
     if path.is_dir() {
         return match Results::around(&front_file(path)?)? {
-            Some(results) => results.front("front.csv"),
+            Some(results) => results.front(FRONT),
             None => read_front(&front_file(path)?),
         };
     }
@@ -177,7 +178,7 @@ fn front_at(path: &Path) -> Result<FrontTable, Failure> {
 
 /// The file with the front of all designs in a result folder.
 fn front_file(dir: &Path) -> Result<PathBuf, Failure> {
-    let file = dir.join("front.csv");
+    let file = dir.join(FRONT);
     if file.is_file() {
         return Ok(file);
     }
@@ -196,7 +197,7 @@ fn read_front(file: &Path) -> Result<FrontTable, Failure> {
 fn materials_of(dir: &Path) -> Result<Vec<Contender>, Failure> {
     front_file(dir)?;
     let results = Results::open(dir)?;
-    let mut out = vec![Contender { reference: true, ..Contender::new("all", results.front("front.csv")?) }];
+    let mut out = vec![Contender { reference: true, ..Contender::new("all", results.front(FRONT)?) }];
     for (name, file) in listed_materials(&results.run) {
         out.push(Contender::new(&name, results.front(&front_of_material(&file))?));
     }

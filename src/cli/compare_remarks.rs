@@ -2,6 +2,7 @@
 //! out.
 
 use super::failure::Failure;
+use super::manifest::STUDY;
 use super::results::Results;
 use crate::report::number::{shortest, significant};
 use serde_json::Value;
@@ -38,7 +39,7 @@ const MODEL: [&str; 6] = ["models", "effects", "extras", "harness_kg_per_m", "co
 pub(super) fn said_by(results: &[PathBuf], labels: Vec<String>) -> Result<Vec<Said>, Failure> {
     let folders = results.iter().zip(labels).filter(|(path, _)| path.join("run.json").is_file());
     let said = folders.map(|(path, label)| {
-        let study = std::fs::read_to_string(path.join("study.json")).unwrap_or_default();
+        let study = std::fs::read_to_string(path.join(STUDY)).unwrap_or_default();
         let study = serde_json::from_str(&study).unwrap_or_default();
         Ok(Said { label, run: Results::open(path)?.run, study })
     });

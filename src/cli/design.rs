@@ -3,6 +3,7 @@
 
 use super::failure::Failure;
 use super::finished::{catalogs_hash, pretty};
+use super::manifest::STUDY;
 use super::own_files::write_own;
 use super::results::Results;
 use crate::arm::Arm;
@@ -52,7 +53,7 @@ pub(super) fn resolve_design(
     catalogs: &Catalogs,
 ) -> Result<ResolvedDesign, Failure> {
     let results = open_results(folder, catalogs)?;
-    let (file, text) = results.text("study.json")?;
+    let (file, text) = results.text(STUDY)?;
     let study = read_study(Document::parse(&file, &text)?, catalogs)?;
     let unknown = || {
         Failure::Usage(format!(

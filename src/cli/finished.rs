@@ -1,10 +1,10 @@
 //! The output of a finished search: its files, the page for a browser, and the text for the terminal.
 
-use super::beside::{Beside, another_stands, say_missing};
 use super::exit::Exit;
+use super::extra_files::{ExtraFiles, another_stands, say_missing};
 use super::failure::Failure;
 use super::log::Log;
-use super::manifest::{Files, RUN};
+use super::manifest::{FRONT, Files, OF_A_RUN, PICTURE, RUN, STUDY, SUMMARY, hash};
 use super::progress::Progress;
 use super::stop::stop_if_wanted;
 use super::supplements::{Found, SupplementArgs};
@@ -91,7 +91,7 @@ pub(super) fn front_of_material(file: &str) -> String {
 
 /// Whether a file of this name contains the front of one material.
 pub(super) fn is_front_of_material(name: &str) -> bool {
-    name.starts_with("front.") && name.ends_with(".csv") && name != "front.csv"
+    name.starts_with("front.") && name.ends_with(".csv") && name != FRONT
 }
 
 /// What an exact search proved about its front.
@@ -182,27 +182,27 @@ impl Finished<'_> {
         let mut first = tables.clone();
         first.push((RUN.into(), pretty(&self.run_json(&summary, &[], &[NOTHING_ELSE.to_string()]))));
         let mut left_out = keep(&first)?;
-        let (mut files, mut supplements, mut beside) = (first, Vec::new(), Beside::default());
+        let (mut files, mut supplements, mut extra) = (first, Vec::new(), ExtraFiles::default());
         stop_if_wanted("front");
         // a user who wants to stop gets the front at once, and nothing that takes longer
         let is_front_only = stop.load(Ordering::Relaxed);
         if !is_front_only {
             let (problem, catalogs) = (self.problem, self.catalogs);
             let budgets =
-                beside.make("budget.csv", || budgets(problem, self.whole, catalogs, &summary.overall));
+                extra.make("budget.csv", || budgets(problem, self.whole, catalogs, &summary.overall));
             summary.budgets = budgets.unwrap_or_default();
-            supplements = self.supplements(asked, stop, &summary, &mut beside)?;
-            let run = self.fill(&summary, &supplements, &mut beside);
-            let mut all = [tables, std::mem::take(&mut beside.files)].concat();
+            supplements = self.supplements(asked, stop, &summary, &mut extra)?;
+            let run = self.fill(&summary, &supplements, &mut extra);
+            let mut all = [tables, std::mem::take(&mut extra.files)].concat();
             all.push((RUN.into(), pretty(&run)));
             match keep(&all) {
                 Ok(names) => (left_out, files) = (names, all),
-                Err(e) => beside.missing.push(format!("what goes with the front: {e}")),
+                Err(e) => extra.missing.push(format!("what goes with the front: {e}")),
             }
         }
-        let terminal = beside.make("the summary on the terminal", || terminal_summary(&summary));
-        beside.missing.extend(left_out.iter().map(|name| another_stands(name)));
-        say_missing(&beside.missing, self.log);
+        let terminal = extra.make("the summary on the terminal", || terminal_summary(&summary));
+        extra.missing.extend(left_out.iter().map(|name| another_stands(name)));
+        say_missing(&extra.missing, self.log);
         files.retain(|(name, _)| !left_out.contains(name));
         let paragraphs = supplements.iter().map(|s| &s.terminal).filter(|text| !text.is_empty());
         let paragraphs: String = paragraphs.map(|text| format!("\n{text}")).collect();
@@ -222,7 +222,7 @@ impl Finished<'_> {
         })
     }
 
-    /// Computes the supplements that the user asked for, such as near designs, and adds their files to `beside`.
+    /// Computes the supplements that the user asked for, such as near designs, and adds their files to `extra`.
     ///
     /// # Errors
     /// The user stopped the computation.
@@ -231,39 +231,39 @@ impl Finished<'_> {
         asked: &SupplementArgs,
         stop: &AtomicBool,
         summary: &SummaryInput,
-        beside: &mut Beside,
+        extra: &mut ExtraFiles,
     ) -> Result<Vec<Supplement>, Failure> {
         let Self { problem, catalogs, outcome, near, .. } = *self;
         let (is_exact, ties_listed) = (self.exact.is_some(), self.ties_listed());
         let found = Found { problem, catalogs, outcome, near, is_exact, ties_listed, stop };
         let what = "what was asked for in addition to the front";
-        let supplements = beside.make(what, || asked.work_out(&found, &summary.overall));
+        let supplements = extra.make(what, || asked.work_out(&found, &summary.overall));
         let supplements = supplements.transpose()?.unwrap_or_default();
         let listed = supplements.iter().filter_map(|s| s.file.clone());
-        beside.files.extend(listed.map(|(name, bytes)| (name.to_string(), bytes)));
+        extra.files.extend(listed.map(|(name, bytes)| (name.to_string(), bytes)));
         Ok(supplements)
     }
 
-    /// Makes the tables, the picture, the summary and the page, and adds them to `beside`. Returns the contents of
+    /// Makes the tables, the picture, the summary and the page, and adds them to `extra`. Returns the contents of
     /// `run.json`.
-    fn fill(&self, summary: &SummaryInput, supplements: &[Supplement], beside: &mut Beside) -> Value {
+    fn fill(&self, summary: &SummaryInput, supplements: &[Supplement], extra: &mut ExtraFiles) -> Value {
         for (file, of) in self.file_names().iter().zip(&self.outcome.by_material) {
             if !of.ties_listed {
-                beside.file(&format!("ties.{file}.csv"), || ties(self.problem, &of.front).to_csv());
+                extra.file(&format!("ties.{file}.csv"), || ties(self.problem, &of.front).to_csv());
             }
         }
-        beside.file("budget.csv", || budget_csv(&summary.budgets).into_bytes());
-        let picture = beside.make("front.svg", || picture(summary)).unwrap_or_default();
+        extra.file("budget.csv", || budget_csv(&summary.budgets).into_bytes());
+        let picture = extra.make(PICTURE, || picture(summary)).unwrap_or_default();
         if !picture.is_empty() {
-            beside.files.push(("front.svg".into(), picture.clone().into_bytes()));
+            extra.files.push((PICTURE.into(), picture.clone().into_bytes()));
         }
         let markdown: String = supplements.iter().map(|s| s.markdown.as_str()).collect();
-        beside.file("summary.md", || (summary_md(summary) + &markdown).into_bytes());
-        let run = self.run_json(summary, supplements, &beside.missing);
+        extra.file(SUMMARY, || (summary_md(summary) + &markdown).into_bytes());
+        let run = self.run_json(summary, supplements, &extra.missing);
         let sections = supplements.iter().filter_map(|s| s.section.clone()).collect();
-        let page = beside.make("report.html and plots", || self.page(summary, picture, sections, &run));
-        beside.files.extend(page.map(Page::into_files).unwrap_or_default());
-        self.run_json(summary, supplements, &beside.missing)
+        let page = extra.make("report.html and plots", || self.page(summary, picture, sections, &run));
+        extra.files.extend(page.map(Page::into_files).unwrap_or_default());
+        self.run_json(summary, supplements, &extra.missing)
     }
 
     /// Mass up to which no design of the front is missing \[kg\]: the study's limit on mass, if the front is whole.
@@ -286,8 +286,8 @@ impl Finished<'_> {
     /// The files with the study, the front of all designs, and the front of every material.
     fn tables(&self, summary: &SummaryInput) -> Files {
         let mut files = vec![
-            ("front.csv".to_string(), summary.overall.to_csv()),
-            ("study.json".to_string(), self.text.as_bytes().to_vec()),
+            (FRONT.to_string(), summary.overall.to_csv()),
+            (STUDY.to_string(), self.text.as_bytes().to_vec()),
         ];
         let fronts = self.file_names().into_iter().zip(&summary.materials);
         files.extend(fronts.map(|(file, of)| (front_of_material(&file), of.front.to_csv())));
@@ -397,7 +397,7 @@ impl Finished<'_> {
             "effects_mass_kg": study.space.effects_mass_kg(),
             "carried_over": corrections_json(self.corrections),
             "catalogs": self.overlay.map(|p| p.display().to_string()),
-            "study_hash": blake3::hash(self.text.as_bytes()).to_hex().to_string(),
+            "study_hash": hash(self.text.as_bytes()),
             "catalogs_hash": catalogs_hash(self.catalogs),
             "search": if self.exact.is_some() { "exact" } else { "exhaustive" },
             "boxes": self.exact.map(|exact| exact.boxes[0]),
@@ -413,9 +413,6 @@ impl Finished<'_> {
         run
     }
 }
-
-/// Facts about the run that differ from run to run.
-const OF_A_RUN: [&str; 4] = ["elapsed_s", "designs_per_s", "threads", "platform"];
 
 /// The facts of `run.json` that are a word or a number, as text for people: first those that are equal in every run of
 /// the study, then those that differ from run to run.
@@ -467,5 +464,5 @@ pub(super) fn count(n: u128) -> Value {
 
 /// A hash of every rating of every part. It shows whether a result was made with other catalogs.
 pub(super) fn catalogs_hash(catalogs: &Catalogs) -> String {
-    blake3::hash(format!("{catalogs:?}").as_bytes()).to_hex().to_string()
+    hash(format!("{catalogs:?}").as_bytes())
 }

@@ -5,7 +5,7 @@ use super::exit::{Answer, Exit};
 use super::failure::Failure;
 use super::finished::catalogs_hash;
 use super::log::Log;
-use super::manifest::hash;
+use super::manifest::{FRONT, STUDY, hash};
 use super::result_folder::{settle, unfinished_in};
 use super::stop::stopped_by_signal;
 use super::time_limit::time_limit;
@@ -60,11 +60,11 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs, log: Log) -> Result<Ans
     let FrontVerb::Check(args) = &args.verb;
     let results = open_results(&args.results, catalogs)?;
     let run = &results.run;
-    let (file, text) = results.text("study.json")?;
+    let (file, text) = results.text(STUDY)?;
     let study = read_study(Document::parse(&file, &text)?, catalogs)?;
     refuse_beyond_bounds(&study)?;
-    let front = args.results.join("front.csv");
-    let front_csv = results.with_todays_ids("front.csv")?;
+    let front = args.results.join(FRONT);
+    let front_csv = results.with_todays_ids(FRONT)?;
     let table = FrontTable::parse(&front, &front_csv).map_err(|e| Failure::File(e.to_string()))?;
     let mut faults = differences_from_run(run, &text, &table);
     let gap = claimed_gap(run);
@@ -119,7 +119,7 @@ fn refuse_beyond_bounds(study: &Study) -> Result<(), Failure> {
 /// Faults of a folder whose study (`text`) or front (`table`) is not the one that `run.json` (`run`) states.
 fn differences_from_run(run: &Value, text: &str, table: &FrontTable) -> Vec<String> {
     let mut faults = Vec::new();
-    if run["study_hash"].as_str() != Some(blake3::hash(text.as_bytes()).to_hex().as_str()) {
+    if run["study_hash"].as_str() != Some(hash(text.as_bytes()).as_str()) {
         faults.push("study.json is not the study that was run".to_string());
     }
     if run["front_size"].as_u64() != Some(table.rows.len() as u64) {

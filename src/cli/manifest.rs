@@ -15,6 +15,18 @@ pub(super) const VERDICT: &str = "verdict.json";
 pub(super) const SHARD: &str = "shard.json";
 /// Name of the file that lists the files of a study that was searched choice by choice.
 pub(super) const CHOICES: &str = "choices.json";
+/// Name of the table of the designs on a front.
+pub(super) const FRONT: &str = "front.csv";
+/// Name of the copy of the study in its result.
+pub(super) const STUDY: &str = "study.json";
+/// Name of the picture of a front.
+pub(super) const PICTURE: &str = "front.svg";
+/// Name of the summary of a result in words.
+pub(super) const SUMMARY: &str = "summary.md";
+/// Name of the page of a result.
+pub(super) const PAGE: &str = "report.html";
+/// Keys of [`RUN`] and [`SHARD`] that differ from run to run: times and the machine.
+pub(super) const OF_A_RUN: [&str; 4] = ["elapsed_s", "designs_per_s", "threads", "platform"];
 /// Names of all files that may have a manifest.
 pub(super) const MANIFESTS: [&str; 4] = [RUN, VERDICT, SHARD, CHOICES];
 

@@ -1,20 +1,19 @@
 //! `armwright merge` and `armwright status`: join the shards of a search into its front, and list the shards that are
 //! found.
 
-use super::begun::{Begun, begun_in};
 use super::exit::Answer;
 use super::failure::Failure;
 use super::finished::{Finished, FoundExactly, Written, catalogs_hash, count};
 use super::log::Log;
-use super::manifest::{RUN, SHARD};
+use super::manifest::{RUN, SHARD, STUDY};
 use super::result_folder::ResultFolder;
 use super::run::planned;
 use super::shard_files::{
-    CANDIDATES, COMMON, MOST_LEVELS, STUDY, folder_of, read_candidates_of, read_manifest, shards_in,
-    shards_in_all,
+    CANDIDATES, COMMON, MOST_LEVELS, folder_of, read_candidates_of, read_manifest, shards_in, shards_in_all,
 };
 use super::stop::{refuse_if_stopped, stopped_by_signal};
 use super::supplements::SupplementArgs;
+use super::unfinished_shards::{Begun, begun_in};
 use crate::catalog::Catalogs;
 use crate::exact::outcome::FoundInShard;
 use crate::input::json::Document;
@@ -53,7 +52,7 @@ pub(crate) struct MergeArgs {
 }
 
 /// Lists the shards in a folder: those that are finished, running or stopped, and the commands that make the missing
-/// ones. The exit code is 0 also if some are missing; merge ends with 10 then, and writes nothing.
+/// ones. The exit code is 0 even if shards are missing. Merge then ends with exit code 10 and writes nothing.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: armwright status parts")]
 pub(crate) struct StatusArgs {

@@ -2,8 +2,6 @@
 //! standard output.
 
 pub(crate) mod analyze;
-pub(crate) mod begun;
-pub(crate) mod beside;
 pub(crate) mod capacity;
 pub(crate) mod catalog;
 mod catalog_check;
@@ -20,6 +18,7 @@ pub(crate) mod design;
 pub(crate) mod effects_schema;
 pub(crate) mod exit;
 pub(crate) mod export;
+pub(crate) mod extra_files;
 pub(crate) mod failure;
 pub(crate) mod finished;
 pub(crate) mod front;
@@ -53,6 +52,7 @@ pub(crate) mod stop;
 pub(crate) mod supplements;
 pub(crate) mod time_limit;
 pub(crate) mod unfinished;
+pub(crate) mod unfinished_shards;
 pub(crate) mod values;
 pub(crate) mod verbs;
 pub(crate) mod version;

@@ -1,12 +1,12 @@
 //! `armwright reconcile`: where model and measurements disagree, which physics is missing, and what that changes in a
 //! study.
 
-use super::beside::{Beside, another_stands, say_missing};
 use super::exit::{Answer, Exit};
+use super::extra_files::{ExtraFiles, another_stands, say_missing};
 use super::failure::Failure;
 use super::finished::catalogs_hash;
 use super::log::Log;
-use super::manifest::{Files, VERDICT, hash, listed};
+use super::manifest::{Files, PAGE, VERDICT, hash, listed};
 use super::rerun::{CHANGES, Rerun, rerun};
 use super::result_folder::ResultFolder;
 use super::search::SearchArgs;
@@ -140,8 +140,6 @@ fn kept_before(out: &Path, campaign: &Campaign, hash_of_catalogs: &str) -> Optio
 
 /// Name of the file with the verdict as text.
 const TEXT: &str = "verdict.txt";
-/// Name of the page for a browser.
-const PAGE: &str = "report.html";
 
 /// Names of the files that will be written, as far as they are known before the fits.
 fn planned(args: &ReconcileArgs, campaign: &Campaign, catalogs: &Catalogs) -> Result<Vec<String>, Failure> {
@@ -169,8 +167,8 @@ fn keep(
     let mut files: Files = texts.collect();
     change_verdict(&mut files, "catalogs_hash", hash_of_catalogs.into());
     let mut left_out = folder.publish(&files)?;
-    let mut beside = Beside::default();
-    let page = beside.make("report.html and plots", || {
+    let mut extra = ExtraFiles::default();
+    let page = extra.make("report.html and plots", || {
         let page = campaign_page(campaign, outcome);
         (page.page().into_files(), page.terminal())
     });
@@ -180,10 +178,10 @@ fn keep(
             files.extend(of_page);
             left_out = names;
         }
-        Err(e) => beside.missing.push(format!("the page: {e}")),
+        Err(e) => extra.missing.push(format!("the page: {e}")),
     }
-    beside.missing.extend(left_out.iter().map(|name| another_stands(name)));
-    say_missing(&beside.missing, log);
+    extra.missing.extend(left_out.iter().map(|name| another_stands(name)));
+    say_missing(&extra.missing, log);
     Ok((files, terminal))
 }
 

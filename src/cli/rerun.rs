@@ -7,7 +7,7 @@ use super::finished::{Keep, Written};
 use super::log::Log;
 use super::manifest::{Files, RUN, sealed};
 use super::result_folder::unfinished_in;
-use super::search::{SearchArgs, With, search};
+use super::search::{SearchArgs, SearchSettings, search};
 use super::supplements::SupplementArgs;
 use super::wrong_kind::study_of;
 use crate::catalog::Catalogs;
@@ -92,8 +92,18 @@ pub(super) fn rerun(
         let supplements = &SupplementArgs::default();
         let keep = &|files: &[(String, Vec<u8>)]| keep(&[kept.clone(), placed(files, folder)?].concat());
         let (record, unfinished) = (None, &unfinished_in(dir, folder));
-        let with = With { catalogs, overlay, dir: &results, keep, unfinished, how, supplements, record, log };
-        match search(asked, &with) {
+        let settings = SearchSettings {
+            catalogs,
+            overlay,
+            dir: &results,
+            keep,
+            unfinished,
+            how,
+            supplements,
+            record,
+            log,
+        };
+        match search(asked, &settings) {
             Ok(written) => {
                 kept.extend(placed(&written.files, folder)?);
                 if written.exit == Exit::Interrupted {

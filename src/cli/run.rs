@@ -1,18 +1,18 @@
 //! `armwright run`: finds the front of a study and writes it.
 
-use super::beside::{another_stands, say_missing};
 use super::choices::{Each, run_choices};
 use super::corrections;
 use super::exit::Answer;
+use super::extra_files::{another_stands, say_missing};
 use super::failure::Failure;
 use super::finished::{Written, catalogs_hash, facts_of, front_of_material, is_front_of_material, pretty};
 use super::log::Log;
-use super::manifest::{RUN, SHARD};
+use super::manifest::{FRONT, PAGE, PICTURE, RUN, SHARD, STUDY, SUMMARY};
 use super::progress::Record;
 use super::result_folder::{ResultFolder, unfinished_in};
-use super::search::{SearchArgs, With, search};
+use super::search::{SearchArgs, SearchSettings, search};
 use super::shard::{run_shard, shard_of};
-use super::shard_files::{CANDIDATES, STUDY, folder_of};
+use super::shard_files::{CANDIDATES, folder_of};
 use super::stop::refuse_if_stopped;
 use super::supplements::{FILES, SupplementArgs};
 use super::write::{is_same_file, refuse_overwriting};
@@ -103,7 +103,7 @@ impl RunArgs {
     fn planned(&self, dir: &Path, asked: &Asked) -> Result<Vec<String>, Failure> {
         let study = Path::new(&self.study);
         self.refuse_record_over_input()?;
-        let own = dir.join("study.json");
+        let own = dir.join(STUDY);
         let is_same = is_same_file(study, &own);
         let stays = is_same && std::fs::read(&own).is_ok_and(|bytes| bytes == asked.text.as_bytes());
         if is_same && !stays {
@@ -112,7 +112,7 @@ impl RunArgs {
                 own.display()
             )));
         }
-        Ok(planned(&asked.study).into_iter().filter(|name| !stays || name != "study.json").collect())
+        Ok(planned(&asked.study).into_iter().filter(|name| !stays || name != STUDY).collect())
     }
 
     /// Refuses a record of progress in place of an input or of a file of a result.
@@ -176,7 +176,7 @@ pub(super) fn planned(study: &Study) -> Vec<String> {
     let materials = study.space.material_names();
     let of_materials = file_names(materials.iter().map(String::as_str)).into_iter();
     let of_materials = of_materials.flat_map(|file| [front_of_material(&file), format!("ties.{file}.csv")]);
-    let always = ["front.csv", "study.json", RUN, "front.svg", "budget.csv", "summary.md", "report.html"];
+    let always = [FRONT, STUDY, RUN, PICTURE, "budget.csv", SUMMARY, PAGE];
     always.into_iter().chain(FILES).map(String::from).chain(of_materials).collect()
 }
 
@@ -273,8 +273,9 @@ fn search_into(
     let record = args.record(dir, &planned, unfinished)?;
     let (supplements, record) = (&args.supplements, record.as_ref());
     let keep = |files: &[(String, Vec<u8>)]| folder.publish(files);
-    let with = With { catalogs, overlay, dir, keep: &keep, unfinished, how, supplements, record, log };
-    let written = search(asked, &with);
+    let settings =
+        SearchSettings { catalogs, overlay, dir, keep: &keep, unfinished, how, supplements, record, log };
+    let written = search(asked, &settings);
     folder.settle(written.as_ref().map(|written| written.exit))?;
     written
 }
@@ -310,8 +311,18 @@ fn run_part(
     let record = args.record(&dir, &planned, unfinished)?;
     let (how, supplements, record) = (&args.search, &args.supplements, record.as_ref());
     let keep = |files: &[(String, Vec<u8>)]| folder.publish(files);
-    let with = With { catalogs, overlay, dir: &dir, keep: &keep, unfinished, how, supplements, record, log };
-    let answer = run_shard(asked, (shard, &args.incumbents), words, &with);
+    let settings = SearchSettings {
+        catalogs,
+        overlay,
+        dir: &dir,
+        keep: &keep,
+        unfinished,
+        how,
+        supplements,
+        record,
+        log,
+    };
+    let answer = run_shard(asked, (shard, &args.incumbents), words, &settings);
     folder.settle(answer.as_ref().map(|answer| answer.exit))?;
     answer
 }
@@ -319,7 +330,7 @@ fn run_part(
 /// Runs one of the studies of the paper, which are computed without a search.
 fn run_paper(args: &RunArgs, catalogs: &Catalogs, log: Log) -> Result<String, Failure> {
     let dir = args.out.clone().unwrap_or_else(|| in_results(&args.study));
-    let planned = [RUN, "summary.md", "report.html"];
+    let planned = [RUN, SUMMARY, PAGE];
     let folder = ResultFolder::open(&dir, RUN, &planned)?;
     let started = Instant::now();
     let output = crate::paper::run::run(&args.study, catalogs).map_err(|e| Failure::Usage(e.to_string()))?;

@@ -1,7 +1,7 @@
 //! Searches a study: chooses the method, and stops when the user asks for it.
 
-use super::beside::say_missing;
 use super::exit::Exit;
+use super::extra_files::say_missing;
 use super::failure::Failure;
 use super::finished::{Finished, FoundExactly, Keep, NOTHING_ELSE, Written, catalogs_hash};
 use super::log::Log;
@@ -168,7 +168,7 @@ pub(super) fn part_or_none(text: &str) -> Result<f64, String> {
 }
 
 /// The settings with which a study is searched.
-pub(super) struct With<'a> {
+pub(super) struct SearchSettings<'a> {
     pub catalogs: &'a Catalogs,
     /// Folder with the user's catalog rows, which are added to the built-in ones; `None` if there is none.
     pub overlay: Option<&'a Path>,
@@ -192,26 +192,26 @@ pub(super) struct With<'a> {
 ///
 /// # Errors
 /// The method does not suit the study, the search finds no design, the user stops it, or the front cannot be written.
-pub(super) fn search(asked: &Asked, with: &With) -> Result<Written, Failure> {
+pub(super) fn search(asked: &Asked, settings: &SearchSettings) -> Result<Written, Failure> {
     let space = &asked.study.space;
-    if (space.has_linkages() || space.has_motors_elsewhere()) && with.supplements.scatters() {
+    if (space.has_linkages() || space.has_motors_elsewhere()) && settings.supplements.scatters() {
         return Err(Failure::Usage(format!(
             "--tolerance samples a front without joints that turn with others and without motors elsewhere, and the study \
              \"{}\" has some; leave it away",
             asked.study.name
         )));
     }
-    let written = match with.how.kind(&asked.study, with.catalogs, with.log)? {
-        SearchMethod::Exhaustive => visit_all(asked, with),
-        SearchMethod::Exact => search_exactly(asked, with),
+    let written = match settings.how.kind(&asked.study, settings.catalogs, settings.log)? {
+        SearchMethod::Exhaustive => visit_all(asked, settings),
+        SearchMethod::Exact => search_exactly(asked, settings),
     }?;
-    if let Some(record) = with.record {
+    if let Some(record) = settings.record {
         record.add(written.elapsed_s, &written.progress)?;
     }
     Ok(written)
 }
 
-impl With<'_> {
+impl SearchSettings<'_> {
     /// The state that an earlier process saved of the same search, if any, and the means to save further states.
     ///
     /// # Errors
@@ -230,12 +230,12 @@ impl With<'_> {
 }
 
 /// Searches a study by visiting every design.
-fn visit_all(asked: &Asked, with: &With) -> Result<Written, Failure> {
+fn visit_all(asked: &Asked, settings: &SearchSettings) -> Result<Written, Failure> {
     let study = &asked.study;
-    let With { catalogs, overlay, dir, keep, supplements, record, log, .. } = *with;
+    let SearchSettings { catalogs, overlay, dir, keep, supplements, record, log, .. } = *settings;
     let problem = ArmProblem::new(&study.space, catalogs);
     let stop = stopped_by_signal();
-    let unfinished = with.go_on(asked, json!({"search": "exhaustive"}))?;
+    let unfinished = settings.go_on(asked, json!({"search": "exhaustive"}))?;
     let started = unfinished.started();
     let watch = |total: u128, visited: &(dyn Fn() -> u64 + Sync), finished: &AtomicBool| {
         Watch::new(started, record, log).designs(total, visited, finished);
@@ -307,12 +307,12 @@ fn stopped_words(outcome: &StudyOutcome) -> String {
 }
 
 /// Searches a study by the exact method, which does not visit every design.
-fn search_exactly(asked: &Asked, with: &With) -> Result<Written, Failure> {
+fn search_exactly(asked: &Asked, settings: &SearchSettings) -> Result<Written, Failure> {
     let Asked { study, text, corrections } = asked;
-    let With { catalogs, overlay, dir, keep, how, supplements, record, log, .. } = *with;
+    let SearchSettings { catalogs, overlay, dir, keep, how, supplements, record, log, .. } = *settings;
     let stop = stopped_by_signal();
     let gap = how.gap_of(study);
-    let unfinished = with.go_on(asked, json!({"search": "exact", "gap": gap}))?;
+    let unfinished = settings.go_on(asked, json!({"search": "exact", "gap": gap}))?;
     let started = unfinished.started();
     let extent =
         Extent { deadline: how.time_limit.map(|limit| started + limit), gap, near: supplements.slack() };

@@ -4,10 +4,10 @@
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
 use super::finished::{catalogs_hash, count, pretty};
-use super::manifest::{SHARD, hash};
+use super::manifest::{SHARD, STUDY, hash};
 use super::progress::Watch;
-use super::search::With;
-use super::shard_files::{CANDIDATES, COMMON, STUDY, read_candidates_of, read_manifest, shards_in_all};
+use super::search::SearchSettings;
+use super::shard_files::{CANDIDATES, COMMON, read_candidates_of, read_manifest, shards_in_all};
 use super::stop::stopped_by_signal;
 use crate::exact::Known;
 use crate::exact::outcome::FoundInShard;
@@ -49,26 +49,26 @@ pub(super) fn run_shard(
     asked: &Asked,
     (shard, incumbents): (Shard, &[PathBuf]),
     words: Vec<String>,
-    with: &With,
+    settings: &SearchSettings,
 ) -> Result<Answer, Failure> {
-    let (method, designs_total) = with.how.check_shard(&asked.study, with.catalogs)?;
+    let (method, designs_total) = settings.how.check_shard(&asked.study, settings.catalogs)?;
     let flags = match method {
         SearchMethod::Exhaustive => json!({"search": "exhaustive"}),
-        SearchMethod::Exact => json!({"search": "exact", "gap": with.how.gap_of(&asked.study)}),
+        SearchMethod::Exact => json!({"search": "exact", "gap": settings.how.gap_of(&asked.study)}),
     };
     let mut manifest = json!({
         "schema_version": 1,
         "study": asked.study.name,
         "tool_version": env!("CARGO_PKG_VERSION"),
         "study_hash": hash(asked.text.as_bytes()),
-        "catalogs_hash": catalogs_hash(with.catalogs),
+        "catalogs_hash": catalogs_hash(settings.catalogs),
         "flags": flags,
         "designs_total": count(designs_total),
         "shard": [shard.number, shard.of],
         "command": words,
     });
-    if !with.how.is_fresh()
-        && let Some(words) = already_done(with.dir, &manifest)
+    if !settings.how.is_fresh()
+        && let Some(words) = already_done(settings.dir, &manifest)
     {
         return Ok(words.into());
     }
@@ -76,10 +76,10 @@ pub(super) fn run_shard(
         SearchMethod::Exhaustive if !incumbents.is_empty() => {
             return Err(Failure::Usage("--incumbents goes with --search exact".into()));
         }
-        SearchMethod::Exhaustive => visit(asked, shard, with)?,
+        SearchMethod::Exhaustive => visit(asked, shard, settings)?,
         SearchMethod::Exact => {
             let given = Incumbents::read(incumbents, &manifest, &asked.study)?;
-            search_exactly(asked, shard, &given, with)?
+            search_exactly(asked, shard, &given, settings)?
         }
     };
     let of_this_run = json!({
@@ -91,14 +91,14 @@ pub(super) fn run_shard(
     for (key, value) in [&searched.facts, &of_this_run].into_iter().filter_map(Value::as_object).flatten() {
         manifest[key] = value.clone();
     }
-    let text = searched.words(shard, elapsed_s, with.dir);
+    let text = searched.words(shard, elapsed_s, settings.dir);
     let mut files = vec![
         (CANDIDATES.to_string(), searched.candidates.into_bytes()),
         (STUDY.to_string(), asked.text.clone().into_bytes()),
     ];
     // the manifest lists the other files with their hashes and is written last: if it exists, the others are complete
     files.push((SHARD.into(), pretty(&manifest)));
-    (with.keep)(&files)?;
+    (settings.keep)(&files)?;
     Ok(Answer { text, exit: Exit::Done })
 }
 
@@ -141,15 +141,16 @@ fn stopped(shard: Shard) -> Failure {
 }
 
 /// Visits the designs of a shard. Returns what was found, and the time that the search took \[s\].
-fn visit(asked: &Asked, shard: Shard, with: &With) -> Result<(Searched, f64), Failure> {
+fn visit(asked: &Asked, shard: Shard, settings: &SearchSettings) -> Result<(Searched, f64), Failure> {
     let flags = json!({"search": "exhaustive", "shard": [shard.number, shard.of]});
-    let (stop, unfinished) = (stopped_by_signal(), with.go_on(asked, flags)?);
+    let (stop, unfinished) = (stopped_by_signal(), settings.go_on(asked, flags)?);
     let started = unfinished.started();
     let watch = |total: u128, visited: &(dyn Fn() -> u64 + Sync), finished: &AtomicBool| {
-        Watch::new(started, with.record, with.log).designs(total, visited, finished);
+        Watch::new(started, settings.record, settings.log).designs(total, visited, finished);
     };
-    let (swept, range) = sweep_shard(&asked.study, with.catalogs, shard, stop, unfinished.resume(), watch)
-        .map_err(|_| unfinished.damaged())?;
+    let (swept, range) =
+        sweep_shard(&asked.study, settings.catalogs, shard, stop, unfinished.resume(), watch)
+            .map_err(|_| unfinished.damaged())?;
     if swept.status == Status::Interrupted {
         return Err(stopped(shard));
     }
@@ -167,18 +168,18 @@ fn search_exactly(
     asked: &Asked,
     shard: Shard,
     given: &Incumbents,
-    with: &With,
+    settings: &SearchSettings,
 ) -> Result<(Searched, f64), Failure> {
-    let gap = with.how.gap_of(&asked.study);
+    let gap = settings.how.gap_of(&asked.study);
     let flags = json!({
         "search": "exact", "gap": gap, "shard": [shard.number, shard.of], "incumbents": given.hashes,
     });
-    let (stop, unfinished) = (stopped_by_signal(), with.go_on(asked, flags)?);
+    let (stop, unfinished) = (stopped_by_signal(), settings.go_on(asked, flags)?);
     let started = unfinished.started();
     let watch = |known: &(dyn Fn() -> Known + Sync), finished: &AtomicBool| {
-        Watch::new(started, with.record, with.log).search(known, finished);
+        Watch::new(started, settings.record, settings.log).search(known, finished);
     };
-    let study = (&asked.study, with.catalogs);
+    let study = (&asked.study, settings.catalogs);
     let found = exact_shard(study, (shard, gap), &given.found, stop, unfinished.resume(), watch)
         .map_err(|_| unfinished.damaged())?;
     let is_whole = found.len() == fronts_of(&asked.study.space, gap).len();

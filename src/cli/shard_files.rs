@@ -1,7 +1,7 @@
 //! The files of a shard: where they are, and how they are read back.
 
 use super::failure::Failure;
-use super::manifest::{SHARD, hash};
+use super::manifest::{SHARD, STUDY, hash};
 use crate::exact::outcome::FoundInShard;
 use crate::search::sweep::Shard;
 use crate::study::definition::Study;
@@ -12,8 +12,6 @@ use std::path::{Path, PathBuf};
 
 /// Name of the file with the candidates that a shard found.
 pub(super) const CANDIDATES: &str = "candidates.csv";
-/// Name of the file with the study, in the folder of a shard.
-pub(super) const STUDY: &str = "study.json";
 
 /// Keys in which all shards of one search agree.
 pub(super) const COMMON: [&str; 5] =

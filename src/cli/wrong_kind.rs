@@ -35,7 +35,7 @@ pub(super) fn refuse_other_kind(path: &Path, wanted: &str) -> Result<(), Failure
 /// A study by its name or from its file, with its text.
 ///
 /// # Errors
-/// The same as of [`load_study`], and one fault for a file of another kind.
+/// The errors of [`load_study`]. Also an error if the file is of another kind.
 pub(super) fn study_of(name: &str, catalogs: &Catalogs) -> Result<(Study, String), Failure> {
     refuse_other_kind(Path::new(name), "study")?;
     Ok(load_study(name, catalogs)?)

@@ -278,10 +278,10 @@ fn load(squares: &Squares) -> BearingLoad {
 mod tests {
     use super::*;
     use crate::catalog::Catalogs;
+    use crate::exact::box_work::BoxWork;
     use crate::exact::kinds::Ties;
     use crate::exact::parts::inertia;
     use crate::exact::problem::{Part, Problem};
-    use crate::exact::work::Work;
     use crate::input::Document;
     use crate::space::ArmProblem;
     use crate::space::problem::Partial;
@@ -341,7 +341,11 @@ mod tests {
     }
 
     /// The least and greatest loads of a box on every joint whose drive is sized, tip first.
-    fn of_box(problem: &Problem, design_box: &mut [u32], work: &mut Work) -> Option<Vec<[BearingDemand; 2]>> {
+    fn of_box(
+        problem: &Problem,
+        design_box: &mut [u32],
+        work: &mut BoxWork,
+    ) -> Option<Vec<[BearingDemand; 2]>> {
         problem.fill(design_box, work)?;
         let sized = problem
             .parts
@@ -364,7 +368,7 @@ mod tests {
             let study = study(pose_deg, side_m, tip_n, &catalogs);
             let arms = ArmProblem::new(&study.space, &catalogs);
             let problem = Problem::new(&study.space, &catalogs, &|_| true, Ties::Separate).expect("options");
-            let mut work = Work::default();
+            let mut work = BoxWork::default();
             let all = of_box(&problem, &mut problem.root(), &mut work).expect("some arm holds");
             let mut held = 0;
             for picks in picks.chunks(3) {

@@ -9,11 +9,11 @@
 //!
 //! If a joint or a link cannot carry even its least load, the whole box is infeasible.
 
+use super::box_work::BoxWork;
 use super::intervals::ROUNDING;
 use super::pose::{Pose, Row, TORSION};
 use super::problem::{Part, Problem};
 use super::shape::{Ideal, Shape};
-use super::work::Work;
 use crate::pareto::objectives::Objectives;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -83,7 +83,7 @@ impl<'c> Problem<'c> {
     /// The objectives of the single design in a box. Its mass and deflection are taken from `box_bound`, which is exact
     /// for a single design. The lowest mode is computed again, because a trial shape gives only an upper bound of its
     /// frequency.
-    pub(super) fn objectives(&self, box_bound: &BoxBound, work: &Work) -> Objectives {
+    pub(super) fn objectives(&self, box_bound: &BoxBound, work: &BoxWork) -> Objectives {
         let quotient = (box_bound.hz * std::f64::consts::TAU).powi(2);
         let lowest =
             self.judged_cases().zip(self.inertias.iter()).fold(quotient, |lowest, (case, inertia)| {
@@ -102,7 +102,7 @@ impl<'c> Problem<'c> {
 
     /// The first trial shapes, made for the box of all designs: for each judged case, one for each acceleration in
     /// [`START_SHAPES`]. `None` if no design meets the constraints.
-    pub(super) fn first_shapes(&self, work: &mut Work) -> Option<Vec<Shape>> {
+    pub(super) fn first_shapes(&self, work: &mut BoxWork) -> Option<Vec<Shape>> {
         self.fill(&mut self.root(), work)?;
         self.least_tip_m(work)?;
         let mut shapes = Vec::new();
@@ -126,7 +126,7 @@ impl<'c> Problem<'c> {
         &self,
         design_box: &mut [u32],
         shapes: &mut Arc<Vec<Shape>>,
-        work: &mut Work,
+        work: &mut BoxWork,
         is_dominated: impl Fn(&BoxBound) -> bool,
         worth_refining: impl Fn(&BoxBound) -> bool,
     ) -> Verdict {
@@ -150,7 +150,7 @@ impl<'c> Problem<'c> {
         &self,
         design_box: &mut [u32],
         shapes: &[Shape],
-        work: &mut Work,
+        work: &mut BoxWork,
         fails: &impl Fn(&BoxBound) -> bool,
     ) -> Option<BoxBound> {
         self.fill(design_box, work)?;
@@ -189,7 +189,7 @@ impl<'c> Problem<'c> {
         &self,
         box_bound: &mut BoxBound,
         shapes: &mut [Shape],
-        work: &mut Work,
+        work: &mut BoxWork,
         fails: impl Fn(&BoxBound) -> bool,
     ) -> Verdict {
         let steps = if work.is_point() { MOST_STEPS } else { 1 };
@@ -223,7 +223,7 @@ impl<'c> Problem<'c> {
     /// The least tip deflection over the members of the box \[m\], in the judged case in which it is greatest. The
     /// function also writes the forces, torques, slopes and tip directions of the box to `work`. `None` if no member
     /// keeps the forces within the force bounds of the problem.
-    pub(super) fn least_tip_m(&self, work: &mut Work) -> Option<f64> {
+    pub(super) fn least_tip_m(&self, work: &mut BoxWork) -> Option<f64> {
         let mut worst = 0.0f64;
         work.worst_tip = None;
         work.greatest_tip_m.clear();
@@ -232,7 +232,7 @@ impl<'c> Problem<'c> {
             work.stiff_in[case].clone_from(&work.stiff);
             let mut tip_m = [[0.0f64; 2]; 3];
             let mut most_m = 0.0;
-            let Work { forces, weights, .. } = work;
+            let BoxWork { forces, weights, .. } = work;
             self.forces(case, weights, &mut forces[case])?;
             for (at, row) in pose.rows.iter().enumerate() {
                 let force = work.forces[case][at];
@@ -299,7 +299,7 @@ fn hertz(lambda: f64) -> f64 {
 /// The least and the greatest deflection in one strain coordinate of a tube or a bearing, under a generalized force
 /// between `low` and `high`. The deflection is force times compliance, and the compliance too is an interval over the
 /// box.
-pub(super) fn linear_strain(pose: &Pose, row: &Row, [low, high]: [f64; 2], work: &Work) -> [f64; 2] {
+pub(super) fn linear_strain(pose: &Pose, row: &Row, [low, high]: [f64; 2], work: &BoxWork) -> [f64; 2] {
     let (resisted, factor) = pose.pieces[row.piece].resisted(row.coordinate);
     let (stiff, soft) = (work.stiff[row.piece][resisted], work.soft[row.piece][resisted]);
     if stiff == 0.0 {

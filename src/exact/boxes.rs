@@ -1,15 +1,15 @@
 //! Branch and bound box by box.
 
 use super::bound::{BoxBound, DesignBox, Verdict};
+use super::box_work::BoxWork;
 use super::budget::Budget;
 use super::gap::gap;
-use super::live::Live;
+use super::live_progress::LiveProgress;
 use super::local_upper_bounds::LocalUpperBounds;
 use super::problem::Problem;
 use super::rounds::{Done, in_rounds};
 use super::search_state::{Findings, SearchState};
 use super::shape::Shape;
-use super::work::Work;
 use std::sync::Arc;
 
 /// Greatest number of boxes that one task bounds. After that, the task returns the boxes that are still open.
@@ -31,7 +31,7 @@ impl OpenBox {
     /// The boxes `boxes` as open boxes, with which a search starts. They have the first trial shapes of the whole
     /// space, and no bound yet. Empty if no design of the space meets the constraints.
     pub(super) fn first(problem: &Problem, boxes: &[DesignBox]) -> Vec<Self> {
-        let Some(shapes) = problem.first_shapes(&mut Work::default()).map(Arc::new) else {
+        let Some(shapes) = problem.first_shapes(&mut BoxWork::default()).map(Arc::new) else {
             return Vec::new();
         };
         let open = |design_box: &DesignBox| Self {
@@ -63,7 +63,7 @@ pub(super) fn open_all_boxes<K: Sync, F: Send + Default>(
     budget: &Budget,
     problem: &Problem,
     state: &mut K,
-    open: impl Fn(&K, OpenBox, &mut Work, &mut F) -> Vec<OpenBox> + Sync,
+    open: impl Fn(&K, OpenBox, &mut BoxWork, &mut F) -> Vec<OpenBox> + Sync,
     learn: impl Fn(&mut K, F),
     see: impl Fn(&K, &[OpenBox]),
 ) -> Vec<OpenBox> {
@@ -77,7 +77,7 @@ fn go_through_boxes<K: Sync, F: Send + Default>(
     budget: &Budget,
     state: &mut K,
     first: Vec<OpenBox>,
-    open: impl Fn(&K, OpenBox, &mut Work, &mut F) -> Vec<OpenBox> + Sync,
+    open: impl Fn(&K, OpenBox, &mut BoxWork, &mut F) -> Vec<OpenBox> + Sync,
     learn: impl Fn(&mut K, F),
     see: impl Fn(&K, &[OpenBox]),
 ) -> Vec<OpenBox> {
@@ -93,9 +93,9 @@ fn go_through_boxes<K: Sync, F: Send + Default>(
 pub(super) fn open_boxes<F: Default>(
     budget: &Budget,
     first: OpenBox,
-    open: impl Fn(OpenBox, &mut Work, &mut F) -> Vec<OpenBox>,
+    open: impl Fn(OpenBox, &mut BoxWork, &mut F) -> Vec<OpenBox>,
 ) -> Done<OpenBox, F> {
-    let (mut work, mut findings, mut stack) = (Work::default(), F::default(), vec![first]);
+    let (mut work, mut findings, mut stack) = (BoxWork::default(), F::default(), vec![first]);
     for _ in 0..BOXES_PER_TASK {
         if budget.stopped() {
             break;
@@ -114,7 +114,7 @@ pub(super) fn pass_by_boxes(
     problem: &Problem,
     state: &mut SearchState,
     (slack, first): (f64, Vec<OpenBox>),
-    live: Option<&Live>,
+    live: Option<&LiveProgress>,
     keep: impl Fn(&SearchState, &[OpenBox]),
 ) -> Vec<BoxBound> {
     let bounds = |open: &[OpenBox]| open.iter().map(|opened| opened.box_bound).collect::<Vec<_>>();
@@ -156,7 +156,12 @@ impl Search<'_, '_> {
     /// Bounds the box `here` and returns its two halves. Returns nothing if the box is pruned, or if it is a single
     /// design; that design is then evaluated and added to `findings`. If dominated drives are removed from the box, the
     /// smaller box is returned undivided, to be bounded again.
-    pub(super) fn open(&self, mut here: OpenBox, work: &mut Work, findings: &mut Findings) -> Vec<OpenBox> {
+    pub(super) fn open(
+        &self,
+        mut here: OpenBox,
+        work: &mut BoxWork,
+        findings: &mut Findings,
+    ) -> Vec<OpenBox> {
         self.budget.count_box();
         let verdict = self.problem.bound(
             &mut here.design_box,

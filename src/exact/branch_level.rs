@@ -9,11 +9,11 @@
 //! its bound moves at all.
 
 use super::bound::{START_SHAPES, linear_strain};
+use super::box_work::BoxWork;
 use super::parts::{INERTIAS, STIFFNESSES};
 use super::problem::{Part, Problem};
 use super::shape::{Shape, products};
 use super::torsion::Torsion;
-use super::work::Work;
 
 /// `√(high / low) - 1`: by which fraction the geometric mean of an interval exceeds its lower end. Zero if the interval
 /// has no width or does not begin above zero.
@@ -28,7 +28,7 @@ impl Problem<'_> {
         &self,
         design_box: &[u32],
         shapes: &[Shape],
-        work: &mut Work,
+        work: &mut BoxWork,
     ) -> Option<usize> {
         self.weigh_tip(work);
         let (judged, start) = work.worst;
@@ -77,7 +77,7 @@ impl Problem<'_> {
     /// mean of this slope and the slope at the least torque. The fall is divided among the pieces outboard in
     /// proportion to the width that their weights add to the interval of the torque. `strain` is twice the strain
     /// energy of the shape.
-    fn softened_by_torque(&self, case: usize, shape: &Shape, strain: f64, work: &Work) -> Vec<f64> {
+    fn softened_by_torque(&self, case: usize, shape: &Shape, strain: f64, work: &BoxWork) -> Vec<f64> {
         let mut softened = vec![0.0; self.parts.len()];
         let pose = &self.poses[case];
         for row in &pose.rows {
@@ -97,7 +97,7 @@ impl Problem<'_> {
 
     /// Computes `work.tip_growth`: for each piece, the fraction by which the least tip deflection would grow if the
     /// piece had not its greatest stiffnesses but the geometric mean of its least and greatest ones.
-    fn weigh_tip(&self, work: &mut Work) {
+    fn weigh_tip(&self, work: &mut BoxWork) {
         work.tip_growth.clear();
         work.tip_growth.resize(self.parts.len(), 0.0);
         let Some((case, direction)) = work.worst_tip else { return };

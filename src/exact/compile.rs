@@ -1,5 +1,6 @@
 //! Compiles a design space into the [`Problem`] of branch and bound.
 
+use super::box_work::BoxWork;
 use super::compile_pose::{JointNeeds, harness_kg};
 use super::joint_play::JointPlay;
 use super::kinds::{Kinds, Ties};
@@ -10,7 +11,6 @@ use super::problem::{Ladder, Lever, Part, Problem, Room};
 use super::shape::Ideal;
 use super::torsion::{BreakPoints, CurveBox};
 use super::tree::Tree;
-use super::work::Work;
 use crate::arm::LinkBody;
 use crate::arm::joint_law::Curve;
 use crate::catalog::Catalogs;
@@ -327,7 +327,7 @@ impl<'c> Problem<'c> {
     /// Adds the inertia matrices of every judged case to the problem. An arbitrary arm of the space shows which
     /// coordinates deflect elastically.
     pub(super) fn with_inertias(mut self) -> Self {
-        let mut work = Work::default();
+        let mut work = BoxWork::default();
         let filled = self.fill(&mut self.root(), &mut work);
         if filled.and_then(|()| self.least_tip_m(&mut work)).is_some() {
             let of = |case: usize| {

@@ -5,12 +5,12 @@
 //! worst box.
 
 use super::bound::{BoxBound, Verdict};
+use super::box_work::BoxWork;
 use super::boxes::OpenBox;
 use super::budget::Budget;
 use super::gap::gap_of;
 use super::incumbents::is_better;
 use super::problem::Problem;
-use super::work::Work;
 use crate::pareto::objectives::Objectives;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -32,7 +32,7 @@ impl Cover {
     /// Makes a cover of at least `boxes` boxes. `found` are the objectives of the designs found, from which the gap of
     /// each box follows. There are fewer boxes if the remaining ones cannot be halved or the search is stopped.
     pub(super) fn new(budget: &Budget, problem: &Problem, found: &[Objectives], boxes: usize) -> Self {
-        let Some(shapes) = problem.first_shapes(&mut Work::default()) else { return Self(Vec::new()) };
+        let Some(shapes) = problem.first_shapes(&mut BoxWork::default()) else { return Self(Vec::new()) };
         let root =
             OpenBox { design_box: problem.root(), shapes: Arc::new(shapes), box_bound: BoxBound::OPEN };
         let mut cover = Vec::from_iter(Piece::bounded(problem, root, found));
@@ -61,7 +61,7 @@ impl Piece {
     /// Bounds a box and computes its gap: by how much the nearest of the designs `found` is worse than the bound.
     /// `None` if no member meets the constraints, or if one of these designs dominates all members.
     fn bounded(problem: &Problem, mut open: OpenBox, found: &[Objectives]) -> Option<Self> {
-        let mut work = Work::default();
+        let mut work = BoxWork::default();
         let is_dominated = |bound: &BoxBound| {
             let best = Objectives::from(*bound);
             found.iter().any(|design| is_better(design, &best))

@@ -3,12 +3,12 @@
 //! In a space that is too large to tabulate these options are few, so the relaxation (`src/relax`), a linear program
 //! over mixtures of parts, can be solved with them alone.
 
+use super::box_work::BoxWork;
 use super::kinds::Ties;
 use super::local_upper_bounds::{LocalUpperBound, LocalUpperBounds};
 use super::problem::Problem;
 use super::region_bound::Survivors;
 use super::regions::Subproblem;
-use super::work::Work;
 use crate::catalog::Catalogs;
 use crate::pareto::objectives::Objectives;
 use crate::space::design_space::DesignSpace;
@@ -41,7 +41,7 @@ impl<'p> DomainReduction<'p> {
             tip_m: known.tip_deflection_m * (1.0 + OBJECTIVE_MARGIN),
             hz: known.lowest_mode_hz * (1.0 - OBJECTIVE_MARGIN),
         };
-        let mut work = Work::default();
+        let mut work = BoxWork::default();
         let whole = Subproblem::whole(&self.problem, 0, &mut work)?;
         let mut open = Vec::from_iter(Reduced::new(whole, &upper, &mut work));
         let mut closed = Vec::new();
@@ -78,7 +78,7 @@ struct Reduced<'p> {
 impl<'p> Reduced<'p> {
     /// Excludes the options of a subproblem that no design below the local upper bound `upper` can have. `None` if no
     /// design lies below it.
-    fn new(mut subproblem: Subproblem<'p>, upper: &LocalUpperBound, work: &mut Work) -> Option<Self> {
+    fn new(mut subproblem: Subproblem<'p>, upper: &LocalUpperBound, work: &mut BoxWork) -> Option<Self> {
         let mut below = LocalUpperBounds::single(*upper);
         loop {
             let (survivors, reduced) = subproblem.reduce(&mut below, work, |_| false)?;

@@ -14,13 +14,13 @@
 //! its segment when a part becomes lighter; therefore the step is valid only within a box, in which the
 //! torques inboard are known as intervals.
 
+use super::box_work::BoxWork;
 use super::joint_play::JointPlay;
 use super::parts::{DriveBox, SAME_TORQUE};
 use super::pose::Pose;
 use super::problem::{Part, Problem};
 use super::torsion::CurveBox;
 use super::tree::Tree;
-use super::work::Work;
 use crate::sizing::demand::JointDemand;
 
 /// A dominating drive must be lighter by at least this fraction of the arm's mass, so that rounding cannot decide.
@@ -94,7 +94,7 @@ impl Problem<'_> {
         &self,
         design_box: &mut [u32],
         tip_m: f64,
-        work: &Work,
+        work: &BoxWork,
     ) -> Option<bool> {
         let mut shrunk = false;
         // The proof at the head of this file requires that contributions to the tip's displacement do not oppose each
@@ -121,7 +121,7 @@ impl Problem<'_> {
         tree: &Tree<DriveBox>,
         drives: &DriveBox,
         demand: &JointDemand,
-        work: &Work,
+        work: &BoxWork,
     ) -> bool {
         let arm_kg: f64 = work.masses.iter().map(|m| m[1]).sum();
         let wanted = DominatingDrive {
@@ -139,7 +139,7 @@ impl Problem<'_> {
 
     /// Whether every gear inboard vibrates with the same slope and the same play as before if the piece becomes lighter
     /// by `lost_n` \[N\].
-    fn slopes_stay(&self, piece: usize, lost_n: f64, work: &Work) -> bool {
+    fn slopes_stay(&self, piece: usize, lost_n: f64, work: &BoxWork) -> bool {
         self.judged_cases().all(|case| {
             self.poses[case].rows.iter().filter(|row| row.piece > piece).all(|row| {
                 let Some(curve) = work.curve(row) else { return true };

@@ -10,7 +10,7 @@ use super::bound::BoxBound;
 use super::budget::Budget;
 use super::cover::Cover;
 use super::gap::gap;
-use super::live::{Known, Live};
+use super::live_progress::{Known, LiveProgress};
 use super::probe::dives;
 use super::problem::Problem;
 use super::search_state::{Findings, SearchState};
@@ -24,7 +24,7 @@ const BOXES_OF_COVER: usize = 1024;
 /// The designs and the cover that are known before the first pass.
 pub(super) struct Early<'l> {
     /// Receives the gap and the counts for other threads to read.
-    live: &'l Live,
+    live: &'l LiveProgress,
     /// Bounds of boxes that contain every design of the space, except designs that a design in `findings` dominates.
     cover: Vec<BoxBound>,
     /// The designs that the dives found.
@@ -33,7 +33,7 @@ pub(super) struct Early<'l> {
 
 impl<'l> Early<'l> {
     /// Finds a few designs, makes the cover and reports the gap.
-    pub(super) fn new(budget: &Budget, problem: &Problem, live: &'l Live) -> Self {
+    pub(super) fn new(budget: &Budget, problem: &Problem, live: &'l LiveProgress) -> Self {
         let aside = budget.aside();
         let findings = dives(&aside, problem, DIVES);
         let found: Vec<Objectives> = findings.kept.iter().map(|c| c.objectives).collect();

@@ -9,13 +9,13 @@
 //! The result proves nothing. Its designs are evaluated and listed like all others.
 
 use super::bound::{DesignBox, Verdict};
+use super::box_work::BoxWork;
 use super::budget::Budget;
 use super::grid::thinned;
 use super::incumbents::Incumbents;
 use super::problem::Problem;
 use super::search_state::{Findings, SearchState};
 use super::shape::Shape;
-use super::work::Work;
 use crate::pareto::objectives::Objectives;
 use crate::search::sweep::Candidate;
 use crate::space::design::number;
@@ -90,7 +90,7 @@ pub(super) fn evolve<'p>(
         if parents.is_empty() || budget.has_spent(MOST_TIME) {
             break;
         }
-        let children = (0..children_per_generation).into_par_iter().map_init(Work::default, |work, n| {
+        let children = (0..children_per_generation).into_par_iter().map_init(BoxWork::default, |work, n| {
             let rng = Xoshiro256PlusPlus::seed_from_u64(generation * children_per_generation + n);
             Recombination { budget, problem, parents: &parents, seen: &seen, rng }.child(work)
         });
@@ -131,7 +131,7 @@ struct Recombination<'a, 'p> {
 
 impl Recombination<'_, '_> {
     /// Makes one child of two parents, bounds it and tests the constraints.
-    fn child(mut self, work: &mut Work) -> Offspring {
+    fn child(mut self, work: &mut BoxWork) -> Offspring {
         let first = self.below(self.parents.len() as u64);
         let from = first.saturating_sub(MATING_DISTANCE);
         let to = (first + MATING_DISTANCE + 1).min(self.parents.len() as u64);

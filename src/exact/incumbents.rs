@@ -13,7 +13,7 @@ use std::collections::HashMap;
 const EQUAL_WITHIN: f64 = 1e-9;
 /// A design dominates another only if it is better by at least this fraction in one objective, so that rounding cannot
 /// decide.
-const BETTER_BY: f64 = 1e-7;
+pub(super) const BETTER_BY: f64 = 1e-7;
 /// Number of grid steps in a factor of two of mass or deflection.
 const STEPS: f64 = 64.0;
 

@@ -1,11 +1,11 @@
 //! Computes the numbers of a box as intervals, part by part from the tip inward.
 
 use super::bearing_rows::Numbers;
+use super::box_work::BoxWork;
 use super::interval::interval;
 use super::parts::{DriveBox, HEAT_ROUNDING, LeastDemand, LinkBox, Rays};
 use super::problem::{Ladder, Lever, Part, Problem, Room};
 use super::tree::{Bounds, Tree};
-use super::work::Work;
 use crate::sizing::bearing::BearingDemand;
 use crate::sizing::demand::JointDemand;
 use crate::sizing::fit::LinkRoom;
@@ -21,7 +21,7 @@ impl Problem<'_> {
     /// Computes every interval of a box, part by part from the tip inward, and writes it to `work`. Each node of
     /// `design_box` is replaced by the smallest node that contains all options which can carry the least load. `None`
     /// if a level has no option left, or if even the least material cost exceeds the limit.
-    pub(super) fn fill(&self, design_box: &mut [u32], work: &mut Work) -> Option<()> {
+    pub(super) fn fill(&self, design_box: &mut [u32], work: &mut BoxWork) -> Option<()> {
         work.clear(self.parts.len(), self.poses.len());
         let mut level = 0;
         let mut cost_eur = 0.0;
@@ -62,7 +62,7 @@ impl Problem<'_> {
         tree: &Tree<DriveBox>,
         rays: &Rays,
         node: &mut u32,
-        work: &mut Work,
+        work: &mut BoxWork,
     ) -> Option<()> {
         let (static_nm, inertia_kgm2) = self.loads(piece, work);
         let bearing = self.bearing_loads(piece, work);
@@ -87,7 +87,7 @@ impl Problem<'_> {
         piece: usize,
         sized: &SizedJoint,
         ladder: &Ladder,
-        work: &mut Work,
+        work: &mut BoxWork,
     ) -> Option<()> {
         let (static_nm, inertia_kgm2) = self.loads(piece, work);
         let bearing = self.bearing_loads(piece, work);
@@ -119,7 +119,7 @@ impl Problem<'_> {
         length_m: f64,
         tree: &Tree<LinkBox>,
         node: &mut u32,
-        work: &mut Work,
+        work: &mut BoxWork,
     ) -> Option<()> {
         work.tube(self, piece, length_m, &tree.node(*node).bounds);
         while let Some(safety) = self.space.constraints.stress_safety_factor_min {
@@ -138,7 +138,7 @@ impl Problem<'_> {
 
     /// Intervals of the greatest static torque on a joint over the sizing cases \[N m\] and of the greatest inertia
     /// about its axis \[kg m²\].
-    fn loads(&self, piece: usize, work: &Work) -> ([f64; 2], [f64; 2]) {
+    fn loads(&self, piece: usize, work: &BoxWork) -> ([f64; 2], [f64; 2]) {
         let (mut static_nm, mut inertia_kgm2) = ([0.0f64; 2], [0.0f64; 2]);
         for (pose, weights) in self.poses.iter().zip(&work.weights).filter(|(p, _)| p.sizing) {
             let Some(row) = &pose.inertia_about[piece] else { continue };
@@ -157,7 +157,7 @@ impl Problem<'_> {
 
     /// The least and the greatest loads on the output bearing of a joint, over all cases; zero if this bearing is not
     /// checked.
-    pub(super) fn bearing_loads(&self, piece: usize, work: &Work) -> [BearingDemand; 2] {
+    pub(super) fn bearing_loads(&self, piece: usize, work: &BoxWork) -> [BearingDemand; 2] {
         let Some(lever) = self.levers[piece] else { return [BearingDemand::default(); 2] };
         let cases = self.poses.iter().zip(&work.weights);
         let [least, most] = cases
@@ -177,7 +177,7 @@ impl Problem<'_> {
     }
 
     /// The least and the greatest space that the link outboard of a joint leaves for the joint's gear and motor.
-    fn room(&self, piece: usize, work: &Work) -> [LinkRoom; 2] {
+    fn room(&self, piece: usize, work: &BoxWork) -> [LinkRoom; 2] {
         match self.rooms[piece] {
             None => [LinkRoom::ANY; 2],
             Some(Room::Given(room)) => [room; 2],
@@ -188,7 +188,7 @@ impl Problem<'_> {
     /// The least loads on each end section of a tube in each case: axial force \[N\], moments about y and z and torsion
     /// \[N m\]. They are multiplied by the peak factor and by `safety`, the safety factor, so that they can be compared
     /// with the strength.
-    fn least_loads(&self, piece: usize, safety: f64, work: &Work) -> Vec<[f64; 4]> {
+    fn least_loads(&self, piece: usize, safety: f64, work: &BoxWork) -> Vec<[f64; 4]> {
         let cases = self.poses.iter().zip(&work.weights);
         cases
             .flat_map(|(pose, weights)| {

@@ -120,14 +120,16 @@ impl<'s> Journal<'s> {
         // steps.
         let due = self.keeper.filter(|keeper| keeper.is_due() && !budget.stopped());
         if let Some(keeper) = due {
-            keeper.keep(&self.with(budget, Begun { open: Some(OpenPass::of(slack, open)), ..begun() }));
+            keeper.keep(
+                &self.serialized_with(budget, Begun { open: Some(OpenPass::of(slack, open)), ..begun() }),
+            );
         }
     }
 
     /// Stores the state at the start of a pass over regions. [`keep_start`](Self::keep_start) saves it later.
     pub(super) fn begin_pass(&self, budget: &Budget, begun: impl FnOnce() -> Begun) {
         if self.keeper.is_some() && !budget.stopped() {
-            let bytes = self.with(budget, begun());
+            let bytes = self.serialized_with(budget, begun());
             *self.start.lock().unwrap_or_else(PoisonError::into_inner) = Some(bytes);
         }
     }
@@ -141,8 +143,9 @@ impl<'s> Journal<'s> {
         }
     }
 
-    /// The bytes of the whole state: the finished parts, and `begun`, the progress of the unfinished part.
-    fn with(&self, budget: &Budget, begun: Begun) -> Vec<u8> {
+    /// Serializes the whole state: the finished parts, the number of boxes so far, and `begun`, the progress of the
+    /// unfinished part.
+    fn serialized_with(&self, budget: &Budget, begun: Begun) -> Vec<u8> {
         let mut state = self.lock();
         (state.boxes, state.begun) = (budget.boxes(), Some(begun));
         let bytes = bytes(&state);

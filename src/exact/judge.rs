@@ -1,10 +1,10 @@
 //! The limits that every design must meet, and the evaluation of a single design.
 
 use super::bound::BoxBound;
+use super::box_work::BoxWork;
 use super::local_upper_bounds::LocalUpperBound;
 use super::problem::Problem;
 use super::search_state::Findings;
-use super::work::Work;
 use crate::pareto::objectives::Objectives;
 use crate::search::sweep::Candidate;
 use crate::space::design::number;
@@ -28,7 +28,7 @@ impl Problem<'_> {
         &self,
         design_box: &[u32],
         box_bound: &BoxBound,
-        work: &Work,
+        work: &BoxWork,
         findings: &mut Findings,
     ) -> Option<Objectives> {
         let options = self.options(design_box)?;

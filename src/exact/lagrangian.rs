@@ -17,7 +17,7 @@ use super::parts::{INERTIAS, LinkBox, STIFFNESSES, inertia, stiffness_of};
 use super::pose::{TILT, TORSION};
 use super::problem::{Part, Problem};
 use super::rows::{DualPoint, Force, Mode, RelaxedDesign, Rows};
-use super::shape::{Ideal, Shape, Work as ShapeWork, dot, products};
+use super::shape::{BoxWork as ShapeWork, Ideal, Shape, dot, products};
 use super::torsion::CurveBox;
 
 /// Number of steps of inverse iteration towards a mode of the mixed arm.

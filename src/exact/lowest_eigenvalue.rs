@@ -6,7 +6,7 @@
 
 use super::parts::INERTIAS;
 use super::pose::{COORDINATES, Pose};
-use super::shape::{Ideal, Work, inertia_forces};
+use super::shape::{BoxWork, Ideal, inertia_forces};
 use crate::mechanics::Twist;
 use crate::mechanics::lanes::{LaneWork, Lanes, in_lanes, subtract_multiple};
 
@@ -156,7 +156,7 @@ impl LaneWork for Cholesky<'_> {
 /// one coordinate.
 fn matrix(pose: &Pose, coordinates: &[(usize, usize)], inertia: &[[f64; INERTIAS]]) -> Vec<f64> {
     let n = coordinates.len();
-    let mut work = Work::default();
+    let mut work = BoxWork::default();
     let mut out = vec![0.0; n * n];
     let mut x = vec![0.0; pose.pieces.len() * COORDINATES];
     for (j, &(piece, c)) in coordinates.iter().enumerate() {

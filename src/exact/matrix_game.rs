@@ -9,8 +9,8 @@ const MOST_PIVOTS: usize = 200;
 /// Numbers below this count as rounding.
 const ROUNDING: f64 = 1e-11;
 
-/// The weighted sum of a balanced column may exceed zero by this much. A small amount that differs from column to
-/// column is added to this limit, so that no two pivots of the simplex method are equal.
+/// Tolerance of the balance rows of the simplex tableau. It grows a little from column to column, so that no two pivots
+/// are equal.
 const BALANCE_TOLERANCE: f64 = 1e-6;
 
 /// The solution of a matrix game.

@@ -19,6 +19,7 @@
 
 pub(crate) mod bearing_rows;
 pub(crate) mod bound;
+pub(crate) mod box_work;
 pub(crate) mod boxes;
 pub(crate) mod branch_level;
 pub(crate) mod branching;
@@ -44,7 +45,7 @@ pub(crate) mod journal;
 pub(crate) mod judge;
 pub(crate) mod kinds;
 pub(crate) mod lagrangian;
-pub(crate) mod live;
+pub(crate) mod live_progress;
 pub(crate) mod local_upper_bounds;
 pub(crate) mod lowest_eigenvalue;
 pub(crate) mod matrix_game;
@@ -68,10 +69,9 @@ pub(crate) mod ties;
 pub(crate) mod tip_row;
 pub(crate) mod torsion;
 pub(crate) mod tree;
-pub(crate) mod work;
 
 pub use domain_reduction::DomainReduction;
-pub use live::Known;
+pub use live_progress::Known;
 pub use outcome::{ExactOutcome, FoundInShard};
 pub use run::{Exact, VAST, WORKER_STACK_BYTES};
 pub use shard::refuse_holes;

@@ -6,11 +6,11 @@
 //! asked for, the greatest allowed shortfall is lowered.
 
 use super::bound::{BoxBound, Verdict};
+use super::box_work::BoxWork;
 use super::boxes::{OpenBox, open_all_boxes};
 use super::kinds::Ties;
 use super::problem::Problem;
 use super::run::Exact;
-use super::work::Work;
 use crate::pareto::objectives::Objectives;
 use crate::search::near::{
     BUFFERED_DESIGNS, NearDesign, NearDesigns, ROUNDING, Shortfall, Slack, keep_nearest,
@@ -57,7 +57,7 @@ impl Exact<'_> {
         problem: &Problem,
         seeker: &Seeker,
         mut here: OpenBox,
-        work: &mut Work,
+        work: &mut BoxWork,
         near: &mut Vec<NearDesign>,
     ) -> Vec<OpenBox> {
         self.budget.count_box();

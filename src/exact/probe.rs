@@ -5,12 +5,12 @@
 //! result proves nothing, but a search with good incumbents prunes early.
 
 use super::bound::{BoxBound, DesignBox, Verdict};
+use super::box_work::BoxWork;
 use super::budget::Budget;
 use super::evolve::Individual;
 use super::problem::Problem;
 use super::search_state::{Findings, SearchState};
 use super::shape::Shape;
-use super::work::Work;
 use crate::pareto::objectives::Objectives;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -66,7 +66,7 @@ pub(super) fn probe<'p>(
     probes: usize,
     state: &mut SearchState,
 ) -> Vec<Individual> {
-    let Some(shapes) = problem.first_shapes(&mut Work::default()) else { return Vec::new() };
+    let Some(shapes) = problem.first_shapes(&mut BoxWork::default()) else { return Vec::new() };
     let shapes = Arc::new(shapes);
     let probed: Vec<(Option<Individual>, Findings)> = (0..probes)
         .into_par_iter()
@@ -85,10 +85,10 @@ pub(super) fn probe<'p>(
 /// one.
 pub(super) fn dives(budget: &Budget, problem: &Problem, dives: usize) -> Findings {
     let mut all = Findings::default();
-    let Some(shapes) = problem.first_shapes(&mut Work::default()) else { return all };
+    let Some(shapes) = problem.first_shapes(&mut BoxWork::default()) else { return all };
     let shapes = Arc::new(shapes);
     let dive = |n: usize| {
-        let (mut work, mut findings) = (Work::default(), Findings::default());
+        let (mut work, mut findings) = (BoxWork::default(), Findings::default());
         let probe = Probe { budget, problem, merit: Merit::nth(n) };
         probe.descend(problem.root(), &shapes, QUICK_DIVE_BOXES, None, &mut work, &mut findings);
         findings
@@ -109,7 +109,7 @@ impl Probe<'_, '_> {
     /// The best design that the probe finds. The probe descends from the box of all designs and then optimizes each
     /// level separately. `None` if no design is found.
     fn best(&self, shapes: &Arc<Vec<Shape>>, findings: &mut Findings) -> Option<Individual> {
-        let mut work = Work::default();
+        let mut work = BoxWork::default();
         let mut best = self.descend(self.problem.root(), shapes, DIVE_BOXES, None, &mut work, findings)?;
         for _ in 0..MOST_ROUNDS {
             let before = best.merit;
@@ -136,7 +136,7 @@ impl Probe<'_, '_> {
         shapes: &Arc<Vec<Shape>>,
         most_boxes: usize,
         mut best: Option<Best>,
-        work: &mut Work,
+        work: &mut BoxWork,
         findings: &mut Findings,
     ) -> Option<Best> {
         let mut stack: Vec<Promising> =
@@ -174,7 +174,7 @@ impl Probe<'_, '_> {
         mut design_box: DesignBox,
         shapes: &Arc<Vec<Shape>>,
         best: &mut Option<Best>,
-        work: &mut Work,
+        work: &mut BoxWork,
         findings: &mut Findings,
     ) -> Option<Promising> {
         let mut shapes = Arc::clone(shapes);

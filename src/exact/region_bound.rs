@@ -2,12 +2,12 @@
 //! branch and promising designs.
 
 use super::bound::{BoxBound, DesignBox};
+use super::box_work::BoxWork;
 use super::branching::Branching;
 use super::local_upper_bounds::{LocalUpperBound, LocalUpperBounds};
 use super::matrix_game::Game;
 use super::problem::Problem;
 use super::rows::{DualPoint, ROUNDING, RelaxedDesign, Rows, WarmStart};
-use super::work::Work;
 
 /// Greatest number of dual points (sets of multipliers) for one box, in addition to those that use a single row.
 const MOST_POINTS: usize = 24;
@@ -60,7 +60,7 @@ impl Problem<'_> {
         design_box: &[u32],
         box_bound: &BoxBound,
         warm_start: &mut WarmStart,
-        work: &Work,
+        work: &BoxWork,
         below: &mut LocalUpperBounds,
     ) -> Option<Survivors> {
         let joined = below.join()?;

@@ -10,16 +10,16 @@
 //! ([`branching`](super::branching)) until few designs are left. These are searched box by box.
 
 use super::bound::{BoxBound, DesignBox, Verdict};
+use super::box_work::BoxWork;
 use super::boxes::{OpenBox, Search, open_boxes};
 use super::budget::Budget;
 use super::grid::thinned;
-use super::live::Live;
+use super::live_progress::LiveProgress;
 use super::local_upper_bounds::LocalUpperBounds;
 use super::problem::Problem;
 use super::region_bound::Survivors;
 use super::rounds::{Done, in_rounds};
 use super::search_state::{Findings, SearchState};
-use super::work::Work;
 
 use super::rows::{DOMINANCE_MARGIN, WarmStart};
 use super::shape::Shape;
@@ -62,7 +62,7 @@ pub(super) fn pass_by_regions<'p>(
     state: &mut SearchState,
     (slack, boxes): (f64, &[DesignBox]),
     regions_to: f64,
-    (live, seen): (Option<&Live>, impl Fn()),
+    (live, seen): (Option<&LiveProgress>, impl Fn()),
 ) -> Vec<BoxBound> {
     let mut found: Vec<Objectives> =
         state.incumbents.all().iter().map(|o| improved_by_slack(o, slack)).collect();
@@ -70,7 +70,7 @@ pub(super) fn pass_by_regions<'p>(
     // gap is still proved.
     found = thinned(found, THINNING_CELL * slack, |o| o);
     let below = LocalUpperBounds::new(&mut found, problem.limits());
-    let (seen_to, mut work) = (state.incumbents.all().len(), Work::default());
+    let (seen_to, mut work) = (state.incumbents.all().len(), BoxWork::default());
     let subproblems = boxes.iter().filter_map(|of| Subproblem::of_box(problem, of, seen_to, &mut work));
     let region = |subproblem| Task::Region { below: below.clone(), subproblem };
     let first: Vec<Task<'p>> = subproblems.map(region).collect();
@@ -118,7 +118,7 @@ impl<'p> Search<'_, 'p> {
         let since = all[subproblem.incumbents_seen..].iter().map(|o| improved_by_slack(o, self.slack));
         below.cut_by(&since.collect::<Vec<_>>());
         subproblem.incumbents_seen = all.len();
-        let (was_single, mut work) = (below.all().len() == 1, Work::default());
+        let (was_single, mut work) = (below.all().len() == 1, BoxWork::default());
         let Some(survivors) = self.reduce(&mut subproblem, &mut below, &mut work, findings) else {
             return Vec::new();
         };
@@ -148,7 +148,7 @@ impl<'p> Search<'_, 'p> {
         &self,
         subproblem: &mut Subproblem<'p>,
         below: &mut LocalUpperBounds,
-        work: &mut Work,
+        work: &mut BoxWork,
         findings: &mut Findings,
     ) -> Option<Survivors> {
         loop {
@@ -175,7 +175,7 @@ impl<'p> Search<'_, 'p> {
             return;
         }
         findings.tried.push(number);
-        let (mut shapes, mut work) = (Arc::clone(&subproblem.shapes), Work::default());
+        let (mut shapes, mut work) = (Arc::clone(&subproblem.shapes), BoxWork::default());
         self.budget.count_box();
         let is_dominated = |box_bound: &BoxBound| {
             self.state.incumbents.dominates(box_bound) || findings.dominates(box_bound)
@@ -197,7 +197,7 @@ fn improved_by_slack(found: &Objectives, slack: f64) -> Objectives {
 impl<'p> Subproblem<'p> {
     /// The subproblem with all options of the space. `incumbents_seen` is the number of incumbents from which its local
     /// upper bounds were made. `None` if no design meets the constraints.
-    pub(super) fn whole(problem: &Problem<'p>, incumbents_seen: usize, work: &mut Work) -> Option<Self> {
+    pub(super) fn whole(problem: &Problem<'p>, incumbents_seen: usize, work: &mut BoxWork) -> Option<Self> {
         let shapes = problem.first_shapes(work)?;
         Some(Self {
             problem: Arc::new(problem.clone()),
@@ -213,7 +213,7 @@ impl<'p> Subproblem<'p> {
         problem: &Problem<'p>,
         design_box: &DesignBox,
         incumbents_seen: usize,
-        work: &mut Work,
+        work: &mut BoxWork,
     ) -> Option<Self> {
         if *design_box == problem.root() {
             return Self::whole(problem, incumbents_seen, work);
@@ -228,7 +228,7 @@ impl<'p> Subproblem<'p> {
     pub(super) fn reduce(
         &mut self,
         below: &mut LocalUpperBounds,
-        work: &mut Work,
+        work: &mut BoxWork,
         is_beaten: impl Fn(&BoxBound) -> bool,
     ) -> Option<(Survivors, bool)> {
         let before = self.problem.members(&self.design_box);
@@ -269,7 +269,7 @@ impl<'p> Subproblem<'p> {
 
     /// Divides the subproblem into two. The first branching of `survivors` that separates its options is taken; if
     /// there is none, a level is halved. `None` if a single design is left.
-    pub(super) fn branch(&self, survivors: &Survivors, work: &mut Work) -> Option<[Self; 2]> {
+    pub(super) fn branch(&self, survivors: &Survivors, work: &mut BoxWork) -> Option<[Self; 2]> {
         let branch = survivors
             .branchings
             .iter()

@@ -18,20 +18,21 @@
 //! [`lagrangian`](super::lagrangian) minimizes the sum.
 
 use super::bound::{BoxBound, DesignBox, START_SHAPES};
+use super::box_work::BoxWork;
 use super::drives_by_curve::{FeasibleDrives, PricedDrives};
 use super::dual_price::Gear;
+use super::incumbents::BETTER_BY;
 use super::local_upper_bounds::LocalUpperBound;
 use super::parts::{INERTIAS, STIFFNESSES};
 use super::pose::Row;
 use super::problem::{Part, Problem};
 use super::shape::Shape;
 use super::tip_row::TipRow;
-use super::work::Work;
 
 /// Relative margin by which incumbents are made worse before a region is bounded by them. It is larger than the
 /// relative amount by which an incumbent must be better to dominate, and than the difference below which objectives
 /// count as equal.
-pub(super) const DOMINANCE_MARGIN: f64 = 2e-7;
+pub(super) const DOMINANCE_MARGIN: f64 = 2.0 * BETTER_BY;
 /// Margin for the rounding of sums whose terms are about 1.
 pub(super) const ROUNDING: f64 = 1e-9;
 
@@ -58,7 +59,7 @@ impl WarmStart {
 /// them.
 pub(super) struct Rows<'a> {
     pub problem: &'a Problem<'a>,
-    pub work: &'a Work,
+    pub work: &'a BoxWork,
     /// The scale of each row (inequality): the row's values divided by its scale are about 1.
     pub scale: Vec<f64>,
     /// The constant term of each row, divided by the scale. It does not depend on any choice.
@@ -158,7 +159,7 @@ impl Problem<'_> {
     fn drives_of_levels(
         &self,
         design_box: &[u32],
-        work: &Work,
+        work: &BoxWork,
         before: &[Option<FeasibleDrives>],
     ) -> Vec<Option<FeasibleDrives>> {
         let of = |(level, (&piece, &node)): (usize, (&usize, &u32))| {
@@ -179,7 +180,7 @@ impl<'a> Rows<'a> {
         box_bound: &BoxBound,
         upper: &LocalUpperBound,
         warm_start: &WarmStart,
-        work: &'a Work,
+        work: &'a BoxWork,
     ) -> Self {
         // If `λ` is far below the modes of the box, the mode rows exclude nothing. The local upper bound may ask for no
         // mode at all; half the box's bound is then taken.

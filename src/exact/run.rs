@@ -9,7 +9,7 @@ use super::evolve::evolve;
 use super::gap::gap;
 use super::journal::{Begun, Journal};
 use super::kinds::Ties;
-use super::live::{Known, Live, least};
+use super::live_progress::{Known, LiveProgress, least};
 use super::outcome::{ExactOutcome, FoundInShard};
 use super::plan::{Pass, Plan};
 use super::probe::probe;
@@ -88,7 +88,7 @@ pub struct Exact<'p> {
     /// Greatest number of designs that are listed with all their ties. If there are more, one design of each set of
     /// ties is listed.
     most_with_ties: usize,
-    pub(super) live: Live,
+    pub(super) live: LiveProgress,
     journal: Journal<'p>,
     /// The joints with their drives, once they are tabulated.
     joints: OnceLock<TabulatedJoints<'p>>,
@@ -119,7 +119,7 @@ impl<'p> Exact<'p> {
             regions_from: VAST,
             regions_to: SMALL_REGION,
             most_with_ties: MOST_WITH_TIES,
-            live: Live::default(),
+            live: LiveProgress::default(),
             journal: Journal::default(),
             joints: OnceLock::new(),
         }
@@ -223,7 +223,7 @@ impl<'p> Exact<'p> {
         &self,
         whole: Option<&Problem<'p>>,
         (mut state, is_new): (SearchState, bool),
-        live: Option<&Live>,
+        live: Option<&LiveProgress>,
     ) -> FoundInShard {
         if let Some(found) = self.journal.next_finished() {
             return found;
@@ -291,7 +291,7 @@ impl<'p> Exact<'p> {
         (whole, boxes): (&Problem<'p>, &[DesignBox]),
         is_new: bool,
         state: &mut SearchState,
-        live: Option<&Live>,
+        live: Option<&LiveProgress>,
     ) -> Ended {
         let (designs, by_regions) = (whole.designs() as f64, self.is_by_regions(whole));
         // Small spaces need no passes with slack. If designs are given, boxes can be pruned from the start.

@@ -2,7 +2,7 @@
 
 use super::bound::BoxBound;
 use super::incumbents::{Incumbents, is_better};
-use super::live::Known;
+use super::live_progress::Known;
 use crate::pareto::front::{exact_front, not_clearly_beaten};
 use crate::pareto::objectives::{Objective, Objectives};
 use crate::search::sweep::{Candidate, SLACK};

@@ -56,7 +56,7 @@ impl Shape {
             kinetic: vec![[0.0; INERTIAS]; pose.pieces.len()],
             kinetic_fixed: 0.0,
         };
-        let mut work = Work::default();
+        let mut work = BoxWork::default();
         shape.iterate(pose, ideal, &stack(&direction, &Vector3::zeros()), &mut work);
         for _ in 1..steps {
             shape.clear_of(pose, ideal, others);
@@ -69,7 +69,7 @@ impl Shape {
 
     /// One step of inverse iteration of this shape, towards a mode of an ideal arm: the lowest of those modes that are
     /// orthogonal to the shapes in `others`.
-    pub(super) fn improve(&mut self, pose: &Pose, ideal: &Ideal, others: &[Self], work: &mut Work) {
+    pub(super) fn improve(&mut self, pose: &Pose, ideal: &Ideal, others: &[Self], work: &mut BoxWork) {
         self.iterate(pose, ideal, &Twist::zeros(), work);
         self.clear_of(pose, ideal, others);
         self.energies(pose);
@@ -102,7 +102,7 @@ impl Shape {
 
     /// Replaces this shape `x` by `C M x`, one step of inverse iteration, in which the base moves by `base`. Then the
     /// shape is scaled.
-    fn iterate(&mut self, pose: &Pose, ideal: &Ideal, base: &Twist, work: &mut Work) {
+    fn iterate(&mut self, pose: &Pose, ideal: &Ideal, base: &Twist, work: &mut BoxWork) {
         inertia_forces(pose, ideal.inertia, base, &self.x, work);
         let mut largest = 0.0f64;
         for (piece, posed) in pose.pieces.iter().enumerate() {
@@ -196,7 +196,7 @@ pub(super) fn inertia_forces(
     inertia: &[[f64; INERTIAS]],
     base: &Twist,
     x: &[f64],
-    work: &mut Work,
+    work: &mut BoxWork,
 ) {
     work.momenta.clear();
     work.forces.resize(x.len(), 0.0);
@@ -279,7 +279,7 @@ fn add_tilts(across: &Option<[Twist; 2]>, x: &[f64], twist: &mut Twist) {
 
 /// Buffers of one step of inverse iteration.
 #[derive(Default)]
-pub(super) struct Work {
+pub(super) struct BoxWork {
     momenta: Vec<Momentum>,
     /// Inertia force on each strain coordinate. There are [`COORDINATES`] places for each piece, tip first.
     pub forces: Vec<f64>,

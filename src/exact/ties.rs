@@ -1,7 +1,7 @@
 //! Tied designs, which differ only in drives of one kind, and their listing.
 
+use super::box_work::BoxWork;
 use super::problem::{Part, Problem};
-use super::work::Work;
 use crate::search::sweep::Candidate;
 use crate::space::design::{number, options};
 use std::collections::{BTreeSet, HashMap};
@@ -41,7 +41,7 @@ impl Problem<'_> {
         let chosen: Vec<Option<Vec<u32>>> =
             found.iter().map(|candidate| options(&self.level_sizes, candidate.number)).collect();
         let leaves = self.leaves_of(&chosen);
-        let mut work = Work::default();
+        let mut work = BoxWork::default();
         let mut lists_of = |options: &[u32]| -> Option<Vec<Vec<u32>>> {
             let mut design_box: Vec<u32> = options
                 .iter()

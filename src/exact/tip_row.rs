@@ -1,9 +1,9 @@
 //! The row of the tip's displacement: the displacement along a fixed direction as a sum over the parts of a box's
 //! members.
 
+use super::box_work::BoxWork;
 use super::parts::STIFFNESSES;
 use super::problem::{Part, Problem};
-use super::work::Work;
 
 /// The displacement of the tip in a judged case along a fixed direction, as a linear function of the numbers of the
 /// parts. The direction is that of the tip's displacement when it is least over the box.
@@ -26,7 +26,7 @@ pub(super) struct TipRow {
 impl TipRow {
     /// The row of the tip's displacement in a judged case, and the part of this displacement that no choice changes
     /// \[m\]. `judged` is the index among the judged cases and `case` that among all cases.
-    pub(super) fn new(problem: &Problem, judged: usize, case: usize, work: &Work) -> (Self, f64) {
+    pub(super) fn new(problem: &Problem, judged: usize, case: usize, work: &BoxWork) -> (Self, f64) {
         let pose = &problem.poses[case];
         let pieces = problem.parts.len();
         let mut tip = Self {

@@ -34,7 +34,7 @@ pub(crate) mod urdf_file;
 pub(crate) mod urdf_out;
 mod urdf_place;
 mod urdf_shapes;
-mod xml;
+pub(crate) mod xml;
 
 pub use export::Format;
 pub use request::{ExportRequest, Exported};

@@ -53,8 +53,8 @@ impl Xml {
     }
 }
 
-/// A text with the characters escaped that an attribute value must not contain.
-fn escaped(text: &str) -> String {
+/// A text with the characters escaped that have a meaning in XML.
+pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 

@@ -310,12 +310,15 @@ fn legendre(degree: usize, s: f64) -> f64 {
     here
 }
 
+/// Cosine of the angle between a link and the z axis above which the link counts as along this axis.
+pub(crate) const ALONG_COSINE: f64 = 0.99;
+
 /// The section frame (columns x, y, z) of a link along `vector_m`, in the frame in which this vector is given. The x
 /// axis is along the link. The z axis is as near as possible to the z axis of the given frame.
 pub(crate) fn section_frame(vector_m: &Vector3<f64>) -> Matrix3<f64> {
     let x = vector_m.normalize();
     // for a link (nearly) along z, the x axis of the given frame is used instead
-    let up = if x.z.abs() > 0.99 { Vector3::x() } else { Vector3::z() };
+    let up = if x.z.abs() > ALONG_COSINE { Vector3::x() } else { Vector3::z() };
     let z = (up - x * x.dot(&up)).normalize();
     Matrix3::from_columns(&[x, z.cross(&x), z])
 }

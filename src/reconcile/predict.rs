@@ -1,6 +1,6 @@
 //! The verb `predict`: adds the model's predictions to the readings of a file.
 
-use super::model::exact::{Exact, subject};
+use super::model::direct::{Direct, subject};
 use super::positions;
 use super::readings::campaign::{Campaign, Statement, driven_joints};
 use super::readings::cells::Purpose;
@@ -33,7 +33,7 @@ pub fn channel_of(table: &Table) -> Option<Channel> {
 pub fn predict(arms: &[Placed], statement: &Statement, table: Table) -> Result<String, Faults> {
     let arm = &arms[0].arm;
     let subject = subject(arm, statement);
-    let exact = Exact::new(&subject);
+    let exact = Direct::new(&subject);
     let (names, columns): (&[&str], Vec<Vec<f64>>) = match channel_of(&table) {
         Some(Channel::Static) => {
             let rows = exact.statics_mm(&static_rows(&table, arm, Purpose::Predict));
@@ -72,7 +72,7 @@ pub fn predict(arms: &[Placed], statement: &Statement, table: Table) -> Result<S
 fn positions_mm(
     arms: &[Placed],
     statement: &Statement,
-    exact: &Exact,
+    exact: &Direct,
     table: &Table,
 ) -> Result<Vec<[f64; 3]>, Faults> {
     let all: Vec<&Arm> = arms.iter().map(|a| &a.arm).collect();

@@ -7,8 +7,8 @@
 use super::analysis;
 use super::fit::held_out::HeldOut;
 use super::fit::noise::Noise;
+use super::model::direct::subject;
 use super::model::estimate::Finding;
-use super::model::exact::subject;
 use super::positions;
 use super::positions::analysis::Calibrated;
 use super::positions::outcome::FEWEST;

@@ -122,7 +122,8 @@ impl Parts {
     }
 }
 
-fn slot_masses(slot: &Slot) -> Vec<f64> {
+/// The mass of each option of a slot \[kg\].
+pub(super) fn slot_masses(slot: &Slot) -> Vec<f64> {
     match slot {
         Slot::Given { mass_kg, .. } | Slot::Offset { mass_kg } => vec![*mass_kg],
         Slot::Sized(sized) => (0..sized.table.len()).map(|i| sized.table.mass_kg(i)).collect(),

@@ -6,7 +6,7 @@
 //! its value at one end plus, for each load, the least slope times the distance from that end. Each of the two ends
 //! gives a row.
 
-use super::parts::Parts;
+use super::parts::{Parts, slot_masses};
 use super::row::Row;
 use super::slopes::{rising_range, tangent_range};
 use crate::arm::joint_law::JointLaw;
@@ -56,7 +56,7 @@ impl CaseLoads {
             match placed {
                 StationSlot::Joint(joint) => {
                     unit.push(joint.weight_per_kg);
-                    amount.push(joint_masses(slot));
+                    amount.push(slot_masses(slot));
                 }
                 StationSlot::Body { weight, .. } => {
                     unit.push(*weight);
@@ -300,16 +300,6 @@ fn inertias(station: &Station, slot: usize, amount: &[Vec<f64>]) -> Vec<Vec<f64>
             StationSlot::Link { options, .. } => options.iter().map(|o| about(&o.inertia)).collect(),
         })
         .collect()
-}
-
-fn joint_masses(slot: &Slot) -> Vec<f64> {
-    match slot {
-        Slot::Sized(sized) => (0..sized.table.len()).map(|i| sized.table.mass_kg(i)).collect(),
-        Slot::Given { mass_kg, .. } | Slot::Offset { mass_kg } => vec![*mass_kg],
-        Slot::Bearing { laws, .. } => vec![0.0; laws.len()],
-        Slot::Motor { masses_kg, .. } => masses_kg.clone(),
-        Slot::Link { .. } => Vec::new(),
-    }
 }
 
 fn add(to: &mut [f64], what: &[f64]) {

@@ -175,8 +175,8 @@ impl PickBudget {
         format!("; at every {kind}, more of the same raises the deflection{next}")
     }
 
-    /// A sentence that names the piece where one more kilogram raises the lowest mode most. Empty if this is `told`,
-    /// the piece that was named before.
+    /// A sentence that names the piece at which one more kilogram raises the lowest mode most. It is empty if `told` is
+    /// that piece, because an earlier sentence has named it.
     fn mode_advice(&self, told: &BudgetRow) -> String {
         let rises = self.rows.iter().filter_map(|r| Some((r, r.in_place?.hz_per_kg)));
         let best = rises.max_by(|a, b| a.1.total_cmp(&b.1));

@@ -8,13 +8,12 @@
 use super::front_table::FrontTable;
 use super::number::significant;
 use super::picks::{Design, Objective, Pick, designs, materials};
-use super::svg::draw::{MUTED, PALETTE};
+use super::svg::draw::{MUTED, PALETTE, WIDTH_PX};
 use super::svg::plot::{Axis, Note, Plot, Series, Side, Stroke};
 use super::svg::scale::Scale;
 use super::svg::sheet::Sheet;
 use std::collections::HashSet;
 
-const WIDTH_PX: f64 = 900.0;
 const HEIGHT_PX: f64 = 460.0;
 /// An axis whose ends differ by more than this factor is logarithmic. On a linear axis light arms would crowd at
 /// the left.

@@ -89,7 +89,7 @@ pub(super) fn hinges(slots: &[Slot]) -> Vec<Hinge> {
     hinges
 }
 
-/// Length of a list that has an entry for the number of every hinge. Each slot takes one number, even if it has no
+/// Length of a list that is indexed by the number of a hinge. Every slot reserves one number, also a slot without a
 /// hinge.
 pub(super) fn hinge_numbers(slots: &[Slot]) -> usize {
     hinges(slots).iter().map(|hinge| hinge.number + 1).fold(slots.len(), usize::max)

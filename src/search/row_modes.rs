@@ -39,7 +39,7 @@ pub(crate) struct Question<'a, 'c> {
 struct Ask<V> {
     /// Bit mask, one bit per arm: the arms for which the question is asked.
     open: u8,
-    /// Eigenvalues \[1/s²\] that are not below this number are of no interest.
+    /// Upper limit of the eigenvalues that are sought \[1/s²\]. Larger ones need not be computed.
     below: V,
     /// Eigenvalue at which the iteration starts; `None` if the question is only whether an eigenvalue is below
     /// `below`.

@@ -30,10 +30,10 @@ pub(super) const AXIAL_SHARE: f64 = 0.44;
 /// Factor Y of the axial force in the dynamic equivalent load while this force is at most 1.5 times the one across; the
 /// factor X of the force across is then 1.
 pub(super) const AXIAL_FACTOR: f64 = 0.45;
-/// Factor X and Y of both forces in the dynamic equivalent load where the axial force is larger than that.
+/// The factors X and Y of the dynamic equivalent load where the axial force exceeds 1.5 times the force across.
 pub(super) const STEEP_FACTOR: f64 = 0.67;
 /// Number of turns for which the dynamic load rating C is defined.
-const RATED_TURNS: f64 = 1e6;
+pub(super) const RATED_TURNS: f64 = 1e6;
 
 /// The load on a bearing: the forces and the moment that everything outboard puts on it, at the face of its flange.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -19,6 +19,7 @@
 //! I and A are those of the root of the thread. E = 206 GPa and ρ = 7850 kg/m³ are those of steel. The mass of the
 //! shaft turns with the motor and does not travel.
 
+use super::bearing::RATED_TURNS;
 use crate::catalog::gear::{Gear, GearKind, LifeLaw};
 use crate::catalog::{Confidence, Provenance};
 use std::f64::consts::PI;
@@ -31,8 +32,6 @@ const DENSITY_KG_M3: f64 = 7850.0;
 const OF_EULER: f64 = 0.5;
 /// Fraction of the critical speed that the makers allow (MISUMI, page 1677).
 const OF_CRITICAL: f64 = 0.8;
-/// Turns for which the dynamic load rating is defined.
-const RATED_TURNS: f64 = 1e6;
 
 /// How the ends of a screw are held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

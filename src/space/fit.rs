@@ -6,13 +6,10 @@
 use super::design_space::{SpaceJoint, SpacePiece};
 use crate::arm::section::Section;
 use crate::arm::{Link, LinkBody};
+use crate::mechanics::beam::ALONG_COSINE;
 use crate::mechanics::beam::section_frame;
 use crate::sizing::fit::{FitRequirement, LinkRoom};
 use nalgebra::{Unit, Vector3};
-
-/// Cosine of the angle between the axis of a joint and its link, above which the joint counts as one that rolls the
-/// link. The section frame of a link uses the same limit.
-const ROLL_COSINE: f64 = 0.99;
 
 /// The room that the link of one joint leaves for gear and motor: their largest outer diameters.
 pub(crate) struct RoomAtJoint {
@@ -101,7 +98,7 @@ fn room(
 fn width_across_m(axis: &Unit<Vector3<f64>>, vector_m: &Vector3<f64>, section: &Section) -> f64 {
     let along = section_frame(vector_m).tr_mul(axis);
     let (width_m, height_m) = section.outer_m();
-    if along.x.abs() > ROLL_COSINE {
+    if along.x.abs() > ALONG_COSINE {
         return width_m.min(height_m);
     }
     // exact for a box with one side along the axis, and for a round tube

@@ -4,6 +4,7 @@ use super::drive_keys::DRIVES;
 use super::motor_kinds::{read_motor_kinds, usual_motor_kinds};
 use crate::arm::bearing::BearingSource;
 use crate::arm::extras::ExtrasSource;
+use crate::arm::file::read_gear_mass;
 use crate::arm::transmission::Stage;
 use crate::catalog::Catalogs;
 use crate::catalog::gear::{Gear, GearKind, GearMass};
@@ -36,7 +37,7 @@ const GEAR_KEYS: [&str; 4] = ["gear_series", "gears", "gear_kinds", "ratios"];
 
 pub(super) fn read_drives(node: &Node, catalogs: &Catalogs) -> Option<Drives> {
     let object = node.shaped(&DRIVES)?;
-    let gear_mass = object.or("gear_mass", GearMass::HousedUnit, read_gear_mass);
+    let gear_mass = read_gear_mass(&object);
     let gears: Vec<&Gear> = catalogs.gears.iter().filter(|g| g.kind != GearKind::Actuator).collect();
     let motors = catalogs.motors.iter().filter(|m| m.kind != MotorKind::OfActuator);
     let known_series: Vec<&str> = gears.iter().map(|g| g.series.as_str()).collect();
@@ -105,14 +106,6 @@ fn list(node: &Node, known: &[&str]) -> Option<Vec<String>> {
         })
         .collect();
     read.into_iter().collect()
-}
-
-fn read_gear_mass(node: &Node) -> Option<GearMass> {
-    match node.string()? {
-        "component_set" => Some(GearMass::ComponentSet),
-        "housed_unit" => Some(GearMass::HousedUnit),
-        other => node.fault(format!("\"{other}\" is not known"), "choose one of: component_set, housed_unit"),
-    }
 }
 
 /// Reads the kinds of gears that may be chosen. The catalogs must have a gear of one of them.

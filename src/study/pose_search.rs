@@ -6,6 +6,7 @@
 //! joint improves the score, by steps that become smaller. Nothing is random and nothing depends on the number of
 //! threads. The result is the best pose that was found; it is not proved to be the best of all.
 
+use crate::arm::halton::halton;
 use crate::arm::pose::{DrivenJoint, Motion};
 use rayon::prelude::*;
 
@@ -28,8 +29,6 @@ const FINE_DEG: [f64; 5] = [6.0, 2.0, 0.7, 0.3, 0.1];
 const MOST_MOVES: usize = 60;
 /// Smallest relative increase of the score that counts as an improvement; less is rounding.
 const LEAST_RISE: f64 = 1e-9;
-/// Bases of Halton's sequence, one for each joint.
-const PRIMES: [usize; 16] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53];
 
 /// The range of one joint: of its angle \[deg\], or of its travel \[mm\].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -152,7 +151,7 @@ impl PoseRanges {
             for (place, (&joint, of)) in self.free.iter().zip(&corners).enumerate() {
                 pose_deg[joint] = match all {
                     Some(all) if all <= MOST_CORNERS => of[rest % of.len()],
-                    _ => of[(halton(index, PRIMES[place % PRIMES.len()]) * of.len() as f64) as usize],
+                    _ => of[(halton(index, place) * of.len() as f64) as usize],
                 };
                 rest /= of.len();
             }
@@ -284,7 +283,7 @@ impl PoseRanges {
         let mut pose_deg = self.home();
         for (place, &joint) in self.free.iter().enumerate() {
             let Turn { low_deg, high_deg, .. } = self.turns[joint];
-            let part = halton(index, PRIMES[place % PRIMES.len()]);
+            let part = halton(index, place);
             pose_deg[joint] = self.turns[joint].within((low_deg + (high_deg - low_deg) * part).round());
         }
         pose_deg
@@ -294,15 +293,4 @@ impl PoseRanges {
     fn home(&self) -> Vec<f64> {
         self.turns.iter().map(|turn| turn.within(0.0)).collect()
     }
-}
-
-/// The number with this index in Halton's low-discrepancy sequence to this base. It is between 0 and 1.
-fn halton(mut index: usize, base: usize) -> f64 {
-    let (mut part, mut sum) = (1.0, 0.0);
-    while index > 0 {
-        part /= base as f64;
-        sum += part * (index % base) as f64;
-        index /= base;
-    }
-    sum
 }

@@ -22,6 +22,7 @@ use super::outcome::Front;
 use crate::catalog::Catalogs;
 use crate::pareto::front::nondominated;
 use crate::pareto::objectives::Objectives;
+use crate::reconcile::model::estimate::Z_95;
 use crate::report::picks::{self, Design, PICKS};
 use crate::report::tolerance::{Fate, Scattered, percentiles};
 use crate::search::scatter::{ChosenParts, Factors, Rating};
@@ -39,8 +40,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Number of samples that are computed before they are counted.
 const SAMPLES_PER_BATCH: u32 = 256;
-/// Number of standard deviations within which 95 % of a normal distribution lie.
-const SIGMAS_95: f64 = 1.959_963_984_540_054;
 
 /// Names of the ratings that may scatter, each with the default scatter for a name without a value.
 const KINDS: [(&str, f64); 4] =
@@ -87,7 +86,7 @@ impl FromStr for Tolerance {
     }
 }
 
-/// Reads a percentage or a fraction between 0 and 1, such as `20%` or `0.2`.
+/// Parses a percentage or a fraction between 0 and 1, such as `20%` or `0.2`, and returns the fraction, 0.2.
 pub fn part(text: &str) -> Result<f64, String> {
     let (number, scale) = text.strip_suffix('%').map_or((text, 1.0), |n| (n.trim_end(), 0.01));
     match number.parse::<f64>() {
@@ -123,10 +122,7 @@ struct Stream {
 impl Stream {
     fn new(seed: u64, figure: &Rating, part: f64) -> Self {
         let named = blake3::hash(format!("{seed} {figure:?}").as_bytes());
-        Self {
-            generator: Xoshiro256PlusPlus::from_seed(*named.as_bytes()),
-            sigma: libm::log1p(part) / SIGMAS_95,
-        }
+        Self { generator: Xoshiro256PlusPlus::from_seed(*named.as_bytes()), sigma: libm::log1p(part) / Z_95 }
     }
 
     /// A uniformly distributed number in (0, 1].

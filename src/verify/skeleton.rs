@@ -230,7 +230,7 @@ fn offsets_kg(question: &Question) -> f64 {
     masses.sum()
 }
 
-/// The piece that each level chooses, tip first.
+/// For each level of the search, tip first: the joint or link whose part is chosen at this level.
 fn levels(question: &Question, structure: &Structure) -> Vec<Place> {
     let (mut joints, mut tubes, mut levels) = (0, 0, Vec::new());
     for (asked, piece) in question.pieces.iter().zip(&structure.pieces) {

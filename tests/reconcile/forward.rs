@@ -8,7 +8,7 @@ use armwright::reconcile::fit::descent::{Weights, evaluate, jacobian};
 use armwright::reconcile::forward::Forward;
 use armwright::reconcile::model::calibration::Nuisance;
 use armwright::reconcile::model::candidates::candidates;
-use armwright::reconcile::model::exact::Exact;
+use armwright::reconcile::model::direct::Direct;
 use armwright::reconcile::model::parameters::Model;
 use nalgebra::Vector3;
 use std::path::Path;
@@ -83,7 +83,7 @@ fn a_joint_softens_from_the_second_row_on_and_a_base_turns_from_its_row_on() {
     let displacements = |laws: &[Effect]| {
         let mut subject = campaign.arm.subject(JointModel::ThreeSegment);
         laws.iter().for_each(|law| subject.apply(law));
-        Exact::new(&subject).statics_mm(&campaign.statics).into_iter().map(Vector3::from).collect::<Vec<_>>()
+        Direct::new(&subject).statics_mm(&campaign.statics).into_iter().map(Vector3::from).collect::<Vec<_>>()
     };
     let [soft, turned, ..] = laws();
     let (plain, soft, turned) = (displacements(&[]), displacements(&[soft]), displacements(&[turned]));
@@ -98,7 +98,7 @@ fn a_joint_softens_from_the_second_row_on_and_a_base_turns_from_its_row_on() {
 
 /// Checks predictions of the prepared model against mechanics, of which frequencies may be off by a part of their noise.
 fn agrees(campaign: &Campaign, forward: &Forward, fast: &[f64], subject: &Subject, what: &str) {
-    let exact = Exact::new(subject);
+    let exact = Direct::new(subject);
     let mut slow: Vec<f64> = exact.statics_mm(&campaign.statics).into_iter().flatten().collect();
     slow.extend(exact.frequencies_hz(&campaign.modal).into_iter().map(|f| f.expect("mode")));
     slow.extend(exact.windups_arcmin(&campaign.windup));

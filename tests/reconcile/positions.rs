@@ -11,7 +11,7 @@ use armwright::arm::read_arm_document;
 use armwright::catalog::Catalogs;
 use armwright::input::Document;
 use armwright::reconcile::Campaign;
-use armwright::reconcile::model::exact::Exact;
+use armwright::reconcile::model::direct::Direct;
 use armwright::reconcile::readings::components::Component;
 use armwright::reconcile::readings::placement::Placement;
 use armwright::reconcile::reconcile;
@@ -49,7 +49,7 @@ fn predicted_errors_mm(campaign: &Campaign, outcome: &Outcome) -> Vec<f64> {
     let document = Document::parse("arm", &json.to_string()).expect("JSON");
     let arm = read_arm_document(document, &Catalogs::default()).expect("sound");
     let subject = arm.subject(JointModel::ThreeSegment);
-    let predicted = Exact::new(&subject).positions_mm(&campaign.positions, &Placement::from_json(&json));
+    let predicted = Direct::new(&subject).positions_mm(&campaign.positions, &Placement::from_json(&json));
     let rows = predicted.iter().zip(&campaign.positions);
     let mm = |read: Option<Component>| read.expect("all coordinates are measured").value_mm;
     let mut errors: Vec<f64> =

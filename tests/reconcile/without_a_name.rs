@@ -5,7 +5,7 @@ use crate::generator::{self, Dice, Plan, Specimen};
 use armwright::arm::{JointModel, read_arm_document};
 use armwright::catalog::Catalogs;
 use armwright::input::Document;
-use armwright::reconcile::model::exact::Exact;
+use armwright::reconcile::model::direct::Direct;
 use armwright::reconcile::verdict::page::campaign_page;
 use armwright::reconcile::{Campaign, Outcome, Verdict, reconcile};
 use serde_json::{Value, json};
@@ -61,7 +61,7 @@ fn error_by_mechanics_mm(folder: &Path, arm: &Path) -> f64 {
     let arm = read_arm_document(document, &Catalogs::default()).expect("sound");
     let other = Campaign::read(&folder.join("other"), &Catalogs::default()).expect("sound");
     let subject = arm.subject(JointModel::ThreeSegment);
-    let predicted = Exact::new(&subject).statics_mm(&other.statics);
+    let predicted = Direct::new(&subject).statics_mm(&other.statics);
     let rows = predicted.iter().zip(&other.statics);
     let squares: Vec<f64> = rows
         .flat_map(|(own, row)| (0..3).map(|c| (own[c] - row.measured[c].expect("measured").value_mm).powi(2)))

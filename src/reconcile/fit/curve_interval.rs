@@ -27,7 +27,7 @@ const TAIL_PROBABILITY: f64 = 0.025;
 const OPEN_END_DENSITY: f64 = 0.146;
 /// A pair of nodes (one value for each break point) is ruled out if its objective exceeds the smallest objective found
 /// by more than this. The probability density of the pair is then below a thousandth of the maximum: exp(-14 / 2).
-const RULED_OUT: f64 = 14.0;
+pub(crate) const RULED_OUT: f64 = 14.0;
 /// First step from the best fit to the next node, as a multiple of the standard deviation of the break point.
 const FIRST_STEP: f64 = 0.5;
 /// Smallest and largest value of the first step from the best fit to the next node \[ln of the torque\].

@@ -10,15 +10,10 @@ use super::curve_interval::curve_intervals;
 use super::descent::{Effort, Fit, Weights, data_curvature, descent};
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::calibration::Calibration;
-use crate::reconcile::model::estimate::Interval;
+use crate::reconcile::model::estimate::{Interval, RISE_AT_95, Z_95};
 use crate::reconcile::model::parameters::Model;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
-
-/// Standard normal deviate of a two-sided probability of 95 %.
-const Z95: f64 = 1.959_964;
-/// Rise of the objective at the ends of a 95 % interval: the 95 % quantile of chi-squared with one degree of freedom.
-const RISE_AT_95: f64 = 3.841_459;
 
 /// Standard deviation of every parameter of the fit, in `u`, from the curvature of the objective; infinite if the
 /// curvature is singular.
@@ -42,7 +37,7 @@ pub(crate) fn intervals(forward: &Forward, best: &Fit, weights: &Weights) -> Vec
                 let ends = curve_intervals(forward, best, weights, own.clone(), [*a, *b], &deviations);
                 // the posterior distribution does not include the uncertainty of the torques that the tolerance of
                 // masses causes
-                let slack = |p| if pair.contains(&p) { Z95 * torque_deviation(best) } else { 0.0 };
+                let slack = |p| if pair.contains(&p) { Z_95 * torque_deviation(best) } else { 0.0 };
                 let widened = |(p, ends): (usize, Interval)| {
                     ends.with(best.point.u[p]).wider(slack(p), best.model.bounds(p))
                 };
@@ -64,7 +59,7 @@ fn interval(forward: &Forward, best: &Fit, weights: &Weights, effect: usize, p: 
     let crooked = best.model.effects[effect].kind.traits.is_nonlinear;
     let (low, high) = best.model.bounds(p);
     let end = |side: f64| {
-        let straight = best.point.u[p] + side * Z95 * sd;
+        let straight = best.point.u[p] + side * Z_95 * sd;
         let value = match crooked || !(low..=high).contains(&straight) {
             true => profile(forward, best, weights, p, side, sd),
             false => Some(straight),
@@ -117,7 +112,7 @@ fn profile(forward: &Forward, best: &Fit, weights: &Weights, p: usize, side: f64
     let clamp = |value: f64| value.clamp(low, high);
     // the profile starts at the best value, where the rise is zero
     let mut near = (u, 0.0);
-    let mut value = clamp(u + side * Z95 * sd.clamp(1e-6, 10.0));
+    let mut value = clamp(u + side * Z_95 * sd.clamp(1e-6, 10.0));
     for _ in 0..6 {
         let here = rise(value);
         if (here - RISE_AT_95).abs() < 0.4 {

@@ -1,7 +1,7 @@
 //! Finds gross errors and wrongly declared standard deviations from the residuals of a model.
 
 use super::descent::{Fit, Weights};
-use super::stats::median;
+use super::stats::{MEDIAN_OF_NORMAL, median};
 use crate::arm::effect::channel::Channel;
 use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::datum::Datum;
@@ -307,7 +307,7 @@ fn declared_residuals(forward: &Forward, predicted: &[f64]) -> Vec<f64> {
 /// Robust standard deviation of the residuals, in their unit, from the median of their absolute values. A few large
 /// residuals do not change it.
 fn spread(residuals: &[f64]) -> f64 {
-    1.4826 * median(residuals.iter().map(|r| r.abs()).collect())
+    median(residuals.iter().map(|r| r.abs()).collect()) / MEDIAN_OF_NORMAL
 }
 
 /// Factor on the declared standard deviations of a channel, at least 1. `kept` gives the residual and the leverage of

@@ -74,6 +74,9 @@ fn ln_gamma(x: f64) -> f64 {
     0.5 * libm::log(std::f64::consts::TAU) + (x + 0.5) * libm::log(t) - t + libm::log(sum)
 }
 
+/// The median of the magnitude of a standard normal deviate.
+pub(crate) const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_082;
+
 /// The median of the values, in their unit; 0 for an empty list.
 pub(crate) fn median(mut values: Vec<f64>) -> f64 {
     if values.is_empty() {

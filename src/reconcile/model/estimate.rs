@@ -1,5 +1,6 @@
 //! Values with their 95 % intervals, and effects found with such values.
 
+use crate::arm::effect::entry::Effect;
 use crate::arm::effect::entry::word_of;
 use serde_json::{Map, Value, json};
 
@@ -47,8 +48,11 @@ impl Estimate {
     }
 }
 
-/// Half of the width of a 95 % interval, in standard deviations.
-pub(crate) const Z_95: f64 = 1.96;
+/// Half of the width of a 95 % interval of a normal distribution, in standard deviations.
+pub(crate) const Z_95: f64 = 1.959_963_984_540_054;
+/// Rise of an objective of squared standard deviations at the ends of a 95 % interval: the 95 % quantile of chi-squared
+/// with one degree of freedom.
+pub(crate) const RISE_AT_95: f64 = Z_95 * Z_95;
 
 /// Parameters that say how an effect acts, and not how large it is.
 const NO_SIZES: [&str; 3] = ["torque_nm", "preload_nm", "phases_rad"];
@@ -70,6 +74,13 @@ impl Finding {
     /// Label of the finding: `effect@place`.
     pub fn label(&self) -> String {
         format!("{}@{}", self.effect, self.at)
+    }
+
+    /// The finding as an entry of an arm file. `source` says which readings it comes from.
+    pub(crate) fn as_effect(&self, source: Value) -> Effect {
+        let values = |list: &[Estimate]| list.iter().map(|estimate| estimate.value).collect();
+        let parameters = self.parameters.iter().map(|(name, list)| (name.clone(), values(list))).collect();
+        Effect { effect: self.effect.clone(), at: self.at.clone(), parameters, source: Some(source) }
     }
 
     /// Whether no size of the effect differs from that of an arm without it by more than its own standard deviation: a

@@ -3,8 +3,8 @@
 
 pub mod calibration;
 pub mod candidates;
+pub mod direct;
 pub(crate) mod estimate;
-pub mod exact;
 pub(crate) mod expected;
 pub(crate) mod fitted_parameters;
 pub mod parameters;

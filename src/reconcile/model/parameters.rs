@@ -38,8 +38,9 @@ pub struct FreeParameter {
 /// All sizes below this fraction of the width of the expected range have equal prior probability.
 const SMALL_SIZE: f64 = 0.01;
 
-/// Largest compliance that is sought in a connection, bearing or base, as a multiple of the joint's compliance.
-const LARGEST_COMPLIANCE: f64 = 100.0;
+/// Largest compliance that is sought in a connection, bearing or base, as a multiple of the joint's compliance, for a
+/// base that of the first compliant joint.
+pub(crate) const LARGEST_COMPLIANCE: f64 = 100.0;
 
 /// Stiffness that stands for a rigid part \[N m/rad\]. No reading can tell it from an infinite one.
 const RIGID_NM_PER_RAD: f64 = 1e15;

@@ -23,7 +23,7 @@ use crate::mechanics::chain::Chain;
 use crate::mechanics::chain::{Item, Posed};
 use crate::mechanics::hanging::hanging_tip_m;
 use crate::mechanics::{Twist, angular, displacement_at, linear};
-use crate::reconcile::model::exact::{seen_from_tool, with_tool};
+use crate::reconcile::model::direct::{seen_from_tool, with_tool};
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::rows::PositionRow;
 use nalgebra::{Matrix3, Vector3};

@@ -26,6 +26,7 @@ use crate::reconcile::readings::rows::PositionRow;
 use crate::reconcile::select::lack_of_fit::LackOfFit;
 use crate::reconcile::verdict::files::CORRECTED_FILE;
 use crate::reconcile::verdict::judgement::{TOO_FAR_OFF, does_not_predict, too_many_alternatives};
+use crate::reconcile::verdict::locate::WORST_POSES;
 use crate::reconcile::verdict::outcome::{Calibrated, Evidence, Located, Outcome, ReadingResidual, Verdict};
 use crate::reconcile::verdict::stage::Stage;
 use crate::reconcile::verdict::{caution, correct};
@@ -44,8 +45,6 @@ const UNSTABLE: f64 = 8.0;
 const HELPFUL: f64 = 0.8;
 /// Word for a session in the list of alternatives of an effect.
 const SESSION: &str = "session";
-/// Number of poses that are listed, those with the largest errors first.
-const WORST_POSES: usize = 3;
 
 /// Reconciles a campaign of absolute positions with its arms, and reaches the verdict.
 pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
@@ -590,8 +589,5 @@ fn beyond_bounds(finding: &Finding) -> Option<String> {
 }
 
 fn as_effect(campaign: &Campaign, finding: &Finding) -> Effect {
-    let numbers = |list: &[Estimate]| list.iter().map(|e| e.value).collect();
-    let parameters = finding.parameters.iter().map(|(name, list)| (name.clone(), numbers(list))).collect();
-    let source = json!({"campaign": campaign.statement.name, "campaign_blake3": campaign.hash});
-    Effect { effect: finding.effect.clone(), at: finding.at.clone(), parameters, source: Some(source) }
+    finding.as_effect(json!({"campaign": campaign.statement.name, "campaign_blake3": campaign.hash}))
 }

@@ -12,7 +12,7 @@ use super::rows::normal;
 use super::shape::Shape;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::kind::ElasticRotation;
-use crate::reconcile::fit::stats::{ln_chi_squared_tail, median};
+use crate::reconcile::fit::stats::{MEDIAN_OF_NORMAL, ln_chi_squared_tail, median};
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::rows::PositionRow;
 use crate::reconcile::select::lack_of_fit::LackOfFit;
@@ -29,7 +29,7 @@ pub(crate) const MATERIAL_VARIANCE: f64 = 1.75;
 /// the number of tests.
 const IMPROBABLE: f64 = 1e-6;
 /// Median length of a vector whose one, two or three components are standard normal deviates.
-const MEDIAN_LENGTHS: [f64; 3] = [0.6745, 1.1774, 1.538];
+const MEDIAN_LENGTHS: [f64; 3] = [MEDIAN_OF_NORMAL, 1.1774, 1.538];
 
 /// One test of the errors: the quantity that they would follow, in words, and the number of columns with which this
 /// is tested.

@@ -8,13 +8,13 @@
 
 use super::analysis::Positions;
 use super::fitted::Sample;
-use crate::reconcile::model::estimate::Estimate;
+use crate::reconcile::model::estimate::{Estimate, RISE_AT_95};
 use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Fall of the logarithm of the likelihood at the ends of a 95 % interval: half of the 95 % quantile of chi-squared
 /// with one degree of freedom.
-const FALL: f64 = 1.92;
+const FALL: f64 = RISE_AT_95 / 2.0;
 /// Number of steps of the golden section search for the best threshold. They leave 0.3 % of it open.
 const STEPS: usize = 13;
 /// Part of an interval that the golden section leaves in each step.

@@ -5,7 +5,7 @@
 //! results come from these fits. One is the error on held-out blocks. The other is the delete-a-block jackknife (Tukey
 //! 1958; for autocorrelated errors Künsch 1989), whose intervals need no model of the autocorrelation.
 
-use crate::reconcile::model::estimate::Estimate;
+use crate::reconcile::model::estimate::{Estimate, Z_95};
 use nalgebra::{DMatrix, DVector};
 
 /// This number is added to the diagonal of the scaled normal equations. A column that is a combination of others then
@@ -199,7 +199,7 @@ impl Fitted {
 /// The 97.5 % quantile of Student's t distribution with `dof` degrees of freedom (Abramowitz and Stegun 26.7.5;
 /// within 0.3 % from 4 degrees of freedom on).
 pub(crate) fn student_quantile(dof: f64) -> f64 {
-    const Z: f64 = 1.959_964;
+    const Z: f64 = Z_95;
     let terms = [
         (Z.powi(3) + Z) / 4.0,
         (5.0 * Z.powi(5) + 16.0 * Z.powi(3) + 3.0 * Z) / 96.0,

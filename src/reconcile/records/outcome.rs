@@ -13,8 +13,8 @@ use crate::arm::effect::{
 use crate::arm::{Arm, Element};
 use crate::reconcile::fit::held_out::HeldOut;
 use crate::reconcile::fit::noise::Noise;
+use crate::reconcile::model::direct::subject;
 use crate::reconcile::model::estimate::{Estimate, Finding};
-use crate::reconcile::model::exact::subject;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::verdict::correct::provenance;
 use crate::reconcile::verdict::files::CORRECTED_FILE;
@@ -332,10 +332,8 @@ fn as_effect(campaign: &Campaign, finding: &Finding) -> Option<Effect> {
     if !kind.places.contains(&Place::Joint) {
         return None;
     }
-    let numbers = |list: &[Estimate]| list.iter().map(|e| e.value).collect();
-    let parameters = finding.parameters.iter().map(|(name, list)| (name.clone(), numbers(list))).collect();
     let source = json!({"campaign": campaign.statement.name, "campaign_blake3": campaign.hash, "reading": "record against time"});
-    Some(Effect { effect: finding.effect.clone(), at: finding.at.clone(), parameters, source: Some(source) })
+    Some(finding.as_effect(source))
 }
 
 /// Root mean square error of the twist on held-out blocks, with an offset alone (before) and with everything that was

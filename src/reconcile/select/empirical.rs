@@ -19,7 +19,7 @@ use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::forward::statics::StaticPose;
 use crate::reconcile::model::candidates::largest_torque_nm;
 use crate::reconcile::model::parameters::Number::{Free, Stated};
-use crate::reconcile::model::parameters::{Candidate, FreeParameter, Number};
+use crate::reconcile::model::parameters::{Candidate, FreeParameter, LARGEST_COMPLIANCE, Number};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
@@ -39,9 +39,6 @@ const SOFTENING_IN: [Channel; 2] = [Channel::Static, Channel::Modal];
 /// Values from which fits start, for the number of rows in which 63 % of a joint's softening takes place, as fractions
 /// of the rows of the file.
 const SOFTENED_AFTER: [f64; 2] = [0.08, 0.5];
-/// Largest compliance of a base against tilt that is sought, as a multiple of the compliance of the first compliant
-/// joint.
-const LARGEST_BASE_COMPLIANCE: f64 = 100.0;
 /// Smallest number of poses that must come before a turn of the base, and of poses that must come after it.
 const FEWEST_POSES: usize = 2;
 
@@ -137,7 +134,7 @@ fn leaning(forward: &Forward, at: &str, numbers: Vec<Number>) -> Option<Candidat
     let size = laws.iter().map(|law| law.tangent_compliance_rad_per_nm(0.0)).find(|c| *c > 0.0)?;
     let tilt = Parameter {
         count: 2,
-        ..Parameter::number(LEAN, 0.0, LARGEST_BASE_COMPLIANCE * size, size, Scale::Linear)
+        ..Parameter::number(LEAN, 0.0, LARGEST_COMPLIANCE * size, size, Scale::Linear)
     };
     let starts = vec![vec![0.1, 0.5], vec![0.5, 0.1]];
     Some(Candidate { numbers, starts, ..law(at, tilt, 0.0) })

@@ -202,8 +202,9 @@ fn gap(search: &Search, baseline: &Fit) -> String {
     )
 }
 
-/// Sentence on the outermost joint beyond which mass is missing, or is too much, in every set that leaves the
-/// stiffnesses as they are. `None` if there is no such joint. `subjects` are the arms with the sets `explaining`.
+/// A sentence that names the outermost joint outboard of which the mass is wrong. Only sets of effects that leave the
+/// stiffnesses unchanged are considered, and all of them must agree. `None` if there is no such joint. `subjects` are the
+/// arms with the sets `explaining`.
 fn missing_mass(
     search: &Search,
     campaign: &Campaign,

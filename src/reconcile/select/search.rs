@@ -3,6 +3,7 @@
 //! At the break points of a gear's torsion curve the frequencies jump, and a descent stops at a jump. Fits of such a
 //! model therefore start with a smoothed curve, and end with a direct search over the break points.
 
+use crate::reconcile::fit::curve_interval::RULED_OUT;
 use crate::reconcile::fit::descent::{Effort, Fit, Point, Weights, descent, evaluate_near, fit};
 use crate::reconcile::fit::steps::{self, NARROW_SMOOTHING, WIDE_SMOOTHING};
 use crate::reconcile::forward::prepared::Forward;
@@ -11,9 +12,6 @@ use crate::reconcile::model::parameters::{Candidate, Model};
 use crate::reconcile::readings::campaign::Campaign;
 use rayon::prelude::*;
 
-/// A trial value of a break point is rejected if the objective rises by more than this (its probability is then below
-/// a thousandth).
-const RULED_OUT: f64 = 14.0;
 /// A model whose objective per datum is larger than this cannot be the explanation, even if the declared standard
 /// deviations are too small.
 const BEYOND_HOPE: f64 = 3.0;

@@ -10,7 +10,7 @@ use crate::reconcile::readings::campaign::Campaign;
 use std::collections::HashMap;
 
 /// Number of poses that are listed, those with the largest errors first.
-const WORST_POSES: usize = 3;
+pub(crate) const WORST_POSES: usize = 3;
 
 /// Root mean square of the residuals of every part of the readings (such as a channel, a load, a mode) with
 /// `baseline` and with `best` \[declared standard deviations\]. Gross errors are left out.

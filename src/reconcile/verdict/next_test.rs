@@ -7,9 +7,10 @@
 
 use super::outcome::{NextTest, Verdict};
 use crate::arm::effect::subject::Subject;
+use crate::arm::halton::halton;
 use crate::arm::load::Payload;
 use crate::arm::pose::Motion;
-use crate::reconcile::model::exact::Exact;
+use crate::reconcile::model::direct::Direct;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::components::{Component, Components};
 use crate::reconcile::readings::rows::{ModalRow, StaticRow, WindupRow};
@@ -63,7 +64,7 @@ pub(crate) fn propose(question: &Question) -> Vec<NextTest> {
     if question.competitors.is_empty() {
         return Vec::new();
     }
-    let best = Exact::new(&question.best.1);
+    let best = Direct::new(&question.best.1);
     let tests = tests(question.campaign, &best);
     let gaps: Vec<Vec<f64>> = tests
         .par_iter()
@@ -71,7 +72,7 @@ pub(crate) fn propose(question: &Question) -> Vec<NextTest> {
             let own = predict(&best, test);
             let competitors = question.competitors.iter();
             competitors
-                .map(|(_, competitor)| separation(test, &own, &predict(&Exact::new(competitor), test)))
+                .map(|(_, competitor)| separation(test, &own, &predict(&Direct::new(competitor), test)))
                 .collect()
         })
         .collect();
@@ -177,24 +178,11 @@ pub(crate) fn spread_pose(ranges: &[(f64, f64)], index: usize) -> Vec<f64> {
     ranges
         .iter()
         .enumerate()
-        .map(|(j, (low, high))| (low + (high - low) * halton(index, PRIMES[j % PRIMES.len()])).round())
+        .map(|(j, (low, high))| (low + (high - low) * halton(index, j)).round())
         .collect()
 }
 
-/// Member number `index` of Halton's low-discrepancy sequence to the prime base `base`, from 0 to 1.
-fn halton(mut index: usize, base: usize) -> f64 {
-    let (mut f, mut r) = (1.0, 0.0);
-    while index > 0 {
-        f /= base as f64;
-        r += f * (index % base) as f64;
-        index /= base;
-    }
-    r
-}
-
-const PRIMES: [usize; 20] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71];
-
-fn tests(campaign: &Campaign, best: &Exact) -> Vec<Test> {
+fn tests(campaign: &Campaign, best: &Direct) -> Vec<Test> {
     let ranges = ranges(campaign);
     let pose = |index: usize| spread_pose(&ranges, index);
     let payload = largest_payload(campaign);
@@ -250,7 +238,7 @@ fn instrument(campaign: &Campaign) -> Components {
 
 /// A bench cycle for each joint that has not been on the bench, up to the joint's largest torque in the proposed static
 /// tests. A joint that was on the bench is not proposed again, because the models were already fitted to its readings.
-fn benches(campaign: &Campaign, best: &Exact, statics: &[Test]) -> Vec<Test> {
+fn benches(campaign: &Campaign, best: &Direct, statics: &[Test]) -> Vec<Test> {
     let mut largest: Vec<(String, f64)> = Vec::new();
     for row in statics.iter().filter_map(|t| if let Test::Static(rows) = t { rows.first() } else { None }) {
         for (joint, torque_nm) in best.torques_nm(row) {
@@ -280,7 +268,7 @@ fn bench(campaign: &Campaign, joint: &str, largest: f64) -> Test {
     Test::Bench(torques.into_iter().enumerate().map(row).collect())
 }
 
-fn predict(exact: &Exact, test: &Test) -> Vec<f64> {
+fn predict(exact: &Direct, test: &Test) -> Vec<f64> {
     match test {
         Test::Static(rows) => exact.statics_mm(rows).into_iter().flatten().collect(),
         Test::Modal(rows) => exact.frequencies_hz(rows).into_iter().map(|f| f.unwrap_or(f64::NAN)).collect(),

@@ -5,10 +5,8 @@ use super::question::Question;
 use crate::report::number::{cost_words, shortest, significant};
 use crate::report::picks::{Design, Objective};
 use crate::report::table::{Column, Table, csv_line};
-use crate::report::words::wrap;
+use crate::report::words::{TERMINAL, wrap};
 
-/// Width of text tables, unless the labels need more \[characters\].
-const TABLE_WIDTH: usize = 80;
 /// Labels longer than this are shortened in text tables \[characters\].
 const LONGEST_LABEL: usize = 24;
 
@@ -55,11 +53,11 @@ impl Comparison {
             }
         }
         for moved in &self.moved {
-            out.push_str(&format!("\n{}", wrap(&moved.words, TABLE_WIDTH, "")));
+            out.push_str(&format!("\n{}", wrap(&moved.words, TERMINAL, "")));
         }
         if !self.remarks.is_empty() {
             out.push('\n');
-            self.remarks.iter().for_each(|words| out.push_str(&wrap(words, TABLE_WIDTH, "")));
+            self.remarks.iter().for_each(|words| out.push_str(&wrap(words, TERMINAL, "")));
         }
         out
     }
@@ -269,7 +267,7 @@ fn groups<'a>(rows: &[&'a Row], labels: &[String]) -> Vec<Vec<&'a Row>> {
         let fits = |group: &Vec<&'a Row>| {
             let tried: Vec<&Row> = group.iter().chain([row]).copied().collect();
             let text = table(&tried, labels).to_text();
-            text.lines().all(|l| l.chars().count() + 2 <= TABLE_WIDTH)
+            text.lines().all(|l| l.chars().count() + 2 <= TERMINAL)
         };
         match out.last_mut() {
             Some(group) if fits(group) => group.push(row),
@@ -345,7 +343,7 @@ fn indent(text: &str) -> String {
 }
 
 fn item(sentence: &str) -> String {
-    wrap(sentence, TABLE_WIDTH, "    ").replacen("    ", "  - ", 1)
+    wrap(sentence, TERMINAL, "    ").replacen("    ", "  - ", 1)
 }
 
 #[cfg(test)]

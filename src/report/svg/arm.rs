@@ -3,7 +3,8 @@
 //! Links have their length and outer size to scale. Joints are symbols: a circle if the axis is perpendicular to
 //! the drawing, a bar along the axis if it lies in the plane, a square if the joint slides.
 
-use super::draw::{CHARACTER_WIDTH, FONT_PX, INK, NOTE_PX, escape, head, line, px, text, text_px, wrap};
+use super::draw::{CHARACTER_WIDTH, FONT_PX, INK, NOTE_PX, head, line, px, text, text_px, wrap};
+use crate::interchange::xml::escaped;
 use crate::report::number::shortest;
 use std::fmt::Write;
 
@@ -276,7 +277,7 @@ impl Tube {
             out,
             "<path d=\"M{}z\" {look} stroke-linejoin=\"round\"><title>{}</title></path>",
             corners.join("L"),
-            escape(&self.name)
+            escaped(&self.name)
         );
     }
 }

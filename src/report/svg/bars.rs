@@ -3,7 +3,8 @@
 //! Two families of parts differ by hue *and* by hatching. Parts of a family differ by lightness. A part that is
 //! wide enough has its name and share written on it, so that the picture can be read in greyscale.
 
-use super::draw::{FONT_PX, INK, escape, head, line, px, text, text_px};
+use super::draw::{FONT_PX, INK, WIDTH_PX, head, line, px, text, text_px};
+use crate::interchange::xml::escaped;
 use crate::report::number::{percent, shortest};
 use crate::report::table::csv_line;
 use std::fmt::Write;
@@ -11,7 +12,6 @@ use std::fmt::Write;
 const BAR_PX: f64 = 34.0;
 const GAP_PX: f64 = 18.0;
 const TOP_PX: f64 = 44.0;
-const WIDTH_PX: f64 = 900.0;
 
 /// A part of the stack, which every bar has.
 #[derive(Debug, Clone, PartialEq)]
@@ -160,7 +160,7 @@ impl StackedBars {
                 px(y),
                 px(width.max(0.0)),
                 px(height),
-                escape(&self.parts[part].name)
+                escaped(&self.parts[part].name)
             );
         };
         rect(&fill);

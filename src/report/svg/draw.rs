@@ -1,5 +1,6 @@
 //! Elements that all pictures use: colours, text, lines and the head of the file.
 
+use crate::interchange::xml::escaped;
 use crate::report::number::fixed;
 use std::fmt::Write;
 
@@ -14,6 +15,8 @@ const DARKER: [&str; 8] =
 /// Index of the style for series in the background: grey, with round markers.
 pub const MUTED: usize = 999;
 
+/// Width of the drawings that fill a page.
+pub(crate) const WIDTH_PX: f64 = 900.0;
 pub(crate) const INK: &str = "#222222";
 pub(crate) const FAINT: &str = "#E3E3E3";
 pub(crate) const FONT_PX: f64 = 13.0;
@@ -25,7 +28,7 @@ pub(crate) const CHARACTER_WIDTH: f64 = 0.62;
 
 /// The head of an SVG file: size, white background, and title and description for readers who cannot see it.
 pub(crate) fn head(title: &str, description: &str, width_px: f64, height_px: f64) -> String {
-    let (w, h, title) = (px(width_px), px(height_px), escape(title));
+    let (w, h, title) = (px(width_px), px(height_px), escaped(title));
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" \
          role=\"img\" aria-label=\"{title}\" \
@@ -33,7 +36,7 @@ pub(crate) fn head(title: &str, description: &str, width_px: f64, height_px: f64
          font-size=\"{FONT_PX}\" fill=\"{INK}\">\n\
          <title>{title}</title>\n<desc>{}</desc>\n\
          <rect width=\"{w}\" height=\"{h}\" fill=\"#FFFFFF\"/>\n",
-        escape(description)
+        escaped(description)
     )
 }
 
@@ -93,7 +96,7 @@ pub(crate) fn text(out: &mut String, at: (f64, f64), anchor: &str, more: &str, w
         "<text x=\"{}\" y=\"{}\" text-anchor=\"{anchor}\"{more}>{}</text>",
         px(at.0),
         px(at.1),
-        escape(words)
+        escaped(words)
     );
 }
 
@@ -106,9 +109,4 @@ pub(crate) fn text_px(words: &str, font_px: f64) -> f64 {
 pub(crate) fn px(value: f64) -> String {
     let text = fixed(value, 2);
     text.trim_end_matches('0').trim_end_matches('.').to_string()
-}
-
-/// Text with the characters escaped that have a meaning in SVG.
-pub(crate) fn escape(words: &str) -> String {
-    words.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

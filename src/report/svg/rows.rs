@@ -1,6 +1,8 @@
 //! Rows of marks along one axis: for example values before and after, or values with intervals.
 
-use super::draw::{FAINT, FONT_PX, INK, MUTED, NOTE_PX, colour, dashed, head, line, px, text, text_px};
+use super::draw::{
+    FAINT, FONT_PX, INK, MUTED, NOTE_PX, WIDTH_PX, colour, dashed, head, line, px, text, text_px,
+};
 use super::plot::{Axis, Series, Stroke, markers};
 use super::scale::Scale;
 use super::ticks::rule;
@@ -10,7 +12,6 @@ use std::fmt::Write;
 
 const ROW_PX: f64 = 26.0;
 const TOP_PX: f64 = 88.0;
-const WIDTH_PX: f64 = 900.0;
 
 /// A mark in a row: a value, with an interval around it if it has one.
 #[derive(Debug, Clone, PartialEq)]

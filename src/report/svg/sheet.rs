@@ -1,7 +1,8 @@
 //! Several plots in one picture, one below the other, with aligned frames and one legend.
 
-use super::draw::{INK, NOTE_PX, escape, line, px, text, text_px};
+use super::draw::{INK, NOTE_PX, line, px, text, text_px};
 use super::plot::{Canvas, Plot, Series};
+use crate::interchange::xml::escaped;
 use std::fmt::Write;
 
 /// Radius of the ring around a point that has a note \[px\].
@@ -36,7 +37,7 @@ impl Sheet {
                 out,
                 "<g transform=\"translate(0 {})\" role=\"group\" aria-label=\"{}\">",
                 px(top),
-                escape(&format!("{} over {}", plot.y.label, plot.x.label))
+                escaped(&format!("{} over {}", plot.y.label, plot.x.label))
             );
             canvas.panel(&mut out, plot, index == 0);
             out.push_str("</g>\n");

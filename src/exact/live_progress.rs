@@ -29,7 +29,7 @@ const UPDATE_INTERVAL_RATIO: u32 = 50;
 
 /// The latest progress of a search, shared by the search and the threads that watch it.
 #[derive(Default)]
-pub(super) struct Live(Mutex<Latest>);
+pub(super) struct LiveProgress(Mutex<Latest>);
 
 #[derive(Default)]
 struct Latest {
@@ -38,7 +38,7 @@ struct Latest {
     due: Option<Instant>,
 }
 
-impl Live {
+impl LiveProgress {
     /// The latest progress, except for the number of boxes, which is not known here.
     pub(super) fn known(&self) -> Known {
         self.lock().known
@@ -84,7 +84,7 @@ mod tests {
 
     #[test]
     fn a_gap_that_was_proved_stays_proved() {
-        let live = Live::default();
+        let live = LiveProgress::default();
         let gaps = [None, Some(0.7), None, Some(0.9), Some(0.2)].map(|gap| {
             live.tell(Known { gap, ..Known::default() });
             live.known().gap

@@ -34,7 +34,7 @@ pub(crate) fn subject(arm: &Arm, statement: &Statement) -> Subject {
 }
 
 /// An arm under test (subject), prepared for the prediction of readings by the full model.
-pub struct Exact<'a> {
+pub struct Direct<'a> {
     subject: &'a Subject,
     chain: Chain,
     /// For each channel, the arm with the special set-up of the channel's tests; `None` if there is no special
@@ -42,7 +42,7 @@ pub struct Exact<'a> {
     special: [Option<Chain>; 4],
 }
 
-impl<'a> Exact<'a> {
+impl<'a> Direct<'a> {
     /// Prepares an arm under test (subject) for the prediction of readings.
     pub fn new(subject: &'a Subject) -> Self {
         let chain = |structure: &Structure| Chain::new(structure, LinkModel::Full);

@@ -3,7 +3,7 @@
 use super::parts::{INERTIAS, LeastDemand, LinkBox, STIFFNESSES, inertia, stiffness_of};
 use super::pose::{Row, TILT, TORSION};
 use super::problem::Problem;
-use super::shape::Work as ShapeWork;
+use super::shape::BoxWork as ShapeWork;
 use super::torsion::{BreakPoints, CurveBox};
 use crate::sizing::demand::JointDemand;
 use crate::sizing::fit::LinkRoom;
@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 /// Working memory with the intervals of one box. A worker uses it for box after box, so that no memory is allocated for
 /// each.
 #[derive(Default)]
-pub(super) struct Work {
+pub(super) struct BoxWork {
     /// Greatest stiffnesses of each piece over the box, as in [`Line::stiffnesses`](super::parts::Line).
     pub(super) stiff: Vec<[f64; STIFFNESSES]>,
     /// Least stiffnesses of each piece over the box.
@@ -72,7 +72,7 @@ pub(super) struct Work {
     pub(super) worst: (usize, usize),
 }
 
-impl Work {
+impl BoxWork {
     /// Resets all numbers to zero for a problem of this many pieces and cases.
     pub(super) fn clear(&mut self, pieces: usize, cases: usize) {
         fn zero<T: Clone>(items: &mut Vec<T>, n: usize, value: T) {

@@ -9,14 +9,14 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Files that are written in addition to a front, and the names of those that could not be made.
 #[derive(Default)]
-pub(super) struct Beside {
+pub(super) struct ExtraFiles {
     /// Name and contents of each file.
     pub files: Files,
     /// One entry for each file that could not be made: its name and the reason.
     pub missing: Vec<String>,
 }
 
-impl Beside {
+impl ExtraFiles {
     /// Calls `make`, which computes the file or files named `what`, and returns its result. If `make` panics, the panic
     /// is recorded in `missing` and the result is `None`, so that the other files are still written.
     pub(super) fn make<T>(&mut self, what: &str, make: impl FnOnce() -> T) -> Option<T> {
