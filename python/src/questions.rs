@@ -12,7 +12,6 @@ use armwright::reconcile::{Campaign, Outcome};
 use armwright::report::analysis::{Analysis, Harmonic};
 use armwright::study::{
     arm_of_design, arm_remarks, capacity_of, capacity_of_arm, ignored_words, named, names, sizing_of,
-    sizing_remarks,
 };
 use pyo3::prelude::*;
 use serde_json::Value;
@@ -68,8 +67,8 @@ pub(crate) fn size(
 ) -> PyResult<(String, Vec<String>)> {
     let parts = &catalogs.parts;
     let (study, _) = pooled(py, || study.study(parts))??;
-    let rows = pooled(py, || sizing_of(&study, design, parts))?.map_err(errors::refused)?;
-    Ok((serde_json::to_string(&rows).map_err(errors::usage)?, sizing_remarks(&study, &rows, parts)))
+    let sizing = pooled(py, || sizing_of(&study, design, parts))?.map_err(errors::refused)?;
+    Ok((serde_json::to_string(&sizing.rows).map_err(errors::usage)?, sizing.remarks))
 }
 
 /// The capacity of a design of a study, or of an arm, which has cases and limits.

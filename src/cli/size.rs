@@ -15,10 +15,9 @@ use crate::sizing::select::DriveTable;
 use crate::sizing::sheet::render_rows;
 use crate::space::design_space::SpacePiece;
 use crate::space::problem::{ArmProblem, Partial};
-use crate::study::chosen::{chosen_design, sizing_remarks, why_not_held};
+use crate::study::chosen::{Sizing, chosen_design, sizing_in, why_not_held};
 use crate::study::definition::Study;
 use crate::study::load::refuse_empty;
-use crate::study::table::sizing_rows;
 use clap::Args;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -67,9 +66,7 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs, log: Log) -> Result<Stri
     if let Some(joint) = &args.all_fits {
         return Ok(all_fits(&problem, &chosen, joint)? + &remarks);
     }
-    let rows =
-        sizing_rows(&problem, catalogs, &chosen).map_err(|slot| why_not_held(&problem, &chosen, slot))?;
-    let said = sizing_remarks(&study, &rows, catalogs);
+    let Sizing { rows, remarks: said } = sizing_in(&study, &problem, &chosen, catalogs)?;
     let remarks = paragraphs(&said);
     let text = format!(
         "{}{}{remarks}",

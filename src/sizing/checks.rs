@@ -159,6 +159,19 @@ pub fn checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Vec<
     all
 }
 
+/// The checks of a drive that stands still and holds a reaction: `ramp_nm` while another joint ramps, `stop_nm` while
+/// it makes an emergency stop \[N m\]. They are those of single torques. Mean values over the cycle, which these short
+/// torques hardly change, are left out.
+pub(crate) fn reaction_checks(drive: &Drive, motion: &JointMotion, ramp_nm: f64, stop_nm: f64) -> Vec<Check> {
+    use CheckKind::{GearBuckling, GearPeak, GearRatcheting, GearStop, MotorPeak};
+    let still = JointMotion { speed_rad_s: 0.0, acceleration_rad_s2: 0.0, stated: None, ..*motion };
+    let demand =
+        JointDemand { stated_peak_nm: ramp_nm, stop_torque_nm: stop_nm, ..still.demand_of_torques(0.0, 0.0) };
+    let mut all = checks(drive, &still, &demand);
+    all.retain(|check| matches!(check.kind, GearBuckling | GearPeak | GearRatcheting | GearStop | MotorPeak));
+    all
+}
+
 /// Whether all `checks` let the drive pass, see [`Check::holds`].
 pub fn all_hold(checks: &[Check]) -> bool {
     checks.iter().all(Check::holds)

@@ -6,6 +6,7 @@ use super::duty::{HeatWeights, MeanTorqueWeights};
 use super::fit::{FitRequirement, LinkRoom};
 use super::stated::{StatedDemand, StatedDuty};
 use super::{RAD_S_PER_RPM, rpm_from_rad_s};
+use crate::arm::transmission::Stage;
 use crate::catalog::gear::Gear;
 
 /// Two interpretations of Eq 8, the torque of linear acceleration.
@@ -113,6 +114,16 @@ impl JointMotion {
         }
     }
 
+    /// The motion at the input of `stage`, whose output turns with this motion.
+    pub(crate) fn before(self, stage: &Stage) -> Self {
+        Self {
+            speed_rad_s: self.speed_rad_s * stage.ratio,
+            acceleration_rad_s2: self.acceleration_rad_s2 * stage.ratio,
+            stated: self.stated.map(|stated| stated.before(stage)),
+            ..self
+        }
+    }
+
     /// The demand on a joint with this motion (Eq 8).
     ///
     /// `static_torque_nm` is the static torque of Eq 7 \[N m\]; its sign does not matter. `outboard_inertia_kgm2` is the
@@ -191,6 +202,21 @@ impl JointDemand {
     #[inline]
     pub fn peak_torque_nm(&self) -> f64 {
         (self.static_torque_nm + self.linear_torque_nm).max(self.stated_peak_nm)
+    }
+
+    /// The demand at the input of `stage`, whose output meets this demand. `motion` is the motion at the input. A stage
+    /// divides torques by its ratio and its efficiency, and its own inertia takes torque too.
+    pub(crate) fn before(self, stage: &Stage, motion: &JointMotion) -> Self {
+        let gain = stage.ratio * stage.efficiency;
+        let own_nm = stage.inertia_kgm2 * motion.acceleration_rad_s2;
+        Self {
+            static_torque_nm: self.static_torque_nm / gain,
+            linear_torque_nm: self.linear_torque_nm / gain + own_nm,
+            stop_torque_nm: self.stop_torque_nm / gain + motion.stop_factor * own_nm,
+            mean_torque_cubed_nm3: self.mean_torque_cubed_nm3 / gain.powi(3),
+            stated_peak_nm: self.stated_peak_nm / gain,
+            ..self
+        }
     }
 
     /// This demand with the weights of the motor's heat multiplied by `factor`. Callers use a factor near 1, so that a

@@ -151,7 +151,9 @@ impl fmt::Display for Relaxation {
             RelaxationKind::Torque => {
                 write!(f, "torque on the joint (payload, outboard mass, reach) down to {percent:.0} %")?
             }
-            RelaxationKind::Speed => write!(f, "speed and acceleration down to {percent:.0} %")?,
+            RelaxationKind::Speed => {
+                write!(f, "speed, acceleration and emergency deceleration down to {percent:.0} %")?
+            }
         }
         write!(f, ", then {} holds", self.drive)
     }
@@ -555,7 +557,11 @@ mod tests {
         assert_eq!(shortfall.relaxations.len(), 1, "no torque is small enough");
         // 3000 rpm over 100 is 3.14 rad/s, 78 % of 4.
         assert_eq!(shortfall.relaxations[0].factor, 0.78);
-        assert!(shortfall.to_string().contains("speed and acceleration down to 78 %, then HFUC-58-100"));
+        assert!(
+            shortfall
+                .to_string()
+                .contains("speed, acceleration and emergency deceleration down to 78 %, then HFUC-58-100")
+        );
     }
 
     #[test]

@@ -56,10 +56,11 @@ impl MotionRequirement {
         self.tip_speed_m_s / self.ramp_time_s
     }
 
-    /// Ratio of the deceleration of the tip in an emergency stop to its normal acceleration.
+    /// Ratio of the deceleration of the tip in an emergency stop to its normal acceleration. It is at least 1: what
+    /// holds in a stop must hold in every ramp of the cycle too, also where a gentle stop is stated.
     pub fn stop_factor(&self) -> f64 {
         match self.emergency_deceleration_m_s2 {
-            Some(deceleration) => deceleration / self.tip_acceleration_m_s2(),
+            Some(deceleration) => (deceleration / self.tip_acceleration_m_s2()).max(1.0),
             None => 2.0,
         }
     }

@@ -2,6 +2,7 @@
 //! example.
 
 use super::RAD_S_PER_RPM;
+use crate::arm::transmission::Stage;
 
 /// One phase of a stated duty.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -145,6 +146,16 @@ impl StatedPhase {
 }
 
 impl StatedDemand {
+    /// What this duty of a joint asks at the input of `stage`, which drives the joint.
+    pub(super) fn before(self, stage: &Stage) -> Self {
+        let gain = stage.ratio * stage.efficiency;
+        Self {
+            peak_torque_nm: self.peak_torque_nm / gain,
+            mean_torque_cubed_nm3: self.mean_torque_cubed_nm3 / gain.powi(3),
+            heat: self.heat.before(stage),
+        }
+    }
+
     /// What this duty asks of a drive if every acceleration is multiplied by `factor`.
     pub(super) fn slowed(self, factor: f64) -> Self {
         Self { heat: self.heat.slowed(factor), ..self }
@@ -174,6 +185,16 @@ impl StatedHeat {
         let torque: f64 = (0..2).map(|i| self.torque_nm2[i] * per_nm[i] * per_nm[i]).sum();
         let mixed: f64 = (0..2).map(|i| self.mixed_nm_rad_s2[i] * per_nm[i]).sum();
         torque + 2.0 * inertia_s2 * mixed + inertia_s2 * inertia_s2 * self.acceleration_rad2_s4
+    }
+
+    /// The sums of this duty at the input of `stage`. Where the load drives, the stage's losses help the motor.
+    fn before(self, stage: &Stage) -> Self {
+        let per_nm = [1.0 / (stage.ratio * stage.efficiency), stage.efficiency / stage.ratio];
+        Self {
+            torque_nm2: [0, 1].map(|i| self.torque_nm2[i] * per_nm[i] * per_nm[i]),
+            mixed_nm_rad_s2: [0, 1].map(|i| self.mixed_nm_rad_s2[i] * per_nm[i] * stage.ratio),
+            acceleration_rad2_s4: self.acceleration_rad2_s4 * stage.ratio * stage.ratio,
+        }
     }
 
     /// The sums of this duty if every acceleration of the joint is multiplied by `factor`.

@@ -6,8 +6,10 @@
 use super::design_space::{DriveChoice, SpacePiece};
 use super::problem::{ArmProblem, Partial};
 use super::station::reaches_m;
+use crate::arm::bearing::BearingSource;
+use crate::arm::transmission::Stage;
 use crate::catalog::Catalogs;
-use crate::catalog::gear::GearMass;
+use crate::catalog::gear::{GearKind, GearMass};
 use crate::sizing::demand::{JointDemand, JointMotion};
 use crate::sizing::drive::Drive;
 
@@ -18,47 +20,69 @@ pub struct FixedDrive<'c> {
     pub drive: Drive<'c>,
     /// Mass of the drive that the study states \[kg\]. The catalog may have another.
     pub mass_kg: f64,
-    /// The motion that the study asks of the joint.
+    /// The motion at the output of the gear: that which the study asks of the joint, times the ratio of the stages
+    /// between gear and joint if the gear sits at the motor.
     pub motion: JointMotion,
+    /// The motion that the study asks of the joint.
+    joint_motion: JointMotion,
+    /// The stages between gear and joint.
+    after: Stage,
 }
 
 impl ArmProblem<'_> {
     /// The given drive of piece number `piece` (base to tip); `None` unless the study names a gear and a motor that
-    /// are both in the catalogs.
+    /// are both in the catalogs. An actuator has both, so that its name as the gear suffices.
     pub fn fixed_drive<'c>(&self, piece: usize, catalogs: &'c Catalogs) -> Option<FixedDrive<'c>> {
         let space = self.space();
         let SpacePiece::Joint(joint) = &space.pieces[piece] else { return None };
-        let DriveChoice::Given { gear: Some(gear), motor: Some(motor), mass_kg, .. } = &joint.drive else {
-            return None;
-        };
+        let DriveChoice::Given { gear: Some(gear), motor, mass_kg, .. } = &joint.drive else { return None };
+        let gear = catalogs.gear(gear).ok()?;
+        let of_actuator = (gear.kind == GearKind::Actuator).then_some(&gear.id);
+        let motor = catalogs.motor(motor.as_ref().or(of_actuator)?).ok()?;
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
         let joints_before =
             space.pieces[..piece].iter().filter(|p| matches!(p, SpacePiece::Joint(_))).count();
         let reach_m = reaches_m(space, sizing)[joints_before];
-        let (gear, motor) = (catalogs.gear(gear).ok()?, catalogs.motor(motor).ok()?);
         // the study states a single mass for the drive; it shows which of the two masses of the gear was used
         let set_mass_kg = gear.mass_component_set_kg.zip(motor.mass_kg).map(|(g, m)| g + m);
         let gear_mass = match set_mass_kg.is_some_and(|m| (m - mass_kg).abs() < 1e-9) {
             true => GearMass::ComponentSet,
             false => GearMass::HousedUnit,
         };
+        let (joint_motion, after) = (joint.motion(&space.motion, reach_m), joint.stages.after);
+        // the bearing of a gear at the motor is not the bearing of the joint
+        let bearing = if after == Stage::NONE { joint.bearing } else { BearingSource::Stated(None) };
         Some(FixedDrive {
             drive: Drive {
                 gear,
                 motor,
                 gear_mass,
-                bearing: joint.bearing,
+                bearing,
                 extras: joint.extras,
                 stage: joint.stages.before,
             },
             mass_kg: *mass_kg,
-            motion: joint.motion(&space.motion, reach_m),
+            motion: joint_motion.before(&after),
+            joint_motion,
+            after,
         })
     }
 
-    /// Demand on the joint in `slot`, whose drive the study gives. `outboard` is the arm outboard of the joint, and
-    /// `motion` the motion that the study asks of it.
-    pub fn fixed_demand(&self, outboard: &Partial, slot: usize, motion: &JointMotion) -> JointDemand {
-        self.demand(outboard, slot, Some(motion))
+    /// Demand on the given drive of the joint in `slot`, at the output of its gear. `outboard` is the arm outboard of
+    /// the joint.
+    pub fn fixed_demand(&self, outboard: &Partial, slot: usize, fixed: &FixedDrive) -> JointDemand {
+        self.fixed_demand_in(&self.space().sizing_cases, outboard, slot, fixed)
+    }
+
+    /// Demand on the given drive of the joint in `slot` over the given cases.
+    pub(super) fn fixed_demand_in(
+        &self,
+        cases: &[usize],
+        outboard: &Partial,
+        slot: usize,
+        fixed: &FixedDrive,
+    ) -> JointDemand {
+        let at_joint = self.demand_in(cases, outboard, slot, Some(&fixed.joint_motion));
+        at_joint.before(&fixed.after, &fixed.motion)
     }
 }

@@ -24,8 +24,7 @@ use crate::mechanics::Wrench;
 use crate::mechanics::lanes::LANES;
 use crate::mechanics::lowest::{Step, frequency_hz, lowest_eigenvalue};
 use crate::pareto::objectives::Objectives;
-use crate::sizing::check::Check;
-use crate::sizing::checks::{binding, checks};
+
 use crate::sizing::demand::{JointDemand, JointMotion, linear_torque_nm};
 use crate::sizing::fit::LinkRoom;
 use nalgebra::Vector3;
@@ -157,6 +156,11 @@ impl<'c> ArmProblem<'c> {
         }
     }
 
+    /// The slot of piece number `piece` (base to tip).
+    pub(crate) fn slot_of_piece(&self, piece: usize) -> usize {
+        self.piece_slots[piece]
+    }
+
     /// Smallest ratio of strength to stress of an arm at peak load; `None` if no strength is known.
     pub fn stress_safety_factor(&self, partial: &Partial) -> Option<f64> {
         (partial.stress_ratio > 0.0).then(|| 1.0 / partial.stress_ratio)
@@ -231,30 +235,6 @@ impl<'c> ArmProblem<'c> {
             _ => self.add(slot, option, &mut partial),
         };
         options.iter().enumerate().all(&mut adds).then_some(partial)
-    }
-
-    /// The first piece from the tip that is overloaded in one of `cases`, for an arm with these `options`, one for each
-    /// slot. Returns its number, and the check that its drive fails; `None` in the place of the check means that the
-    /// piece is a link whose stress is too high. `None` if no piece is overloaded.
-    pub(crate) fn overload(&self, options: &[u32], cases: &[usize]) -> Option<(usize, Option<Check>)> {
-        let mut partial = self.empty();
-        for (slot, &option) in options.iter().enumerate() {
-            let Slot::Sized(sized) = &self.slots[slot] else {
-                if !self.add(slot, option, &mut partial) {
-                    return Some((self.piece_of_slot(slot), None));
-                }
-                continue;
-            };
-            let (index, motion) = (option as usize, sized.table.motion());
-            let demand = self.demand_in(cases, &partial, slot, Some(motion));
-            if !sized.table.holds(index, &demand) {
-                let drive = sized.table.drive_or_illegal(index);
-                let check = drive.and_then(|drive| binding(&checks(&drive, motion, &demand)).cloned());
-                return Some((self.piece_of_slot(slot), check));
-            }
-            self.add_drive(slot, sized, index, &mut partial);
-        }
-        None
     }
 
     /// Number of the piece (base to tip) in a slot (numbered tip first); 0 if the slot belongs to an effect.
@@ -342,7 +322,7 @@ impl<'c> ArmProblem<'c> {
     }
 
     /// Adds the next slot, `slot`, with this option to the arm `to`. Returns `false` if the arm breaks a limit with it.
-    fn add(&self, slot: usize, option: u32, to: &mut Partial) -> bool {
+    pub(super) fn add(&self, slot: usize, option: u32, to: &mut Partial) -> bool {
         to.next_slot = slot + 1;
         to.options[slot] = option;
         let added = match &self.slots[slot] {
@@ -375,7 +355,7 @@ impl<'c> ArmProblem<'c> {
 
     /// Adds the drive `index` to the joint in `slot`; it is known to meet the demand. The index is stored as the option
     /// of the slot even where first fit chose it, so that the parts of the arm can be read later.
-    fn add_drive(&self, slot: usize, sized: &SizedJoint, index: usize, to: &mut Partial) -> bool {
+    pub(super) fn add_drive(&self, slot: usize, sized: &SizedJoint, index: usize, to: &mut Partial) -> bool {
         to.options[slot] = index as u32;
         self.add_joint(slot, &sized.laws[index], sized.table.mass_kg(index) - sized.away_kg[index], to)
     }
@@ -394,7 +374,7 @@ impl<'c> ArmProblem<'c> {
     }
 
     /// Demand on the joint in `slot` over the given cases, made in the same way as by [`demand`](Self::demand).
-    fn demand_in(
+    pub(super) fn demand_in(
         &self,
         cases: &[usize],
         outboard: &Partial,

@@ -75,11 +75,17 @@ impl StationState {
         if joint.turns.is_empty() {
             return joint.twist.dot(&(self.inertia * joint.twist));
         }
-        let momentum = self.momentum(slot, joint);
+        self.inertia_between(slot, joint, joint)
+    }
+
+    /// Inertia between the motions of the joint that is to be added next in `slot` and of the joint `moving`, which is
+    /// this joint or one inboard of it \[kg m²\]: the torque about the first per unit of acceleration of the second.
+    pub(crate) fn inertia_between(&self, slot: usize, joint: &StationJoint, moving: &StationJoint) -> f64 {
+        let momentum = self.momentum(slot, moving);
         // everything outboard of a passive joint moves with the rotation of that joint too
         let with_passive = |turned: &Turned| {
             let outboard = self.outboard_of(turned.slot);
-            outboard.map_or(0.0, |(_, of)| turned.twist.dot(&self.momentum_of(of, turned.slot, joint)))
+            outboard.map_or(0.0, |(_, of)| turned.twist.dot(&self.momentum_of(of, turned.slot, moving)))
         };
         joint.twist.dot(&momentum) + joint.turns.iter().map(with_passive).sum::<f64>()
     }

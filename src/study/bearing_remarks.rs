@@ -2,7 +2,9 @@
 //! front.
 
 use crate::arm::bearing::BearingSource;
+use crate::arm::transmission::Stage;
 use crate::catalog::Catalogs;
+use crate::catalog::gear::GearKind;
 use crate::report::front_table::FrontTable;
 use crate::report::words::capital;
 use crate::sizing::bearing_checks::{BlankRatings, RigidBearing};
@@ -45,10 +47,11 @@ pub(crate) fn bearing_remarks(space: &DesignSpace, catalogs: &Catalogs, front: &
             _ => None,
         })
     };
-    let unnamed: Vec<&str> = joints().filter(|j| is_unnamed(j)).map(|joint| joint.name.as_str()).collect();
+    let unnamed: Vec<&str> =
+        joints().filter(|j| is_unnamed(j, catalogs)).map(|joint| joint.name.as_str()).collect();
     let of_unnamed = (!unnamed.is_empty()).then(|| {
         format!(
-            "Output bearing not checked in {}: the drive is given without the names of gear and motor.",
+            "Output bearing not checked in {}: the drive is given without the names of gear and motor, or its gear sits at the motor.",
             unnamed.join(", ")
         )
     });
@@ -63,11 +66,16 @@ pub(crate) fn bearing_remarks(space: &DesignSpace, catalogs: &Catalogs, front: &
         .collect()
 }
 
-/// Whether the joint has a bearing and a given drive without the name of its gear or its motor, so that the bearing
-/// cannot be checked.
-fn is_unnamed(joint: &SpaceJoint) -> bool {
-    let is_named = matches!(&joint.drive, DriveChoice::Given { gear: Some(_), motor: Some(_), .. });
-    !joint.drive.is_sized() && !is_named && joint.bearing.stated().is_some()
+/// Whether the joint has a bearing and a given drive without the name of its gear or its motor, or with the gear at the
+/// motor, so that the bearing is not checked. A passive joint has no drive.
+fn is_unnamed(joint: &SpaceJoint, catalogs: &Catalogs) -> bool {
+    let is_actuator = |name: &String| catalogs.gear(name).is_ok_and(|gear| gear.kind == GearKind::Actuator);
+    let is_named = match &joint.drive {
+        DriveChoice::Given { gear: Some(gear), motor, .. } => motor.is_some() || is_actuator(gear),
+        _ => false,
+    };
+    let is_checked = is_named && joint.stages.after == Stage::NONE;
+    !joint.drive.is_sized() && !is_checked && joint.bearing.stated().is_some()
 }
 
 /// A remark if the bearing of a given drive is overloaded in some design of the front. The checks of a given drive
@@ -103,7 +111,7 @@ fn unchecked<'s>(
                     }
                 }
             }
-            DriveChoice::Given { .. } if is_unnamed(joint) => {}
+            DriveChoice::Given { .. } if is_unnamed(joint, catalogs) => {}
             DriveChoice::Given { .. } => {
                 let blank = joint.bearing.stated().and_then(BlankRatings::of_stated);
                 blank.into_iter().for_each(|blank| unchecked.add(blank, bearing_of(joint)));

@@ -19,7 +19,7 @@ use crate::arm::Arm;
 use crate::arm::load::LoadCase;
 use crate::catalog::Catalogs;
 use crate::report::number::{fixed, significant};
-use crate::space::design_space::DesignSpace;
+use crate::space::design_space::{DesignSpace, SpacePiece};
 use crate::space::full_model::full_objectives;
 use crate::space::problem::ArmProblem;
 use crate::space::station::Walk;
@@ -110,6 +110,7 @@ pub fn capacity_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Resu
     let mut found = capacity(&space, catalogs, arm.slot_options(), &study.own_payloads);
     found.largest_speed = largest_speed(&problem, arm.slot_options(), catalogs);
     found.remarks.extend(duty_remark(&space));
+    found.remarks.extend(unjudged_remark(&problem, catalogs));
     let built = problem.arm_of(&arm);
     found.remarks.extend(built.and_then(|built| limits_remark(&space, &built, &study.own_payloads)));
     Ok(found)
@@ -139,6 +140,28 @@ fn capacity(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], own: &[us
     };
     let table = loaded.iter().map(at_pose).collect();
     Capacity::new(window(&space.sizing_cases, &loaded), table, remarks)
+}
+
+/// The sentence that drives which the study gives without gear and motor of the catalogs are not judged; `None` if there
+/// are none.
+fn unjudged_remark(problem: &ArmProblem, catalogs: &Catalogs) -> Option<String> {
+    let pieces = problem.space().pieces.iter().enumerate();
+    let unjudged = pieces.filter(|(piece, what)| match what {
+        SpacePiece::Joint(joint) => {
+            !joint.drive.is_sized()
+                && joint.coupled.is_none()
+                && problem.fixed_drive(*piece, catalogs).is_none()
+        }
+        SpacePiece::Prismatic(rail) => rail.drive.is_none(),
+        SpacePiece::Link(_) | SpacePiece::Choice(_) => false,
+    });
+    let names: Vec<&str> = unjudged.map(|(_, what)| what.name()).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "The drive of {} is not judged: it is given without a gear and a motor of the catalogs.",
+            names.join(", ")
+        )
+    })
 }
 
 /// The sentence that duties which joints state in numbers are the same for every payload and speed; `None` if no joint
@@ -202,6 +225,9 @@ fn limits_remark(space: &DesignSpace, built: &Arm, own: &[usize]) -> Option<Stri
     })
 }
 
+/// Number of payloads below the stated one that are tried if the stated one is too much.
+const SMALLER_PAYLOADS: u32 = 16;
+
 /// The payloads that hold in the cases with the indices `cases`, by bisection from the payload that the study states.
 /// The payload changes in the cases `vary`. All other cases keep theirs, with which the arm holds.
 fn held_payloads(
@@ -221,6 +247,11 @@ fn held_payloads(
     let mut stated_kg: Vec<f64> = vary.iter().map(|&case| space.cases[case].payload.mass_kg).collect();
     stated_kg.sort_by(|a, b| b.total_cmp(a));
     stated_kg.dedup();
+    // a drive that the study gives may be too weak for the stated payload and hold a smaller one
+    let largest_kg = stated_kg.first().copied().unwrap_or_default();
+    stated_kg.extend(
+        (0..SMALLER_PAYLOADS).rev().map(|part| largest_kg * f64::from(part) / f64::from(SMALLER_PAYLOADS)),
+    );
     match stated_kg.iter().find(|&&payload_kg| overloaded(payload_kg).is_none()) {
         Some(&payload_kg) => window_around(payload_kg, &overloaded),
         None => Window::empty(overloaded(0.0).unwrap_or_default()),

@@ -5,6 +5,7 @@ use super::definition::Study;
 use super::gear_remarks::life_remarks;
 use super::joint_obstacle::{first_fit_at, obstacle_at};
 use super::load::{refuse_choices, refuse_empty};
+use super::reaction_remarks::reaction_remark_on;
 use super::refusal::Refusal;
 use super::table::sizing_rows;
 use crate::arm::Arm;
@@ -47,22 +48,37 @@ pub fn arm_of_design(study: &Study, id: &str, catalogs: &Catalogs) -> Result<(Ar
 ///
 /// # Errors
 /// The study has nothing to choose from, or no design with this id, or no drive meets the demand at some joint.
-pub fn sizing_of(
-    study: &Study,
-    id: Option<&str>,
-    catalogs: &Catalogs,
-) -> Result<Vec<JointSizingRow>, Refusal> {
+pub fn sizing_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Result<Sizing, Refusal> {
     refuse_empty(study, catalogs)?;
     let (space, chosen) = chosen_design(study, id, catalogs)?;
-    let problem = ArmProblem::new(&space, catalogs);
-    sizing_rows(&problem, catalogs, &chosen).map_err(|slot| why_not_held(&problem, &chosen, slot))
+    sizing_in(study, &ArmProblem::new(&space, catalogs), &chosen, catalogs)
 }
 
-/// Remarks on the sizing `rows` of a design of a study, in sentences: those on the question, and those on the lives of the
-/// gears.
-pub fn sizing_remarks(study: &Study, rows: &[JointSizingRow], catalogs: &Catalogs) -> Vec<String> {
+/// The sizing of the joints of one design.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sizing {
+    /// The joints with a drive from the catalogs, tip first.
+    pub rows: Vec<JointSizingRow>,
+    /// Remarks in sentences: on the question, on the lives of the gears, and on what joints hold while others move.
+    pub remarks: Vec<String>,
+}
+
+/// The sizing of the design of `problem` with the options `chosen`, one for each level, tip first. `study` is the study to
+/// which the problem belongs.
+///
+/// # Errors
+/// A joint that no drive holds.
+pub(crate) fn sizing_in(
+    study: &Study,
+    problem: &ArmProblem,
+    chosen: &[u32],
+    catalogs: &Catalogs,
+) -> Result<Sizing, Refusal> {
+    let rows = sizing_rows(problem, catalogs, chosen).map_err(|slot| why_not_held(problem, chosen, slot))?;
     let of_lives = life_remarks(rows.iter().map(|row| row.gear.as_str()), catalogs);
-    study.remarks.iter().cloned().chain(of_lives).collect()
+    let of_reactions = reaction_remark_on(problem, catalogs, chosen);
+    let remarks = study.remarks.iter().cloned().chain(of_lives).chain(of_reactions).collect();
+    Ok(Sizing { rows, remarks })
 }
 
 /// Largest number of options of a link among which the option of median mass is chosen.

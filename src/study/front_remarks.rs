@@ -7,6 +7,7 @@ use super::given_parts::given_parts;
 use super::given_remarks::GivenDrives;
 use super::guide_remarks::guide_remarks;
 use super::outcome::Front;
+use super::reaction_remarks::reaction_remark;
 use super::table::front_table_with;
 use crate::arm::effect::entry::Effect;
 use crate::catalog::Catalogs;
@@ -32,7 +33,9 @@ pub fn table_and_remarks(
     let of_play = play_remarks(&study.space, catalogs, &table);
     let of_given = given.remarks(front.len());
     let of_guides = guide_remarks(problem, &table);
-    let of_parts = of_bearings.into_iter().chain(of_lives).chain(of_play).chain(of_given).chain(of_guides);
+    let of_reactions = reaction_remark(problem, catalogs, &table);
+    let of_drives = of_lives.into_iter().chain(of_play).chain(of_given).chain(of_reactions);
+    let of_parts = of_bearings.into_iter().chain(of_drives).chain(of_guides);
     let remarks = of_study.chain(of_parts).collect();
     (table, remarks)
 }

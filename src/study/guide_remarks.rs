@@ -61,7 +61,11 @@ pub(super) fn guide_remarks(problem: &ArmProblem, front: &FrontTable) -> Vec<Str
     }
     let words = guides.iter().map(|guide| {
         let name = &guide.joint.name;
-        format!("{name} {} at rest, {} in an emergency stop", guide.at_rest.words(), guide.in_stop.words())
+        format!(
+            "{name} {} at rest, {} in an emergency stop of its own travel",
+            guide.at_rest.words(),
+            guide.in_stop.words()
+        )
     });
     let bear = "Guides bear across their travel, at most in the judged cases of the picks";
     let mut out = vec![format!("{bear}: {}.", words.collect::<Vec<_>>().join("; "))];
@@ -85,7 +89,7 @@ fn guides<'s>(problem: &'s ArmProblem) -> Vec<OnGuide<'s>> {
         let acceleration_m_s2 = sized.unwrap_or(motion.tip_acceleration_m_s2());
         Some(OnGuide {
             joint: &rail.joint,
-            deceleration_m_s2: acceleration_m_s2 * motion.stop_factor().max(1.0),
+            deceleration_m_s2: acceleration_m_s2 * motion.stop_factor(),
             at_rest: Largest::default(),
             in_stop: Largest::default(),
         })

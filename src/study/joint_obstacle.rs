@@ -184,15 +184,19 @@ pub(crate) fn obstacle_at(table: &DriveTable, demand: &JointDemand) -> Option<St
 /// The reason if the table has no legal drive: none is fast enough, none fits, or all lack a rating.
 fn no_legal_drive(table: &DriveTable, demand: &JointDemand) -> String {
     let joint = table.joint();
-    let needed_rad_s = table.motion().speed_rad_s;
-    match fastest(table).filter(|(rad_s, _)| *rad_s < needed_rad_s) {
-        Some((rad_s, drive)) => format!(
-            "joint {joint}: {} rad/s needed, {} allowed by the fastest drive, {drive} (short by {} rad/s); slow \
-             the joint to {} rad/s (tip_speed_m_s, min_lever_m, max_speed_rad_s) or widen \"drives\"{}",
-            short(needed_rad_s),
-            short(rad_s),
-            short(needed_rad_s - rad_s),
-            toward(rad_s, false),
+    let needed = table.motion().speed_rad_s;
+    let (unit, keys) = match table.gears().iter().any(|gear| gear.kind.slides()) {
+        true => ("m/s", "tip_speed_m_s, max_speed_m_s"),
+        false => ("rad/s", "tip_speed_m_s, min_lever_m, max_speed_rad_s"),
+    };
+    match fastest(table).filter(|(speed, _)| *speed < needed) {
+        Some((speed, drive)) => format!(
+            "joint {joint}: {} {unit} needed, {} allowed by the fastest drive, {drive} (short by {} {unit}); slow \
+             the joint to {} {unit} ({keys}) or widen \"drives\"{}",
+            short(needed),
+            short(speed),
+            short(needed - speed),
+            toward(speed, false),
             missing_words(table),
         ),
         None => table.smallest_shortfall(demand).map_or_else(

@@ -334,8 +334,14 @@ pub(super) static PHASE: Shape = Shape::new(
             "What the joint does.",
         ),
         required("time_s", Kind::NonNegative, "s", "How long."),
-        optional("of_static_torque", Kind::NonNegative, "-", "none", "Part of the joint's static torque."),
-        optional("of_speed", Kind::NonNegative, "-", "none", "Part of the joint's speed."),
+        optional(
+            "of_static_torque",
+            Kind::Range(0.0, 1.0),
+            "-",
+            "none",
+            "Part of the joint's static torque.",
+        ),
+        optional("of_speed", Kind::Range(0.0, 1.0), "-", "none", "Part of the joint's speed."),
     ],
     &[Rule::When {
         key: "phase",

@@ -117,7 +117,7 @@ fn read_kind(node: &Node, phase: &Object) -> Option<PhaseKind> {
         "decelerate" => PhaseKind::Decelerate,
         "rest" => PhaseKind::Rest,
         "fraction" => {
-            let share = |key| phase.required(key).and_then(|n| n.non_negative());
+            let share = |key| phase.required(key).and_then(|n| read_fraction(&n));
             let (torque, speed) = (share("of_static_torque"), share("of_speed"));
             return Some(PhaseKind::Fraction { of_static_torque: torque?, of_speed: speed? });
         }
@@ -132,6 +132,18 @@ fn read_kind(node: &Node, phase: &Object) -> Option<PhaseKind> {
         key.fault::<()>("belongs to a phase \"fraction\"", "remove it, or make the phase a \"fraction\"");
     }
     Some(kind)
+}
+
+/// Reads a fraction of the static torque or of the largest speed. More than the whole would be a peak or a speed that no
+/// check sees.
+fn read_fraction(node: &Node) -> Option<f64> {
+    match node.non_negative()? {
+        part if part <= 1.0 => Some(part),
+        part => node.fault(
+            format!("= {part} is more than the whole"),
+            "state the largest payload and the largest speed in the study, or give the joint a \"duty\" in numbers",
+        ),
+    }
 }
 
 /// Reads the duty of one joint in numbers, as in a vendor's worked example.

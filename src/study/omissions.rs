@@ -76,6 +76,23 @@ pub(super) fn actuators_remark(space: &DesignSpace, catalogs: &Catalogs) -> Opti
     })
 }
 
+/// A sentence on given drives that are not checked because the study does not name both gear and motor; `None` if there
+/// are none. An actuator has both.
+pub(super) fn unchecked_remark(space: &DesignSpace, catalogs: &Catalogs) -> Option<String> {
+    let is_actuator = |name: &String| catalogs.gear(name).is_ok_and(|gear| gear.kind == GearKind::Actuator);
+    let is_unchecked = |joint: &&SpaceJoint| match &joint.drive {
+        DriveChoice::Given { gear: Some(gear), motor: None, .. } => !is_actuator(gear),
+        _ => false,
+    };
+    let names: Vec<&str> = joints(space).filter(is_unchecked).map(|joint| joint.name.as_str()).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "The drive of {} is not checked: the study names its gear and not its motor (\"motor\", a part of the catalogs).",
+            names.join(", ")
+        )
+    })
+}
+
 /// Physics that no number of this study includes, such as temperature, as a sentence.
 fn left_out_everywhere(space: &DesignSpace) -> String {
     let fits = joints_that_ask(space).next().is_some();

@@ -117,6 +117,48 @@ fn number(x: f64) -> String {
     format!("{x}")
 }
 
+/// A joint of a design with its drive from the catalogs, chosen or given.
+pub(super) struct DrivenJoint<'c> {
+    /// Piece of the joint, counted from the base.
+    pub piece: usize,
+    /// The drive.
+    pub drive: Drive<'c>,
+    /// The motion that the study asks of the joint.
+    pub motion: JointMotion,
+    /// The demand on the drive.
+    pub demand: JointDemand,
+    /// Mass of the arm outboard of the joint and of its drive \[kg\].
+    inward_kg: f64,
+}
+
+/// Every joint of the design with the options `chosen` that has a drive from the catalogs, tip first. The error is the
+/// slot (place in the order in which the arm is built) at which no drive meets the demand.
+pub(super) fn driven_joints<'c>(
+    problem: &ArmProblem<'c>,
+    catalogs: &'c Catalogs,
+    chosen: &[u32],
+) -> Result<Vec<DrivenJoint<'c>>, usize> {
+    let mut demands: Vec<(usize, JointDemand)> = Vec::new();
+    let complete = problem.walk(chosen, |slot, partial| {
+        let piece = problem.piece_of_slot(slot);
+        if problem.sized_joint(piece).is_some() {
+            demands.push((piece, problem.demand_at(partial, slot)));
+        } else if let Some(fixed) = problem.fixed_drive(piece, catalogs) {
+            demands.push((piece, problem.fixed_demand(partial, slot, &fixed)));
+        }
+    })?;
+    let options: Vec<u32> = problem.options(&complete).collect();
+    let inward_kg = problem.masses_inward_kg(&complete);
+    let driven = |(piece, demand): (usize, JointDemand)| {
+        let (drive, motion) = match problem.sized_joint(piece) {
+            Some(sized) => (sized.table.drive(options[piece] as usize), *sized.table.motion()),
+            None => problem.fixed_drive(piece, catalogs).map(|fixed| (fixed.drive, fixed.motion))?,
+        };
+        Some(DrivenJoint { piece, drive, motion, demand, inward_kg: inward_kg[piece] })
+    };
+    Ok(demands.into_iter().filter_map(driven).collect())
+}
+
 /// The sizing of every joint of the design with the options `chosen` that has a drive from the catalogs, chosen or
 /// given, tip first. The error is the slot (place in the order in which the arm is built) at which no drive meets the
 /// demand.
@@ -125,27 +167,13 @@ pub(crate) fn sizing_rows(
     catalogs: &Catalogs,
     chosen: &[u32],
 ) -> Result<Vec<JointSizingRow>, usize> {
-    let mut demands: Vec<(usize, JointDemand)> = Vec::new();
-    let complete = problem.walk(chosen, |slot, partial| {
-        let piece = problem.piece_of_slot(slot);
-        if problem.sized_joint(piece).is_some() {
-            demands.push((piece, problem.demand_at(partial, slot)));
-        } else if let Some(fixed) = problem.fixed_drive(piece, catalogs) {
-            demands.push((piece, problem.fixed_demand(partial, slot, &fixed.motion)));
-        }
-    })?;
-    let options: Vec<u32> = problem.options(&complete).collect();
-    let inward_kg = problem.masses_inward_kg(&complete);
-    let row = |(piece, demand): &(usize, JointDemand)| {
-        let (drive, motion) = match problem.sized_joint(*piece) {
-            Some(sized) => (sized.table.drive(options[*piece] as usize), *sized.table.motion()),
-            None => problem.fixed_drive(*piece, catalogs).map(|fixed| (fixed.drive, fixed.motion))?,
-        };
+    let row = |joint: &DrivenJoint| {
+        let DrivenJoint { piece, drive, motion, demand, inward_kg } = joint;
         let name = problem.space().pieces[*piece].name();
-        let row = JointSizingRow::new(name, &drive, &motion, demand, inward_kg[*piece]);
-        Some(at_cycle_efficiency(row, catalogs, &drive, &motion, demand))
+        let row = JointSizingRow::new(name, drive, motion, demand, *inward_kg);
+        at_cycle_efficiency(row, catalogs, drive, motion, demand)
     };
-    Ok(demands.iter().filter_map(row).collect())
+    Ok(driven_joints(problem, catalogs, chosen)?.iter().map(row).collect())
 }
 
 /// Adds to `row` the efficiency of the gear at the mean speed and mean torque of the duty cycle, if the catalogs have

@@ -75,7 +75,8 @@ impl Duty {
         let ramp_s = first_ramp_s(&joint.duty).unwrap_or(motion.ramp_time_s);
         let acceleration_rad_s2 = speed_rad_s / ramp_s;
         let tip_m_s2 = motion.tip_acceleration_m_s2();
-        let stop_factor = motion.emergency_deceleration_m_s2.map_or(2.0, |stop_m_s2| stop_m_s2 / tip_m_s2);
+        let stop_factor =
+            motion.emergency_deceleration_m_s2.map_or(2.0, |stop_m_s2| (stop_m_s2 / tip_m_s2).max(1.0));
         let (linear_per_inertia, linear_per_static) = match motion.linear_torque {
             LinearTorque::OfInertia => (acceleration_rad_s2, 0.0),
             LinearTorque::OfStaticTorque => (0.0, tip_m_s2 / motion.gravity_m_s2),

@@ -19,6 +19,7 @@ mod exact_threads;
 mod exact_ties;
 mod fits;
 mod frozen_designs;
+mod given_drives;
 mod loads_and_linkages;
 mod lowest_mode;
 mod mechanics_reference;

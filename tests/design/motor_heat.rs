@@ -28,7 +28,7 @@ fn cycle(dice: &mut Dice) -> Value {
     ];
     if dice.below(2) == 0 {
         let speed = dice.of(&[0.0, 0.5]);
-        cycle.push(json!({"phase": "fraction", "time_s": 0.2, "of_static_torque": 1.2, "of_speed": speed}));
+        cycle.push(json!({"phase": "fraction", "time_s": 0.2, "of_static_torque": 0.9, "of_speed": speed}));
     }
     json!(cycle)
 }

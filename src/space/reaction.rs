@@ -1,0 +1,100 @@
+//! What a joint that stands still must hold while another joint ramps or stops.
+//!
+//! The couplings are the entries of the arm's mass matrix: `M_ij` is the inertia between the motions of the joints i
+//! and j. While joint j accelerates by `α_j` and all others stand still, the drive of joint i must hold `M_ij α_j` in
+//! addition to its static torque. Drives are sized for the acceleration of their own joint ([`demand`](crate::sizing::demand)), as the
+//! vendors' procedures are, which size one axis at a time. So this torque is no part of their demand.
+
+use super::design_space::SpacePiece;
+use super::problem::ArmProblem;
+use super::station::{StationJoint, StationSlot};
+
+/// The largest torque that a joint must hold while another one moves; of a prismatic joint, the largest force.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Reaction {
+    /// Piece of the joint that stands still, counted from the base.
+    pub piece: usize,
+    /// Piece of the joint whose ramp gives the largest torque.
+    pub mover: usize,
+    /// Static torque plus that of the ramp \[N m\]; of a prismatic joint the force \[N\].
+    pub in_ramp_nm: f64,
+    /// Static torque plus that of the emergency stop of this joint \[N m\]; of a prismatic joint the force \[N\].
+    pub in_stop_nm: f64,
+}
+
+/// A joint that moves by itself: its slot and its acceleration \[rad/s²\], of a prismatic joint \[m/s²\].
+struct Mover {
+    slot: usize,
+    acceleration: f64,
+}
+
+impl ArmProblem<'_> {
+    /// The largest torque that each driven joint of a design must hold while another joint moves, over the sizing
+    /// cases; tip first. `options` are the options of the design, one for each level, tip first. `None` if the design
+    /// breaks a limit.
+    pub(crate) fn reactions(&self, options: &[u32]) -> Option<Vec<Reaction>> {
+        let movers = self.movers();
+        let cases = &self.space().sizing_cases;
+        let mut static_nm = vec![vec![0.0; cases.len()]; movers.len()];
+        let mut inertia_kgm2 = vec![vec![vec![0.0; cases.len()]; movers.len()]; movers.len()];
+        self.walk(options, |slot, partial| {
+            let Some(here) = movers.iter().position(|mover| mover.slot == slot) else { return };
+            for (at, &case) in cases.iter().enumerate() {
+                let (Some(joint), state) = (self.posed_joint(case, slot), &partial.stations[case]) else {
+                    continue;
+                };
+                static_nm[here][at] = state.torque_nm(joint).abs();
+                for (other, mover) in movers.iter().enumerate().skip(here + 1) {
+                    let Some(moving) = self.posed_joint(case, mover.slot) else { continue };
+                    let coupling_kgm2 = state.inertia_between(slot, joint, moving).abs();
+                    inertia_kgm2[here][other][at] = coupling_kgm2;
+                    inertia_kgm2[other][here][at] = coupling_kgm2;
+                }
+            }
+        })
+        .ok()?;
+        let stop_factor = self.space().motion.stop_factor();
+        let largest = |here: usize| {
+            let others = (0..movers.len()).filter(|other| *other != here);
+            let of = |other: usize| {
+                let ramp_nm = |at: usize| inertia_kgm2[here][other][at] * movers[other].acceleration;
+                let held = |times: f64| {
+                    (0..cases.len()).map(|at| static_nm[here][at] + times * ramp_nm(at)).fold(0.0, f64::max)
+                };
+                Reaction {
+                    piece: self.piece_of_slot(movers[here].slot),
+                    mover: self.piece_of_slot(movers[other].slot),
+                    in_ramp_nm: held(1.0),
+                    in_stop_nm: held(stop_factor),
+                }
+            };
+            others.map(of).max_by(|a, b| a.in_stop_nm.total_cmp(&b.in_stop_nm))
+        };
+        Some((0..movers.len()).filter_map(largest).collect())
+    }
+
+    /// The joints that move by themselves, tip first. A passive joint moves only together with its driving joint.
+    fn movers(&self) -> Vec<Mover> {
+        let motion = &self.space().motion;
+        let of_joints = self.bearing_loads().movers.iter();
+        let of_joints =
+            of_joints.map(|mover| Mover { slot: mover.slot, acceleration: mover.acceleration_rad_s2 });
+        let rail = |(piece, what): (usize, &SpacePiece)| {
+            let SpacePiece::Prismatic(rail) = what else { return None };
+            let sized = rail.drive.as_ref().map(|drive| drive.motion(motion).acceleration_rad_s2);
+            let acceleration = sized.unwrap_or(motion.tip_acceleration_m_s2());
+            Some(Mover { slot: self.slot_of_piece(piece), acceleration })
+        };
+        let rails = self.space().pieces.iter().enumerate().filter_map(rail);
+        let mut out: Vec<Mover> = of_joints.chain(rails).collect();
+        out.sort_by_key(|mover| mover.slot);
+        out
+    }
+
+    fn posed_joint(&self, case: usize, slot: usize) -> Option<&StationJoint> {
+        match &self.stations()[case].slots[slot] {
+            StationSlot::Joint(joint) => Some(joint),
+            _ => None,
+        }
+    }
+}
