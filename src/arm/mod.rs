@@ -42,8 +42,8 @@ pub(crate) mod transmission;
 pub(crate) mod transmissions;
 pub(crate) mod write;
 
-/// The word for the base of an arm in files. Where the base is possible, the word means the base, even if an element has
-/// this name.
+/// The word for the base of an arm in files. Where a file may name the base, the word means the base, even if an
+/// element of the chain is called so.
 pub(crate) const BASE: &str = "base";
 
 pub use bearing::{Bearing, BearingSource};
@@ -387,7 +387,8 @@ impl Arm {
         })
     }
 
-    /// A property of the arm that the model of absolute positions does not include, in words; `None` if there is none.
+    /// The first property of the arm that the model of absolute positions does not include, in words; `None` if the
+    /// model includes all of them.
     pub(crate) fn beyond_positions(&self) -> Option<&'static str> {
         if self.prismatics().next().is_some() {
             return Some("prismatic joints");
