@@ -165,7 +165,9 @@ impl JointModel {
 /// let body = LinkBody::Offset { mass_kg: 5.0 };
 /// let link = Link { name: "upper_arm".into(), vector_m: Vector3::new(0.8, 0.0, 0.0), body, bodies: Vec::new() };
 /// let chain = vec![Element::Joint(joint), Element::Link(link)];
-/// let arm = Arm { name: "two pieces".into(), gravity_m_s2: 9.81, down: -Vector3::z(), chain, effects: Vec::new(), springs: Vec::new() };
+/// let down = -Vector3::z();
+/// let (effects, springs) = (Vec::new(), Vec::new());
+/// let arm = Arm { name: "two pieces".into(), gravity_m_s2: 9.81, down, chain, effects, springs };
 /// assert_eq!(arm.mass_kg(), 17.2);
 /// assert_eq!(arm.reach_m(), 0.8);
 /// assert_eq!(arm.to_json()["chain"][0]["stiffness_nm_per_rad"], 607e3);

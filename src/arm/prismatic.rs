@@ -106,8 +106,8 @@ pub struct Guide {
     pub limits: GuideLimits,
 }
 
-/// The largest loads that a guide holds, each acting alone: the ratings of the maker over the safety factor that it asks
-/// for. `None` means unknown.
+/// The largest loads that a guide holds, each acting alone: the ratings of the maker over the safety factor that it
+/// asks for. `None` means unknown.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GuideLimits {
     /// Force across the travel, along the y or the z axis of the guide \[N\].

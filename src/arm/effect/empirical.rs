@@ -1,7 +1,7 @@
 //! `empirical`: a law without a name, as it was found in readings. At a joint it is a further twist, which is a
-//! polynomial of the torque, a housing that tilts about two axes unequally, or a compliance that changes in the course of
-//! the tests. At the base it is a tilt that differs about x and y. At a channel it is a nonlinearity, a gain for each
-//! direction, or a rotation of the base between two rows.
+//! polynomial of the torque, a housing that tilts about two axes unequally, or a compliance that changes in the course
+//! of the tests. At the base it is a tilt that differs about x and y. At a channel it is a nonlinearity, a gain for
+//! each direction, or a rotation of the base between two rows.
 
 use super::channel::Channel;
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
@@ -211,8 +211,8 @@ mod tests {
             let posed = chain.pose_rad(&[FRAC_PI_2, FRAC_PI_2], &Payload::default(), force_n);
             posed.statics().shares_m.iter().find(|(name, _)| name == "j2.bearing").expect("share").1
         };
-        // the axes of j2, which turns about y, are -z and -x of the upper arm; x is along the upper arm, which is world y
-        // now: 10 N at the end of 0.5 m put 5 N m about it and move the tip by a lever of 0.5 m
+        // the axes of j2, which turns about y, are -z and -x of the upper arm; x is along the upper arm, which is world
+        // y now: 10 N at the end of 0.5 m put 5 N m about it and move the tip by a lever of 0.5 m
         let along = share_of([0.0, 1e-5]);
         assert!((along - Vector3::new(2.5e-5, 0.0, 0.0)).norm() < 1e-15, "{along}");
         // the forearm hangs along the other axis
