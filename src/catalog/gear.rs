@@ -208,7 +208,8 @@ pub struct Gear {
 }
 
 impl Gear {
-    /// A gear of which nothing but name, kind and ratio is known: it has the usual life of its kind, and no other number.
+    /// A gear of which nothing but name, kind and ratio is known: it has the usual life of its kind, and no other
+    /// number.
     pub(crate) fn unrated(id: &str, kind: GearKind, ratio: f64, provenance: Provenance) -> Self {
         Self {
             id: id.to_string(),

@@ -77,8 +77,8 @@ impl Provenance {
         self.unverified_fields.iter().any(|listed| listed == column)
     }
 
-    /// The caveat that is printed with a part whose main numbers were not read in a document of its vendor: `third party`,
-    /// `from memory` or `representative`; `None` for other parts.
+    /// The caveat that is printed with a part whose main numbers were not read in a document of its vendor:
+    /// `third party`, `from memory` or `representative`; `None` for other parts.
     ///
     /// ```
     /// use armwright::catalog::Catalogs;
