@@ -58,8 +58,8 @@ pub fn sizing_of(
     sizing_rows(&problem, catalogs, &chosen).map_err(|slot| why_not_held(&problem, &chosen, slot))
 }
 
-/// Remarks on the sizing `rows` of a design of a study, in sentences: those on the question, and those on the lives of the
-/// gears.
+/// Remarks on the sizing `rows` of a design of a study, in sentences: those on the question, and those on the lives of
+/// the gears.
 pub fn sizing_remarks(study: &Study, rows: &[JointSizingRow], catalogs: &Catalogs) -> Vec<String> {
     let of_lives = life_remarks(rows.iter().map(|row| row.gear.as_str()), catalogs);
     study.remarks.iter().cloned().chain(of_lives).collect()
