@@ -61,7 +61,7 @@ impl Bearing {
         Self { tilt_stiffness_nm_per_rad: self.tilt_stiffness_nm_per_rad.map(|k| k * factor), ..self }
     }
 
-    /// Reads a bearing that a file describes by its numbers.
+    /// Reads a bearing that a file describes by its numbers. Returns `None` after recording a fault.
     fn read(node: &Node) -> Option<Self> {
         let object = node.shaped(&BEARING)?;
         let positive =
@@ -88,7 +88,7 @@ impl Bearing {
     }
 
     /// The bearing of the housed gear whose name is the value of `node`. A fault is reported if the catalogs have no
-    /// such gear, or if one of its two masses is unknown.
+    /// such gear, or if one of its two masses is unknown. Returns `None` after recording a fault.
     fn named(node: &Node, catalogs: &Catalogs) -> Option<Self> {
         let gear = match catalogs.gear(node.string()?) {
             Ok(gear) => gear,
@@ -158,7 +158,7 @@ pub(crate) enum Stated {
     Bearing(Option<Bearing>),
 }
 
-/// Reads the key `bearing` of a joint.
+/// Reads the key `bearing` of a joint. Returns `None` after recording a fault.
 pub(crate) fn read_bearing(object: &Object, catalogs: &Catalogs) -> Option<Stated> {
     object.or("bearing", Stated::Nothing, |n| {
         let bearing = match n.value() {

@@ -93,24 +93,24 @@ pub(crate) fn total_kg(bodies: &[RigidBody]) -> f64 {
     bodies.iter().map(|body| body.mass_kg).sum()
 }
 
-/// Reads the key `bodies` of a link; an empty list without the key.
+/// Reads the key `bodies` of a link; an empty list without the key. Returns `None` after recording a fault.
 pub(crate) fn read_link_bodies(object: &Object) -> Option<Vec<RigidBody>> {
     let bodies = read(object, &LINK_BODY, "")?;
     Some(bodies.into_iter().map(|(body, _)| body).collect())
 }
 
-/// Reads the key `bodies` of a joint; no bodies without the key.
+/// Reads the key `bodies` of a joint; no bodies without the key. Returns `None` after recording a fault.
 pub(crate) fn read_joint_bodies(object: &Object) -> Option<JointBodies> {
     read_bodies_that(object, &JOINT_BODY, "rotates")
 }
 
-/// Reads the key `bodies` of a prismatic joint; no bodies without the key.
+/// Reads the key `bodies` of a prismatic joint; no bodies without the key. Returns `None` after recording a fault.
 pub(crate) fn read_prismatic_bodies(object: &Object) -> Option<JointBodies> {
     read_bodies_that(object, &PRISMATIC_BODY, "travels")
 }
 
 /// Reads the key `bodies` of a joint, whose keys are those of `shape`. Bodies in which the key named by `moves` is true
-/// are outboard of the springs.
+/// are outboard of the springs. Returns `None` after recording a fault.
 fn read_bodies_that(object: &Object, shape: &Shape, moves: &str) -> Option<JointBodies> {
     let mut out = JointBodies::default();
     for (body, is_outboard) in read(object, shape, moves)? {
@@ -126,7 +126,8 @@ fn read(object: &Object, shape: &Shape, moves: &str) -> Option<Vec<(RigidBody, b
     })
 }
 
-/// Reads an inertia tensor. It must be symmetric, and none of its principal moments may be negative.
+/// Reads an inertia tensor. It must be symmetric, and none of its principal moments may be negative. Returns `None`
+/// after recording a fault.
 fn read_inertia(node: &Node) -> Option<Matrix3<f64>> {
     let rows: Vec<Option<[f64; 3]>> = node.array()?.iter().map(|row| row.numbers::<3>()).collect();
     let rows: Vec<[f64; 3]> = rows.into_iter().collect::<Option<_>>()?;

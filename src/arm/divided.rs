@@ -1,8 +1,8 @@
 //! Structures whose links are divided at the bodies on them.
 //!
 //! The strains of a link are smooth along its length (see [`crate::mechanics::beam`]). A body beside the axis of a link
-//! twists the link inboard of it and not outboard of it, so the twist rate has a step at the body. Smooth strains hold a
-//! part of such a step only: the deflection of the tip is exact, but the frequency of a mode in which the body swings
+//! twists the link inboard of it and not outboard of it, so the twist rate has a step at the body. Smooth strains hold
+//! a part of such a step only: the deflection of the tip is exact, but the frequency of a mode in which the body swings
 //! about the link comes out too high, by up to 6 %. Where the link is divided at the body, the step lies between two
 //! links, and the frequency is right.
 
@@ -53,8 +53,8 @@ fn along(link: &LinkPiece, point_m: &Vector3<f64>) -> f64 {
     if length2_m2 > 0.0 { link.vector_m.dot(point_m) / length2_m2 } else { 0.0 }
 }
 
-/// Where the parts of a piece begin along it, from root to end. There is one part unless the piece is a tube with bodies
-/// between its ends.
+/// Where the parts of a piece begin along it, from root to end. There is one part unless the piece is a tube with
+/// bodies between its ends.
 fn starts(piece: &Piece) -> Vec<f64> {
     let mut out = vec![0.0];
     if let Piece::Link(link) = piece

@@ -4,7 +4,7 @@ use super::load::vector;
 use crate::input::json::{Node, Object};
 use nalgebra::{Unit, Vector3};
 
-/// Reads the name of an element.
+/// Reads the name of an element. Returns `None` after recording a fault.
 pub(crate) fn read_name(object: &Object) -> Option<String> {
     let node = object.required("name")?;
     match node.string()? {
@@ -13,7 +13,7 @@ pub(crate) fn read_name(object: &Object) -> Option<String> {
     }
 }
 
-/// Reads the direction of an axis. The length of the vector does not matter.
+/// Reads the direction of an axis. The length of the vector does not matter. Returns `None` after recording a fault.
 pub(crate) fn read_axis(node: &Node) -> Option<Unit<Vector3<f64>>> {
     let axis = vector(node)?;
     if (axis.norm_squared() - 1.0).abs() <= 4.0 * f64::EPSILON {
@@ -29,7 +29,7 @@ pub(crate) fn read_axis(node: &Node) -> Option<Unit<Vector3<f64>>> {
     })
 }
 
-/// Reads the drivers of a passive joint, each with its factor.
+/// Reads the drivers of a passive joint, each with its factor. Returns `None` after recording a fault.
 pub(crate) fn read_coupling(node: &Node) -> Option<Vec<(String, f64)>> {
     let read: Vec<_> =
         node.entries()?.iter().map(|(name, n)| n.number().map(|f| (name.to_string(), f))).collect();

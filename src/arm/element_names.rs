@@ -5,7 +5,8 @@ use super::pose::Motion;
 use super::{Arm, Element, Joint};
 use crate::input::json::{Node, Object};
 
-/// Checks the names in an arm: of its elements, and those to which coupled joints refer.
+/// Checks the names in an arm: the names of its elements, and the names of the joints to which coupled joints refer.
+/// Returns `None` after recording a fault.
 pub(super) fn check_names(arm: &Arm, root: &Object) -> Option<()> {
     let mut sound = true;
     let names: Vec<&str> = arm.chain.iter().map(Element::name).collect();
@@ -53,8 +54,8 @@ fn joint_of(element: &Element) -> Option<(&str, Motion)> {
     }
 }
 
-/// The joint among `joints` whose output bearing or guide has the name `name` in every result: `NAME.bearing` of a joint
-/// that turns, `NAME.guide` of a prismatic joint. `None` if it is no such name.
+/// The joint among `joints` whose output bearing or guide has the name `name` in every result: `NAME.bearing` of a
+/// joint that turns, `NAME.guide` of a prismatic joint. `None` if it is no such name.
 pub(crate) fn part_of<'n>(
     name: &str,
     mut joints: impl Iterator<Item = (&'n str, Motion)>,
@@ -67,12 +68,13 @@ pub(crate) fn part_of<'n>(
     found.map(|(joint, _)| joint)
 }
 
-/// What is wrong with the name `name`, which is that of a part of the joint `joint`.
+/// The problem in words if an element has the name `name`, which results use for the bearing or the guide of the joint
+/// `joint`.
 pub(crate) fn part_problem(name: &str, joint: &str) -> String {
     format!("the name \"{name}\" is taken: results have it for a part of the joint \"{joint}\"")
 }
 
-/// A hint for a name of a part.
+/// Advice for an element whose name results use for the bearing or the guide of a joint.
 pub(crate) const PART_HINT: &str = "give the element another name";
 
 #[cfg(test)]

@@ -181,13 +181,14 @@ impl ExtrasSource {
     }
 }
 
-/// Reads the key `extras` of a joint in an arm file; all masses are zero without the key.
+/// Reads the key `extras` of a joint in an arm file; all masses are zero without the key. Returns `None` after
+/// recording a fault.
 pub(crate) fn read_extras(object: &Object) -> Option<Extras> {
     object.or("extras", Extras::default(), Extras::read)
 }
 
 /// Reads the key `extras` of a study or of one of its joints: `"usual"`, `"none"`, or masses. `usually` is the result
-/// if the key is missing.
+/// if the key is missing. Returns `None` after recording a fault.
 pub(crate) fn read_extras_source(object: &Object, usually: ExtrasSource) -> Option<ExtrasSource> {
     object.or("extras", usually, |n| match n.value() {
         Value::String(word) if word == "usual" => Some(ExtrasSource::Usual),

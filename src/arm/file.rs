@@ -64,7 +64,8 @@ pub fn read_arm_document(document: Document, catalogs: &Catalogs) -> Result<Arm,
     document.finish(arm)
 }
 
-/// Reads an arm from the object `node`, which may be a part of a larger document.
+/// Reads an arm from the object `node`, which may be a part of a larger document. Returns `None` after recording a
+/// fault.
 pub(crate) fn arm(node: &Node, catalogs: &Catalogs) -> Option<Arm> {
     let root = node.shaped(&ARM)?;
     let name = root.or("name", "arm".to_string(), |n| n.string().map(String::from));
@@ -83,7 +84,7 @@ pub(crate) fn arm(node: &Node, catalogs: &Catalogs) -> Option<Arm> {
 }
 
 /// Adds the masses of motors and stages to the elements on which they sit, and writes into every joint which other
-/// joints turn it.
+/// joints turn it. Returns `None` after recording a fault.
 fn place_transmissions(chain: &mut [Element], driven: &[Driven]) -> Option<()> {
     let seen: Vec<Seen> = chain.iter().map(Element::seen).collect();
     for (joint, placed) in place_all(driven, &seen)? {
@@ -95,7 +96,8 @@ fn place_transmissions(chain: &mut [Element], driven: &[Driven]) -> Option<()> {
     Some(())
 }
 
-/// Reads the springs of an arm, and adds its counterweights to the bodies of the elements on which they sit.
+/// Reads the springs of an arm, and adds its counterweights to the bodies of the elements on which they sit. Returns
+/// `None` after recording a fault.
 fn read_balance(root: &Object, chain: &mut [Element]) -> Option<Vec<Spring>> {
     let named: Vec<Named> = chain.iter().map(|e| (e.name(), matches!(e, Element::Joint(_)))).collect();
     let springs = read_springs(root, &named, Values::One);
@@ -109,8 +111,8 @@ fn read_balance(root: &Object, chain: &mut [Element]) -> Option<Vec<Spring>> {
     springs
 }
 
-/// Reads the key `gravity_m_s2`: the acceleration along world -z, or a vector in the world; 0 means no gravity.
-/// Returns the magnitude of the acceleration \[m/s²\] and its direction.
+/// Reads the key `gravity_m_s2`: the acceleration along world -z, or a vector in the world; 0 means no gravity. Returns
+/// the magnitude of the acceleration \[m/s²\] and its direction. Returns `None` after recording a fault.
 pub(crate) fn read_gravity(object: &Object) -> Option<(f64, Vector3<f64>)> {
     let upright = -Vector3::z();
     object.or("gravity_m_s2", (GRAVITY_M_S2, upright), |n| match n.value() {
@@ -144,7 +146,7 @@ fn read_material(node: &Node) -> Option<LinkMaterial> {
     })
 }
 
-/// Reads the elements of the chain, and how the joints among them are driven.
+/// Reads the elements of the chain, and how the joints among them are driven. Returns `None` after recording a fault.
 fn read_chain<'n>(
     node: &Node<'n>,
     materials: &[NamedMaterial],
@@ -189,7 +191,7 @@ pub(crate) const NO_TYPE: (&str, &str) = (
     "add \"type\": \"joint\" (it turns), \"prismatic\" (it slides) or \"link\"",
 );
 
-/// Reads a joint, or a link with its pieces.
+/// Reads a joint, or a link with its pieces. Returns `None` after recording a fault.
 fn read_element(node: &Node, materials: &[NamedMaterial], catalogs: &Catalogs) -> Option<Item> {
     let kind = node.value().get("type").and_then(|v| v.as_str());
     match kind {
@@ -240,7 +242,7 @@ fn read_joint(object: &Object, catalogs: &Catalogs) -> Option<(Joint, Option<Tra
 }
 
 /// The output bearing of a joint: the bearing that the file states, else the bearing of the named gear if the catalogs
-/// know this gear and it sits at the joint.
+/// know this gear and it sits at the joint. Returns `None` after recording a fault.
 pub(crate) fn read_joint_bearing(object: &Object, catalogs: &Catalogs) -> Option<Option<Bearing>> {
     if let Stated::Bearing(bearing) = read_bearing(object, catalogs)? {
         return Some(bearing);
@@ -256,6 +258,7 @@ pub(crate) fn read_joint_bearing(object: &Object, catalogs: &Catalogs) -> Option
 }
 
 /// The torsion curve of a joint: the numbers that the file states, else the curve of the named gear in the catalog.
+/// Returns `None` after recording a fault.
 pub(crate) fn read_curve(object: &Object, catalogs: &Catalogs) -> Option<Curve> {
     match (object.optional("stiffness_nm_per_rad"), object.optional("windup"), object.optional("gear")) {
         (Some(stiffness), Some(_), _) => {
@@ -328,7 +331,8 @@ fn gear_windup(gear: &Gear, node: &Node) -> Option<Windup> {
 }
 
 /// Mass of the parts that sit at a joint \[kg\]: the key `mass_kg` if it is given, else gear plus motor from the
-/// catalog, else zero. A motor that sits elsewhere is left out, and so is a gear that sits at this motor.
+/// catalog, else zero. A motor that sits elsewhere is left out, and so is a gear that sits at this motor. Returns
+/// `None` after recording a fault.
 pub(crate) fn read_joint_mass(object: &Object, catalogs: &Catalogs) -> Option<f64> {
     let which = read_gear_mass(object)?;
     if let Some(mass) = object.optional("mass_kg") {
@@ -348,6 +352,7 @@ pub(crate) fn read_joint_mass(object: &Object, catalogs: &Catalogs) -> Option<f6
 
 /// Mass of the parts that sit at a motor away from its joint \[kg\]: the key `motor_mass_kg` if it is given, else from
 /// the catalog the motor, plus the gear if the gear sits at the motor. It is zero if the motor sits at its joint.
+/// Returns `None` after recording a fault.
 pub(crate) fn motor_side_kg(object: &Object, catalogs: &Catalogs) -> Option<f64> {
     if !object.has("motor_at") {
         return Some(0.0);
@@ -367,7 +372,8 @@ pub(crate) fn motor_side_kg(object: &Object, catalogs: &Catalogs) -> Option<f64>
     Some(gear + motor)
 }
 
-/// Reads which mass of a joint's gear counts: component set, or housed unit, which is the default.
+/// Reads which mass of a joint's gear counts: component set, or housed unit, which is the default. Returns `None` after
+/// recording a fault.
 pub(crate) fn read_gear_mass(object: &Object) -> Option<GearMass> {
     object.or("gear_mass", GearMass::HousedUnit, |n| match n.string()? {
         "component_set" => Some(GearMass::ComponentSet),
@@ -385,7 +391,7 @@ fn part_mass(node: &Node, mass_kg: Option<f64>) -> Option<f64> {
     mass_kg.or_else(|| node.fault("has no mass in the catalog", "give the joint's \"mass_kg\""))
 }
 
-/// Reads a list of effects. Whether each effect fits its arm is checked later.
+/// Reads a list of effects. Whether each effect fits its arm is checked later. Returns `None` after recording a fault.
 pub(crate) fn read_effects(node: &Node) -> Option<Vec<Effect>> {
     let read: Vec<_> = node.array()?.iter().map(read_effect).collect();
     read.into_iter().collect()
@@ -417,6 +423,7 @@ fn read_parameters(node: &Node) -> Option<Vec<(String, Vec<f64>)>> {
 }
 
 /// The number that stands for a measuring channel in the list of parameters, read from the word for the channel.
+/// Returns `None` after recording a fault.
 fn read_channel(node: &Node) -> Option<f64> {
     let word = node.string()?;
     match Channel::from_word(word) {
@@ -428,7 +435,7 @@ fn read_channel(node: &Node) -> Option<f64> {
     }
 }
 
-/// Checks the place and the parameters of every effect of the arm.
+/// Checks the place and the parameters of every effect of the arm. Returns `None` after recording a fault.
 fn check_effects(arm: &Arm, root: &Object) -> Option<()> {
     let Some(node) = root.optional("effects") else { return Some(()) };
     let structure = arm.nominal_structure(super::JointModel::default());

@@ -19,7 +19,7 @@ pub(super) const DEFAULT_POISSON: f64 = 0.3;
 /// recorded.
 pub(crate) type NamedMaterial = (String, Option<LinkMaterial>);
 
-/// Reads a link of one section, or a rigid offset.
+/// Reads a link of one section, or a rigid offset. Returns `None` after recording a fault.
 pub(super) fn read_link(object: &Object, materials: &[NamedMaterial], catalogs: &Catalogs) -> Option<Link> {
     let name = read_name(object);
     let vector_m = object.required("vector_m").and_then(|n| vector(&n));
@@ -43,7 +43,8 @@ pub(super) fn read_link(object: &Object, materials: &[NamedMaterial], catalogs: 
 const STATED_MATERIAL: &str = "(stated stiffness)";
 
 /// Reads a tube with its section, from the object `object`. The material is read from the object `of_material`. This is
-/// `object` itself or, for a piece of a link that states no material, the object of the link.
+/// `object` itself or, for a piece of a link that states no material, the object of the link. Returns `None` after
+/// recording a fault.
 pub(super) fn read_tube(
     (object, of_material): (&Object, &Object),
     section: &Node,
@@ -112,7 +113,7 @@ pub(crate) fn material_of(row: &Material) -> Option<LinkMaterial> {
     })
 }
 
-/// Reads a cross-section from its object in the file.
+/// Reads a cross-section from its object in the file. Returns `None` after recording a fault.
 pub(crate) fn read_section(node: &Node) -> Option<Section> {
     let shape = node.value().get("shape").and_then(|v| v.as_str());
     let section = match shape {

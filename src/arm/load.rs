@@ -91,7 +91,7 @@ impl Payload {
         })
     }
 
-    /// Reads a payload object.
+    /// Reads a payload object. Returns `None` after recording a fault.
     pub fn read(node: &Node) -> Option<Self> {
         let object = node.shaped(&PAYLOAD)?;
         let mass_kg = object.required("mass_kg").and_then(|n| n.non_negative());
@@ -122,7 +122,8 @@ impl Water {
         })
     }
 
-    /// Reads a water object. If it gives no density of the payload, the density of steel is taken.
+    /// Reads a water object. If it gives no density of the payload, the density of steel is taken. Returns `None` after
+    /// recording a fault.
     pub fn read(node: &Node) -> Option<Self> {
         let object = node.shaped(&WATER)?;
         let density_kg_m3 = object.required("density_kg_m3").and_then(|n| n.positive());
@@ -146,12 +147,12 @@ fn read_inertia(node: &Node) -> Option<Vector3<f64>> {
     }
 }
 
-/// Reads a vector of three numbers.
+/// Reads a vector of three numbers. Returns `None` after recording a fault.
 pub(crate) fn vector(node: &Node) -> Option<Vector3<f64>> {
     node.numbers::<3>().map(Vector3::from)
 }
 
-/// Reads a word that stands for one of the values of the enumeration `T`.
+/// Reads a word that stands for one of the values of the enumeration `T`. Returns `None` after recording a fault.
 pub(crate) fn word<T: Words>(node: &Node) -> Option<T> {
     let text = node.string()?;
     T::from_word(text)

@@ -42,8 +42,8 @@ pub(crate) mod transmission;
 pub(crate) mod transmissions;
 pub(crate) mod write;
 
-/// The word for the base of an arm in files. Where the base is possible, the word means the base, even if an element has
-/// this name.
+/// The word for the base of an arm in files. Where a file may name the base, the word means the base, even if an
+/// element of the chain is called so.
 pub(crate) const BASE: &str = "base";
 
 pub use bearing::{Bearing, BearingSource};
@@ -165,7 +165,9 @@ impl JointModel {
 /// let body = LinkBody::Offset { mass_kg: 5.0 };
 /// let link = Link { name: "upper_arm".into(), vector_m: Vector3::new(0.8, 0.0, 0.0), body, bodies: Vec::new() };
 /// let chain = vec![Element::Joint(joint), Element::Link(link)];
-/// let arm = Arm { name: "two pieces".into(), gravity_m_s2: 9.81, down: -Vector3::z(), chain, effects: Vec::new(), springs: Vec::new() };
+/// let down = -Vector3::z();
+/// let (effects, springs) = (Vec::new(), Vec::new());
+/// let arm = Arm { name: "two pieces".into(), gravity_m_s2: 9.81, down, chain, effects, springs };
 /// assert_eq!(arm.mass_kg(), 17.2);
 /// assert_eq!(arm.reach_m(), 0.8);
 /// assert_eq!(arm.to_json()["chain"][0]["stiffness_nm_per_rad"], 607e3);
@@ -387,7 +389,8 @@ impl Arm {
         })
     }
 
-    /// A property of the arm that the model of absolute positions does not include, in words; `None` if there is none.
+    /// The first property of the arm that the model of absolute positions does not include, in words; `None` if the
+    /// model includes all of them.
     pub(crate) fn beyond_positions(&self) -> Option<&'static str> {
         if self.prismatics().next().is_some() {
             return Some("prismatic joints");

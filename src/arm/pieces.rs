@@ -1,8 +1,8 @@
 //! Links that consist of several pieces: stepped or tapered links, and factors for holes and inserts.
 //!
-//! A link with `pieces` becomes as many links, one after the other. A taper is divided into [`SLICES_OF_TAPER`] links of equal
-//! length, each with the section at its middle. For a taper whose height halves towards the end, the deflection under
-//! an end load is then 0.3 % too large. This error falls with the square of the number of slices.
+//! A link with `pieces` becomes as many links, one after the other. A taper is divided into [`SLICES_OF_TAPER`] links
+//! of equal length, each with the section at its middle. For a taper whose height halves towards the end, the
+//! deflection under an end load is then 0.3 % too large. This error falls with the square of the number of slices.
 
 use super::body::{RigidBody, read_link_bodies};
 use super::element_keys::read_name;
@@ -87,7 +87,7 @@ pub(crate) fn factors_sentence<'a>(tubes: impl Iterator<Item = (&'a str, &'a str
     })
 }
 
-/// Reads a link: a single one, or one for each slice of its pieces.
+/// Reads a link: a single one, or one for each slice of its pieces. Returns `None` after recording a fault.
 pub(crate) fn read_links(
     object: &Object,
     materials: &[NamedMaterial],

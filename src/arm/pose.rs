@@ -129,7 +129,8 @@ fn unknown_key(key: &str, driven: &[DrivenJoint], keys: &[String]) -> String {
     }
 }
 
-/// Reads the pose of a case, from `pose_deg` or `pose`. An arm without driven joints needs neither.
+/// Reads the pose of a case, from `pose_deg` or `pose`. An arm without driven joints needs neither. Returns `None`
+/// after recording a fault.
 pub(crate) fn read_pose(object: &Object, driven: &[DrivenJoint]) -> Option<Vec<f64>> {
     match (object.optional("pose_deg"), object.optional("pose")) {
         (Some(_), Some(pose)) => pose.fault("and \"pose_deg\" are both given", "keep the one that holds"),
@@ -142,7 +143,7 @@ pub(crate) fn read_pose(object: &Object, driven: &[DrivenJoint]) -> Option<Vec<f
     }
 }
 
-/// Reads a pose that is one angle \[deg\] for each driven joint.
+/// Reads a pose that is one angle \[deg\] for each driven joint. Returns `None` after recording a fault.
 fn read_angles(node: &Node, driven: &[DrivenJoint]) -> Option<Vec<f64>> {
     if any_slides(driven) {
         let slides = driven.iter().filter(|joint| joint.motion == Motion::Slides);
@@ -164,7 +165,7 @@ fn read_angles(node: &Node, driven: &[DrivenJoint]) -> Option<Vec<f64>> {
     angles.into_iter().collect()
 }
 
-/// Reads a pose given as an object, with a joint and a unit in each key.
+/// Reads a pose given as an object, with a joint and a unit in each key. Returns `None` after recording a fault.
 fn read_entries(node: &Node, driven: &[DrivenJoint]) -> Option<Vec<f64>> {
     let entries = node.entries()?;
     let read: Vec<_> = entries.iter().map(|(key, n)| n.number().map(|entry| (*key, entry))).collect();

@@ -54,7 +54,8 @@ pub struct NamedPart {
 }
 
 impl NamedPart {
-    /// Reads the name under `name_key` and the mass under `mass_key`. The inner `None` means that neither is stated.
+    /// Reads the name under `name_key` and the mass under `mass_key`. The inner `None` means that neither is stated,
+    /// the outer `None` that a fault was recorded.
     fn read(object: &Object, name_key: &str, mass_key: &str) -> Option<Option<Self>> {
         if !object.has(name_key) && !object.has(mass_key) {
             return Some(None);
@@ -105,8 +106,8 @@ pub struct Guide {
     pub limits: GuideLimits,
 }
 
-/// The largest loads that a guide holds, each acting alone: the ratings of the maker over the safety factor that it asks
-/// for. `None` means unknown.
+/// The largest loads that a guide holds, each acting alone: the ratings of the maker over the safety factor that it
+/// asks for. `None` means unknown.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GuideLimits {
     /// Force across the travel, along the y or the z axis of the guide \[N\].
@@ -118,9 +119,10 @@ pub struct GuideLimits {
 const LIMIT_KEYS: [&str; 4] = ["max_force_n", "max_roll_nm", "max_pitch_nm", "max_yaw_nm"];
 
 impl GuideLimits {
-    /// The part of what the guide holds that a load uses up; 1 is all of it. `force_n` and `moment_nm` are along and
-    /// about the axes of the guide, the travel first. The parts of all forces and moments add up (PBC Linear, Redi-Rail
-    /// catalog, "multiple-load force calculation"). Loads without a limit are left out; `None` if there is no limit.
+    /// The fraction of the guide's load capacity that a load uses; at 1 the guide is fully loaded. `force_n` and
+    /// `moment_nm` are along and about the axes of the guide, the travel first. The fractions of all forces and moments
+    /// add up (PBC Linear, Redi-Rail catalog, "multiple-load force calculation"). Loads without a limit are left out;
+    /// `None` if there is no limit.
     pub fn part_used(&self, force_n: &Vector3<f64>, moment_nm: &Vector3<f64>) -> Option<f64> {
         let forces = [force_n.y, force_n.z].map(|force_n| (force_n, self.force_n));
         let moments = moment_nm.iter().copied().zip(self.moment_nm);
@@ -128,7 +130,7 @@ impl GuideLimits {
         parts.reduce(|sum, part| sum + part)
     }
 
-    /// The words of the kinds of load for which no limit is known.
+    /// The keys of the kinds of load for which no limit is known.
     pub(crate) fn unknown(&self) -> Vec<&'static str> {
         let known = [self.force_n, self.moment_nm[0], self.moment_nm[1], self.moment_nm[2]];
         LIMIT_KEYS.into_iter().zip(known).filter(|(_, most)| most.is_none()).map(|(key, _)| key).collect()
@@ -140,7 +142,7 @@ impl GuideLimits {
         Some(Self { force_n: force_n?, moment_nm: [roll?, pitch?, yaw?] })
     }
 
-    /// The limits that are known, by their keys.
+    /// The limits that are known, each with its key.
     fn entries(&self) -> impl Iterator<Item = (String, Value)> + use<> {
         let [roll, pitch, yaw] = self.moment_nm;
         let all = LIMIT_KEYS.into_iter().zip([self.force_n, roll, pitch, yaw]);
@@ -183,7 +185,7 @@ impl Guide {
     }
 }
 
-/// Reads a stiffness; `null` means rigid.
+/// Reads a stiffness; `null` means rigid. Returns `None` after recording a fault.
 fn positive_or_rigid(node: &Node) -> Option<Option<f64>> {
     if node.is_null() { Some(None) } else { node.positive().map(Some) }
 }
@@ -194,13 +196,14 @@ impl Prismatic {
         self.mass_kg + self.fixed_mass_kg + self.bodies.mass_kg()
     }
 
-    /// Reads a prismatic joint; the caller has checked the keys.
+    /// Reads a prismatic joint with its drive; the caller has checked the keys. Returns `None` after recording a fault.
     pub(crate) fn read(object: &Object) -> Option<Self> {
         let springs = Self::read_springs(object);
         Self::read_with(object, springs)
     }
 
-    /// Reads a prismatic joint whose drive is not known yet; the caller has checked the keys.
+    /// Reads a prismatic joint whose drive is not known yet; the caller has checked the keys. Returns `None` after
+    /// recording a fault.
     pub(crate) fn read_undriven(object: &Object) -> Option<Self> {
         let (guide, moves) = (
             object.or("guide", Guide::default(), Guide::read),
@@ -242,7 +245,7 @@ impl Prismatic {
     }
 
     /// Reads the elastic properties of a prismatic joint: stiffness along the travel \[N/m\], guide, and whether
-    /// carriage or ram travels.
+    /// carriage or ram travels. Returns `None` after recording a fault.
     pub(crate) fn read_springs(object: &Object) -> Option<(Option<f64>, Guide, Moves)> {
         let stiffness = match object.optional("stiffness_n_per_m") {
             Some(node) => positive_or_rigid(&node),

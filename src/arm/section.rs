@@ -17,7 +17,7 @@ use super::torsion;
 use std::f64::consts::PI;
 
 /// A size of a section in millimetres, rounded to a nanometre: 48.3 for a tube of 48.3 mm, whose metres times 1000 are
-/// 48.300000000000004. Every text and table with such sizes takes it.
+/// 48.300000000000004. Every text and table that prints a size of a section uses this function.
 pub(crate) fn millimetres(size_m: f64) -> f64 {
     (size_m * 1e9).round() / 1e6
 }
@@ -107,23 +107,25 @@ pub struct StatedSection {
     pub ei_z_nm2: f64,
     /// Torsional stiffness G J \[N m²\].
     pub gj_nm2: f64,
-    /// Axial stiffness E A \[N\]; infinite if it is not stated. It is then that of a section whose mass is spread evenly
-    /// over the outline.
+    /// Axial stiffness E A \[N\]; infinite if it is not stated. The mechanics then uses the E A for which the mass is
+    /// spread evenly over the rectangle of width and height.
     pub ea_n: f64,
     /// Mass per length \[kg/m\].
     pub kg_per_m: f64,
 }
 
-/// Shear modulus of the fictitious material of a stated section \[Pa\], and its modulus if it has no mass. It is so
-/// large that shear deformation is negligible.
+/// Shear modulus of the fictitious material of a stated section \[Pa\]. It is so large that shear deformation is
+/// negligible. It is Young's modulus too if the section has no mass, because E A divided by the mass per length is then
+/// infinite.
 const STATED_PA: f64 = 1e15;
 
 impl StatedSection {
     /// The fictitious material with which the section has its stated stiffnesses and mass. Its density is 1 kg/m³.
     /// Shear stiffness is not among the stated ones, so it is taken as practically infinite.
     pub fn material(&self) -> LinkMaterial {
-        // Modulus and density also determine the rotary inertia about the axis, ρ (Iy + Iz) = kg/m (EIy + EIz) / EA. An
-        // even outline has kg/m (b² + h²) / 12, and EA follows.
+        // Modulus and density also determine the rotary inertia per length about the axis, ρ (Iy + Iz) = m' (EIy + EIz)
+        // / EA, where m' is the mass per length. For a mass that is spread evenly over the rectangle b h it is m' (b² +
+        // h²) / 12. If EA is not stated, it is chosen so that both are equal.
         let outline_m2 = (self.width_m * self.width_m + self.height_m * self.height_m) / 12.0;
         let even_ea_n = (self.ei_y_nm2 + self.ei_z_nm2) / outline_m2;
         let of_ea_pa = if self.ea_n.is_finite() { self.ea_n } else { even_ea_n } / self.kg_per_m;

@@ -4,7 +4,7 @@ use super::keys::{I_BEAM, STATED};
 use super::section::{Section, StatedSection};
 use crate::input::json::Node;
 
-/// Reads an I section.
+/// Reads an I section. Returns `None` after recording a fault.
 pub(super) fn read_i_beam(node: &Node) -> Option<Section> {
     let object = node.shaped(&I_BEAM)?;
     let [width_m, height_m, web_m, flange_m] =
@@ -19,7 +19,7 @@ pub(super) fn read_i_beam(node: &Node) -> Option<Section> {
     Some(Section::IBeam { width_m, height_m, web_m, flange_m })
 }
 
-/// Reads a section that states its stiffnesses and its mass.
+/// Reads a section that states its stiffnesses and its mass. Returns `None` after recording a fault.
 pub(super) fn read_stated_section(node: &Node) -> Option<StatedSection> {
     let keys = ["width_m", "height_m", "ei_y_nm2", "ei_z_nm2", "gj_nm2", "kg_per_m"];
     let object = node.shaped(&STATED)?;

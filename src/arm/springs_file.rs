@@ -21,7 +21,8 @@ pub(crate) enum Values {
 }
 
 impl Values {
-    /// Reads a number with `read`, or the first number of a list, all of whose numbers `read` must accept.
+    /// Reads a number with `read`, or the first number of a list, all of whose numbers `read` must accept. Returns
+    /// `None` after recording a fault.
     fn first<'a>(self, node: &Node<'a>, read: fn(&Node<'a>) -> Option<f64>) -> Option<f64> {
         if self == Self::One || !node.value().is_array() {
             return read(node);
@@ -35,6 +36,7 @@ impl Values {
 }
 
 /// Reads the key `springs`; an empty list without the key. `elements` are the elements of the chain, base to tip.
+/// Returns `None` after recording a fault.
 pub(crate) fn read_springs(object: &Object, elements: &[Named], values: Values) -> Option<Vec<Spring>> {
     object.or("springs", Vec::new(), |node| {
         let items = node.array()?;
@@ -104,7 +106,8 @@ fn read_line(object: &Object, elements: &[Named], values: Values) -> Option<Spri
     Some(SpringKind::Line { ends: [from, to], law: law? })
 }
 
-/// Reads the law of a spring between two points. Force or stiffness must be given, or both.
+/// Reads the law of a spring between two points. Force or stiffness must be given, or both. Returns `None` after
+/// recording a fault.
 fn read_law(object: &Object, values: Values) -> Option<SpringLaw> {
     let (has_force, has_stiffness) = (object.has("force_n"), object.has("stiffness_n_per_m"));
     if !has_force && !has_stiffness {
@@ -132,8 +135,8 @@ fn read_end(node: &Node, elements: &[Named]) -> Option<SpringEnd> {
     Some(SpringEnd { on: on?, point_m: point_m? })
 }
 
-/// Reads what an end of a spring is fixed to. `base` and `world` mean base and world, even if an element
-/// has this name.
+/// Reads what an end of a spring is fixed to. `base` and `world` mean base and world, even if an element has this name.
+/// Returns `None` after recording a fault.
 fn read_place(node: &Node, elements: &[Named]) -> Option<SpringPlace> {
     match (element(node, elements)?, node.string()?) {
         (_, BASE) => Some(SpringPlace::Base),
@@ -155,8 +158,8 @@ fn names(elements: &[Named]) -> String {
     elements.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
 }
 
-/// Reads the key `counterweights`; an empty list without the key. Each counterweight is a point mass, returned with
-/// the index of the element that carries it. Of a joint, it is the side that turns.
+/// Reads the key `counterweights`; an empty list without the key. Each counterweight is a point mass, returned with the
+/// index of the element that carries it. Of a joint, it is the side that turns. Returns `None` after recording a fault.
 pub(crate) fn read_counterweights(
     object: &Object,
     elements: &[Named],

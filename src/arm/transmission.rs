@@ -1,4 +1,5 @@
-//! Motors that do not sit at the joint they drive, and the belts, chains, shafts and gear stages between both.
+//! Motors that do not sit at the joint they drive, and the belts, chains, shafts and gear stages between motor and
+//! joint.
 //!
 //! *Torsion.* A torque passes through all stages one after the other, and the ratio of each multiplies it. At the joint
 //! the compliance of the stages is the sum of `1/(k R²)`, in series with the gear. Here k is the stiffness at the
@@ -9,7 +10,7 @@
 //! the link, the pulley turns back by the angle of the joint. The driven joint turns by this angle over the product R
 //! of the ratios from this pulley on: `q = e - Σ qᵢ / Rᵢ`, with the twist `e` of gear and stages. By virtual work the
 //! torque on the drive of joint i is then that of joint i and `-1/Rᵢ` times that of the driven joint. The part on which
-//! the motor sits takes the rest. Both, motion and torque, enter as a [`Linkage`](super::linkage::Linkage).
+//! the motor sits takes the rest. Motion and torque both enter the mechanics as a [`Linkage`](super::linkage::Linkage).
 //!
 //! *Masses.* The motor, with the gear if it sits at the motor, is a point mass on the part on which the motor sits. A
 //! stage between two axes has half of its mass on each. If several stages sit at the motor, the last of them has half
@@ -147,7 +148,7 @@ pub(crate) struct Transmission {
     motor_kg: f64,
     /// Whether the gear sits at the motor, before the stages.
     gear_at_motor: bool,
-    /// Ratio of a gear at the joint, after the stages; `None` if no gear is known.
+    /// Ratio of the gear at the joint, after the stages; `None` if there is no such gear or its ratio is not known yet.
     gear_ratio: Option<f64>,
     /// Whether the file states this ratio in numbers.
     is_ratio_stated: bool,
@@ -244,7 +245,7 @@ impl Transmission {
 }
 
 /// Checks that no key is given where it has no meaning. A passive joint has no motor. The keys for the point and the
-/// mass of the motor need `motor_at`, and `gear_ratio` needs `transmission`.
+/// mass of the motor need `motor_at`, and `gear_ratio` needs `transmission`. Returns `None` after recording a fault.
 fn fits_beside(object: &Object) -> Option<()> {
     let mut sound = Some(());
     let mut stray = |keys: &[&str], problem: &str, hint: &str| {
@@ -338,7 +339,7 @@ pub(crate) struct Placed {
 
 impl Transmission {
     /// Places the transmission of the joint that is element number `joint` in its chain. `node` is the joint in its
-    /// file.
+    /// file. Returns `None` after recording a fault.
     pub(crate) fn place(&self, node: &Node, joint: usize, chain: &[Seen]) -> Option<Placed> {
         let motor = self.motor_place(node, joint, chain)?;
         let first = match motor {
@@ -393,7 +394,7 @@ impl Transmission {
 
     /// The joints that the stages cross. Each has a factor: the turns of the driven joint per turn of that joint while
     /// the motor stands still. From the index `along` on, each stage runs along the link outboard of one of these
-    /// joints.
+    /// joints. Returns `None` after recording a fault.
     fn coupling(
         &self,
         node: &Node,
@@ -464,7 +465,7 @@ impl Transmission {
 const PARALLEL_COSINE: f64 = 0.999_999;
 
 /// The joints between a motor and the joint that it drives, each as the number of its element and its axis. `first` is
-/// the first element outboard of the motor.
+/// the first element outboard of the motor. Returns `None` after recording a fault.
 fn crossed(node: &Node, first: usize, joint: usize, chain: &[Seen]) -> Option<Vec<(usize, Vector3<f64>)>> {
     let mut out = Vec::new();
     for (element, seen) in chain.iter().enumerate().take(joint).skip(first) {
@@ -494,13 +495,13 @@ fn crossed(node: &Node, first: usize, joint: usize, chain: &[Seen]) -> Option<Ve
 }
 
 /// Reads the key `turns_with`: the joints inboard of a joint that turn it while its own motor stands still, each with
-/// its factor. The list is empty without the key.
+/// its factor. The list is empty without the key. Returns `None` after recording a fault.
 pub(crate) fn read_turns_with(object: &Object) -> Option<Vec<(String, f64)>> {
     object.or("turns_with", Vec::new(), read_coupling)
 }
 
 /// Checks that every joint in `terms` is a joint that turns and is inboard of the element number `joint`. `terms` is
-/// the value of `turns_with` of this element.
+/// the value of `turns_with` of this element. Returns `None` after recording a fault.
 pub(crate) fn turns_with_joints_inboard(
     node: &Node,
     terms: &[(String, f64)],

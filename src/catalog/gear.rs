@@ -78,9 +78,9 @@ impl GearKind {
         (self == GearKind::StrainWave).then_some(2_000.0)
     }
 
-    /// The exponent of torque in the life equation if the cell is blank. It is 3 for the ball bearing of a wave
-    /// generator (Harmonic Drive LLC, CSF/CSG catalog), and 10/3 for the roller bearings of other gears (ISO 281;
-    /// that makers of cycloidal gears use it is from memory).
+    /// The exponent of torque in the life equation of gears of this kind, for a row whose cell is blank. It is 3 for
+    /// the ball bearing of a wave generator (Harmonic Drive LLC, CSF/CSG catalog), and 10/3 for the roller bearings of
+    /// other gears (ISO 281; that makers of cycloidal gears use it is from memory).
     pub fn usual_life_exponent(self) -> f64 {
         if self == GearKind::StrainWave { 3.0 } else { 10.0 / 3.0 }
     }
@@ -208,7 +208,8 @@ pub struct Gear {
 }
 
 impl Gear {
-    /// A gear of which nothing but name, kind and ratio is known: it has the usual life of its kind, and no other number.
+    /// A gear of which nothing but name, kind and ratio is known: it has the usual life of its kind, and no other
+    /// number.
     pub(crate) fn unrated(id: &str, kind: GearKind, ratio: f64, provenance: Provenance) -> Self {
         Self {
             id: id.to_string(),

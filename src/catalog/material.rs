@@ -25,7 +25,7 @@ impl MaterialClass {
     pub const WORDS: [&'static str; 7] =
         ["metal", "composite", "metal-matrix", "polymer", "wood", "other", "MMC"];
 
-    /// The class that a word means. `MMC` and `metal-matrix` mean the same.
+    /// The class that a word means; `None` if it is not one of [`Self::WORDS`]. `MMC` and `metal-matrix` mean the same.
     pub fn from_word(word: &str) -> Option<Self> {
         use MaterialClass::{Composite, Metal, MetalMatrix, Other, Polymer, Wood};
         let classes = [Metal, Composite, MetalMatrix, Polymer, Wood, Other, MetalMatrix];

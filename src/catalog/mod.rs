@@ -59,7 +59,7 @@ impl Confidence {
     pub const ALL: [Confidence; 4] =
         [Confidence::Verified, Confidence::ThirdParty, Confidence::FromMemory, Confidence::Representative];
 
-    /// The confidence that a word of the column means.
+    /// The confidence that a word of the column means; `None` if it is not one of [`Self::WORDS`].
     pub fn from_word(word: &str) -> Option<Self> {
         let place = Self::WORDS.iter().position(|w| w.eq_ignore_ascii_case(word))?;
         Some(*Self::ALL.get(place).unwrap_or(&Confidence::FromMemory))
@@ -77,8 +77,8 @@ impl Provenance {
         self.unverified_fields.iter().any(|listed| listed == column)
     }
 
-    /// The caveat that is printed with a part whose main numbers were not read in a document of its vendor: `third party`,
-    /// `from memory` or `representative`; `None` for other parts.
+    /// The caveat that is printed with a part whose main numbers were not read in a document of its vendor:
+    /// `third party`, `from memory` or `representative`; `None` for other parts.
     ///
     /// ```
     /// use armwright::catalog::Catalogs;

@@ -35,7 +35,7 @@ enum Problem {
     Faulty(Faults),
     /// The files of a result differ from those that were written.
     Changed(String),
-    /// A result has no other files than those that were written before the user stopped, or one failed.
+    /// Files of a result are missing, because the user stopped the program or because a file could not be made.
     Incomplete(String),
     /// A file cannot be read.
     Unreadable(String),

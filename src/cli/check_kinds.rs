@@ -8,8 +8,8 @@ use crate::input::schema::FileKind;
 use serde_json::{Map, Value};
 
 /// The kind of file to which a document belongs: the one whose keys match most keys of the document, or "cases" for a
-/// list of cases. If several kinds match equally many keys, it is the one that comes first, files that users write
-/// before those that the program writes.
+/// list of cases. If several kinds match equally many keys, it is the first of them in the lists, where files that
+/// users write come before files that the program writes. `None` if no kind matches.
 pub(super) fn kind_of(value: &Value) -> Option<&'static str> {
     let Value::Object(map) = value else {
         let is_case = |item: &Value| item.as_object().is_some_and(|map| map.keys().any(|key| CASE.has(key)));
@@ -41,7 +41,8 @@ fn known(shape: &Shape, map: &Map<String, Value>) -> usize {
     shape.keys.iter().filter(|key| map.get(key.name).is_some_and(|value| may_be(&key.kind, value))).count()
 }
 
-/// Whether a value is a list or an object, if a kind of value is one.
+/// Whether `value` has the JSON type that `kind` needs: an object for a map, an array for a list. All other kinds are
+/// not checked, and the answer is true.
 fn may_be(kind: &Kind, value: &Value) -> bool {
     match kind {
         Kind::Map(_) => value.is_object(),

@@ -108,6 +108,7 @@ fn without_timing(bytes: Vec<u8>, folder: Option<&str>) -> Vec<u8> {
 }
 
 /// The folder of results as the user typed it when the results were written, taken from a command in the summary.
+/// `None` if the summary is missing or has no such command.
 fn typed_as(folder: &Path) -> Option<String> {
     let summary = std::fs::read_to_string(folder.join(SUMMARY)).ok()?;
     summary.lines().find_map(|line| line.strip_prefix(COMMANDS[2])).map(String::from)

@@ -116,7 +116,8 @@ fn fronts_of_all(
         .collect()
 }
 
-/// The time for the next search, of the time that is left until `deadline` for `searches` searches.
+/// The time limit of the next search: an equal share of the time until `deadline`, which is left for `searches`
+/// searches. `None` if there is no deadline.
 fn share_of_time(deadline: Option<Instant>, searches: usize) -> Option<Duration> {
     deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()) / searches as u32)
 }
@@ -241,7 +242,8 @@ fn pictures(comparison: &Comparison, contenders: &[Contender]) -> Vec<(String, V
         .collect()
 }
 
-/// Sentences on the picks of the joint front and on what is proved. `dir` is the folder of all choices as a user types it.
+/// Sentences on the picks of the joint front and on what is proved. `dir` is the folder of all choices as a user types
+/// it.
 fn words_of(dir: &Path, fronts: &[ChoiceFront], joint: &FrontTable) -> Vec<String> {
     let picks = picks_of_joint(fronts, joint).into_iter().map(|(pick, of)| {
         let [mass, tip, mode] =

@@ -43,8 +43,8 @@ pub(super) fn words_of(panic: &(dyn Any + Send)) -> String {
     format!("internal error: {}", text.unwrap_or("it has no message"))
 }
 
-/// The reason why the file `name` of the result was not written: a file of this name exists that is not part of a
-/// result, and it must not be overwritten.
+/// The reason, in words, why the file `name` of the result was not written: a file of this name exists that is not part
+/// of a result, and it must not be overwritten.
 pub(super) fn another_stands(name: &str) -> String {
     format!("{name}: a file that is no part of the result stands there")
 }

@@ -266,7 +266,8 @@ impl Finished<'_> {
         self.run_json(summary, supplements, &extra.missing)
     }
 
-    /// Mass up to which no design of the front is missing \[kg\]: the study's limit on mass, if the front is whole.
+    /// Mass up to which no design of the front is missing \[kg\]: the study's limit on mass. `None` if the study has
+    /// none, or if the front is not whole.
     fn proved_to_mass_kg(&self, facts: &SummaryFacts) -> Option<f64> {
         self.study.space.constraints.mass_max_kg.filter(|_| facts.is_whole())
     }

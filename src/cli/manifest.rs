@@ -1,6 +1,6 @@
 //! The manifest of a result: a list of its files with a hash of each. It is the key `files` of `run.json`,
-//! `verdict.json`, `shard.json` or `choices.json`. This file is written after all others, so that its presence shows that the result
-//! is complete.
+//! `verdict.json`, `shard.json` or `choices.json`. This file is written after all others, so that its presence shows
+//! that the result is complete.
 
 use super::failure::Failure;
 use serde_json::{Map, Value};

@@ -70,8 +70,8 @@ impl ResultFolder {
         }
     }
 
-    /// Replaces the result in the folder by these files, which include the manifest. Returns the names of the files that
-    /// were left out. A file is left out if its name is taken by something that is not part of the earlier result.
+    /// Replaces the result in the folder by these files, which include the manifest. Returns the names of the files
+    /// that were left out. A file is left out if its name is taken by something that is not part of the earlier result.
     ///
     /// # Errors
     /// The folder cannot be written. Either the earlier result stays, or the new result counts and the next reader

@@ -50,8 +50,8 @@ use std::time::Instant;
 pub(crate) struct RunArgs {
     /// A built-in study (see `armwright studies`) or a study file
     study: String,
-    /// Folder for the results; default results/<study>, or results/<study>-with-effects, and with -choices at the end if
-    /// the study leaves springs or counterweights open
+    /// Folder for the results; default results/<study>, or results/<study>-with-effects, and with -choices at the end
+    /// if the study leaves springs or counterweights open
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Arm file, such as the arm.corrected.json of `reconcile`: its effects are applied to the study's joints

@@ -277,7 +277,8 @@ fn visit_all(asked: &Asked, settings: &SearchSettings) -> Result<Written, Failur
 /// Search time from which the program says that the search is over and other work follows \[s\].
 const LONG_SEARCH_S: f64 = 10.0;
 
-/// Says, after a long search, that its result is being made: the last line of progress would else stand there for long.
+/// Prints, after a long search, that the files of the result are being made. Otherwise the last line of progress would
+/// stay on the terminal for long, as if the search still ran.
 fn say_search_is_over(log: Log, elapsed_s: f64) {
     if elapsed_s >= LONG_SEARCH_S {
         log.note(&format!(
@@ -287,8 +288,8 @@ fn say_search_is_over(log: Log, elapsed_s: f64) {
 }
 
 impl Written {
-    /// This result of a search that ended by itself. If the user stopped the program before the files in addition to the
-    /// front were made, a warning says so, and the exit status is that of a stopped program.
+    /// This result of a search that ended by itself. If the user stopped the program before the files in addition to
+    /// the front were made, a warning says so, and the exit status is that of a stopped program.
     pub(super) fn after_search(self, log: Log) -> Self {
         if !self.is_front_only {
             return self;

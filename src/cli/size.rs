@@ -90,8 +90,8 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs, log: Log) -> Result<Stri
     Ok(text)
 }
 
-/// The first lines of the table: the motion that is asked for, and the sections of the open links. If no design is named
-/// (`is_trial`), these are trials, which the lines say.
+/// The first lines of the table: the motion that is asked for, and the sections of the open links. If no design is
+/// named (`is_trial`), these are trials, which the lines say.
 fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32], is_trial: bool) -> String {
     let trial = if is_trial { " (trial: median mass of its options)" } else { "" };
     let motion = &study.space.motion;
@@ -160,7 +160,8 @@ fn explain(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<String, 
     Ok(out)
 }
 
-/// Heading of the masses of drives: they are what the joint weighs with the drive, so the extras count.
+/// Heading of the column with the mass of the joint with each drive. It includes the extras, because they depend on the
+/// drive.
 const MASS: &str = "mass kg (with extras)";
 
 fn all_fits(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<String, Failure> {

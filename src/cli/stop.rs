@@ -110,8 +110,8 @@ fn nothing_written() -> Failure {
     Failure::Interrupted("stopped; nothing was written, the same command begins anew".into())
 }
 
-/// Sets the flag if a test asks for it at this moment: if the environment variable `ARMWRIGHT_FAULT` is `stop:` followed
-/// by `moment`, such as `stop:begin`. Only builds with debug assertions do so.
+/// Sets the flag if a test asks for it at this moment: if the environment variable `ARMWRIGHT_FAULT` is `stop:`
+/// followed by `moment`, such as `stop:begin`. Only builds with debug assertions do so.
 #[cfg(debug_assertions)]
 pub(super) fn stop_if_wanted(moment: &str) {
     let wanted = std::env::var("ARMWRIGHT_FAULT").unwrap_or_default();

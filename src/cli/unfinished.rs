@@ -17,8 +17,8 @@ use std::time::{Duration, Instant};
 
 /// Shortest time between two saved states.
 const KEEP_EVERY: Duration = Duration::from_secs(2);
-/// Saving states may take at most the fraction 1/`SAVING_SHARE_OF_TIME` of the running time. Otherwise the time between two saves is
-/// made longer.
+/// Running time divided by the time that may be spent on saving states. If saving takes more than this share (1/200),
+/// the time between two saves is made longer.
 const SAVING_SHARE_OF_TIME: u32 = 200;
 /// Ending of the name of a file with a state.
 pub(super) const ENDING: &str = ".unfinished";

@@ -51,7 +51,7 @@ pub(super) fn begun_in(folder: &Path, depth: usize) -> Result<Vec<Begun>, Failur
     Ok(out)
 }
 
-/// The shard whose state a file has.
+/// The shard whose state is saved in the file `state`; `None` if the file cannot be read or belongs to no shard.
 fn shard_of_state(state: &Path) -> Option<Shard> {
     let mut line = String::new();
     BufReader::new(File::open(state).ok()?.take(LONGEST_LINE)).read_line(&mut line).ok()?;
@@ -60,7 +60,7 @@ fn shard_of_state(state: &Path) -> Option<Shard> {
     shard_of(&format!("{}/{}", number?, of?)).ok()
 }
 
-/// The shard after which a folder is named.
+/// The shard after which a folder is named, such as `2-of-16`; `None` if it has another name.
 fn shard_of_name(folder: &Path) -> Option<Shard> {
     shard_of(&folder.file_name()?.to_str()?.replace("-of-", "/")).ok()
 }

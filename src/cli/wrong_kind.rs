@@ -9,8 +9,8 @@ use crate::study::load::load_study;
 use serde_json::Value;
 use std::path::Path;
 
-/// Refuses a file that is more likely of another kind than `wanted` (`arm`, `study`, `cases`). A file that cannot be read,
-/// or is not JSON, is left to its reader, which says so.
+/// Refuses a file that is more likely of another kind than `wanted` (`arm`, `study`, `cases`). A file that cannot be
+/// read, or is not JSON, is left to its reader, which says so.
 ///
 /// # Errors
 /// One fault that says of which kind the file is and which verb takes it.

@@ -257,13 +257,15 @@ impl<'a> Node<'a> {
         None
     }
 
-    /// This node as an object of a given shape. Keys that the shape does not have are recorded as faults.
+    /// This node as an object of a given shape. Keys that the shape does not have are recorded as faults. Records a
+    /// fault and returns `None` for any other value.
     pub fn shaped(&self, shape: &Shape) -> Option<Object<'a>> {
         self.object(&shape.names())
     }
 
-    /// This node as an object. Keys that are not among `known` are recorded as faults. Objects of files should be
-    /// read by [`Node::shaped`], because then their keys are in the schema too.
+    /// This node as an object. Keys that are not among `known` are recorded as faults. Objects of files should be read
+    /// by [`Node::shaped`], because then their keys are in the schema too. Records a fault and returns `None` for any
+    /// other value.
     pub fn object(&self, known: &[&str]) -> Option<Object<'a>> {
         let Value::Object(map) = self.value else {
             return self.fault(format!("is {}, not an object", kind(self.value)), "write { ... }");
@@ -278,7 +280,8 @@ impl<'a> Node<'a> {
         Some(Object { node: self.clone(), map })
     }
 
-    /// This node as an object with any keys: pairs of key and node, in the order of the file.
+    /// This node as an object with any keys: pairs of key and node, in the order of the file. Records a fault and
+    /// returns `None` for any other value.
     pub fn entries(&self) -> Option<Vec<(&'a str, Node<'a>)>> {
         let Value::Object(map) = self.value else {
             return self.fault(format!("is {}, not an object", kind(self.value)), "write { ... }");
@@ -286,7 +289,7 @@ impl<'a> Node<'a> {
         Some(map.iter().map(|(k, v)| (k.as_str(), self.child(&join(&self.path, k), v))).collect())
     }
 
-    /// This node as an array of nodes.
+    /// This node as an array of nodes. Records a fault and returns `None` for any other value.
     pub fn array(&self) -> Option<Vec<Node<'a>>> {
         let Value::Array(items) = self.value else {
             return self.fault(format!("is {}, not an array", kind(self.value)), "write [ ... ]");
@@ -294,7 +297,7 @@ impl<'a> Node<'a> {
         Some(items.iter().enumerate().map(|(i, v)| self.child(&format!("{}[{i}]", self.path), v)).collect())
     }
 
-    /// This node as a string.
+    /// This node as a string. Records a fault and returns `None` for any other value.
     pub fn string(&self) -> Option<&'a str> {
         match self.value {
             Value::String(s) => Some(s),
@@ -302,7 +305,7 @@ impl<'a> Node<'a> {
         }
     }
 
-    /// This node as `true` or `false`.
+    /// This node as `true` or `false`. Records a fault and returns `None` for any other value.
     pub fn boolean(&self) -> Option<bool> {
         match self.value {
             Value::Bool(b) => Some(*b),
@@ -310,7 +313,8 @@ impl<'a> Node<'a> {
         }
     }
 
-    /// This node as a number that can be calculated with: finite, and of a magnitude up to 1e30.
+    /// This node as a number that can be calculated with: finite, and of a magnitude up to 1e30. Records a fault and
+    /// returns `None` for any other value.
     pub fn number(&self) -> Option<f64> {
         match self.value.as_f64() {
             Some(x) => match beyond_calculation(x) {
@@ -321,7 +325,7 @@ impl<'a> Node<'a> {
         }
     }
 
-    /// This node as a number greater than zero.
+    /// This node as a number greater than zero. Records a fault and returns `None` for any other value.
     pub fn positive(&self) -> Option<f64> {
         let x = self.number()?;
         match not_positive(x) {
@@ -330,7 +334,7 @@ impl<'a> Node<'a> {
         }
     }
 
-    /// This node as a number that is not negative.
+    /// This node as a number that is not negative. Records a fault and returns `None` for any other value.
     pub fn non_negative(&self) -> Option<f64> {
         match self.number()? {
             x if x >= 0.0 => Some(x),
@@ -338,7 +342,7 @@ impl<'a> Node<'a> {
         }
     }
 
-    /// This node as an array of `N` finite numbers.
+    /// This node as an array of `N` finite numbers. Records a fault and returns `None` for any other value.
     pub fn numbers<const N: usize>(&self) -> Option<[f64; N]> {
         let items = self.array()?;
         if items.len() != N {
@@ -382,7 +386,7 @@ impl<'a> Object<'a> {
         self.map.get(key).map(|v| self.node.child(&join(&self.node.path, key), v))
     }
 
-    /// The node under `key`. If the object does not have the key, this is recorded as a fault.
+    /// The node under `key`. If the object does not have the key, this is recorded as a fault and the result is `None`.
     pub fn required(&self, key: &str) -> Option<Node<'a>> {
         self.optional(key).or_else(|| {
             self.node.document.fault(

@@ -1,8 +1,8 @@
 //! A bill of materials: every part of an arm with its mass. The masses add up to the mass of the arm.
 //!
 //! An arm file states one mass for gear and motor together. If the catalogs know both parts and their masses add up to
-//! this mass, the bill has a row for each part. A motor that sits elsewhere than its joint is a body of another element,
-//! which is recognized by its mass (`bill_motors`).
+//! this mass, the bill has a row for each part. A motor that sits elsewhere than its joint is a body of another
+//! element, which is recognized by its mass (`bill_motors`).
 
 use super::bill_motors::{Elsewhere, motors_elsewhere};
 use super::bill_rows::{ROUNDING, Row, bodies_of, bought, stated, which_mass};
@@ -134,7 +134,7 @@ fn prismatic_parts(joint: &Prismatic, catalogs: &Catalogs) -> Vec<Row> {
         stays_kg -= gear_kg;
         out.push(stated(at, gear.name.clone(), "screw or rack", gear_kg));
     }
-    // with a motor apart from it, a rest may be the rounding of a difference
+    // if the mass of a motor was subtracted, a very small rest is the rounding error of the difference
     let least_kg = if joint.motor.is_some() { ROUNDED_KG } else { 0.0 };
     if stays_kg > least_kg {
         out.push(stated(at, format!("what stays of {at}"), "prismatic", stays_kg));

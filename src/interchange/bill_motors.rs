@@ -1,7 +1,7 @@
 //! Motors of a bill of materials that sit elsewhere than the joints they drive.
 //!
-//! In an arm such a motor is a body of the element that carries it, with the mass of the motor, or of motor and gear. It
-//! is recognized by this mass.
+//! In an arm such a motor is a body of the element that carries it, with the mass of the motor, or of motor and gear.
+//! It is recognized by this mass.
 
 use super::bill_rows::{ROUNDING, Row, bodies_of, bought, which_mass};
 use crate::arm::{Arm, Joint};
@@ -45,7 +45,9 @@ pub(super) fn motors_elsewhere(arm: &Arm, catalogs: &Catalogs) -> Vec<Elsewhere>
     out
 }
 
-/// Where the gear of a joint may be whose motor sits elsewhere: each with the kind of its mass and the mass \[kg\].
+/// One possible place of the gear of a joint whose motor sits elsewhere: at the joint or at the motor. It has the kind
+/// of mass (housed unit or component set) and the mass \[kg\]. Both fields are `None` if no gear of the catalogs is
+/// known.
 #[derive(Debug, Clone, Copy, Default)]
 struct Split {
     gear_at_joint: Option<(&'static str, f64)>,
@@ -71,7 +73,7 @@ fn splits(joint: &Joint, gear: Option<&Gear>, motor_kg: f64) -> Vec<Split> {
     known.map(|at_motor| Split { gear_at_motor: Some(at_motor), ..Split::default() }).collect()
 }
 
-/// The first body of this mass \[kg\] without inertia that is not yet `taken`.
+/// The first body of this mass \[kg\] without inertia that is not yet `taken`; `None` if there is none.
 fn body_of_mass(arm: &Arm, mass_kg: f64, taken: &[(usize, usize)]) -> Option<(usize, usize)> {
     let bodies = arm.chain.iter().enumerate().flat_map(|(element, item)| {
         bodies_of(item).into_iter().enumerate().map(move |(i, body)| ((element, i), body))
@@ -82,7 +84,7 @@ fn body_of_mass(arm: &Arm, mass_kg: f64, taken: &[(usize, usize)]) -> Option<(us
     same.find(|(place, _)| !taken.contains(place)).map(|(place, _)| place)
 }
 
-/// The rows of motor and gear. Joint and body are filled in by the caller.
+/// The rows of motor and gear. The caller fills in the fields `joint` and `body`.
 fn rows(joint: &Joint, gear: Option<&Gear>, (motor, motor_kg): (&Motor, f64), split: &Split) -> Elsewhere {
     let at = joint.name.as_str();
     let gear_row = |(which, kg): (&str, f64)| {

@@ -275,8 +275,8 @@ fn to_mjcf(asked: &Asked, catalogs: &Catalogs) -> Export {
     }
 }
 
-/// Remarks on what an MJCF file does otherwise than the arm. `pieces` is the number of parts of each link; 0 if links are
-/// rigid.
+/// Remarks on what an MJCF file does otherwise than the arm. `pieces` is the number of parts of each link; 0 if links
+/// are rigid.
 fn mjcf_notes(pieces: usize, file: &Mjcf) -> Vec<String> {
     let mut out = vec![match pieces {
         0 => "links are rigid".into(),
@@ -365,7 +365,8 @@ fn links_in_pieces(arm: &Arm) -> Vec<String> {
     .collect()
 }
 
-/// A note for files without loads that the arm has, on the torques at which their springs are tangents.
+/// A note for files that lack some loads of the arm: at which torques the tangents of their springs are taken. `None`
+/// if they lack none.
 fn working_points_note(left_out: &[LeftOut]) -> Option<String> {
     const LOADS: [&str; 5] = ["water", "balance_spring", "joint_torque", "turns_with", "tip_load"];
     let loads: Vec<&str> =
@@ -377,7 +378,7 @@ fn working_points_note(left_out: &[LeftOut]) -> Option<String> {
     })
 }
 
-/// A note on gravity, which a URDF cannot state, if it is another than the usual one.
+/// A note on the gravity of the arm, which a URDF cannot state. `None` if it is the usual gravity.
 fn gravity_note(structure: &Structure) -> Option<String> {
     let gravity = structure.down * structure.gravity_m_s2;
     let usual = Vector3::new(0.0, 0.0, -GRAVITY_M_S2);

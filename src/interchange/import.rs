@@ -144,7 +144,8 @@ impl<'a> Robot<'a> {
         Moves::Not(offset_rad)
     }
 
-    /// The joints of side branches that do not stand at zero, because they follow another joint with a constant, by name.
+    /// Where the joints that follow another joint are held if they are on side branches, by name. Other joints of side
+    /// branches are held at zero.
     fn held_beside_way(&self) -> BTreeMap<&str, Held> {
         let mimicking = self.tree.joints.iter().filter(|joint| moves(joint) && joint.mimic.is_some());
         let held = |joint: &'_ urdf_rs::Joint| match self.motion_of(&joint.name) {

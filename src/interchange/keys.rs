@@ -1,4 +1,5 @@
-//! The keys of the files of an import: the stiffness file, which users write, and `import.json`, which the program writes.
+//! The keys of the files of an import: the stiffness file, which users write, and `import.json`, which the program
+//! writes.
 
 use crate::arm::prismatic_keys::{DRIVE_STIFFNESS, GUIDE_STIFFNESSES, MOVES};
 use crate::arm::shared_keys::{GEAR, MOTOR, OUTPUT_BEARING, STIFFNESS, TORSION_CURVE, WHICH_GEAR_MASS};

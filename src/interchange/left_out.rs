@@ -153,7 +153,7 @@ impl Remainder {
     pub(crate) fn without_flexible_link(&mut self, name: &str, why: &str) {
         self.remove("link_compliance", name, why, |rest| {
             stiffen(&mut rest.structure, name);
-            // a compliance carries no load, so the springs of the arm as it stands work where they did
+            // no load depends on a compliance, so the springs of the whole arm keep their working points
             stiffen(&mut rest.whole, name);
         });
     }

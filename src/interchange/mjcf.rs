@@ -19,9 +19,9 @@ use std::collections::BTreeMap;
 
 /// Mass of a body that has none, relative to the mass of the arm. MuJoCo accepts no moving body without mass.
 const LEAST_MASS: f64 = 1e-10;
-/// Square of the least radius of gyration of every body \[m²\]: 0.3 mm. MuJoCo accepts no
-/// moving body without inertia, and a body with less would need a shorter time step. A body without mass has the
-/// moments of a tenth of the arm's mass.
+/// Square of the least radius of gyration of every body \[m²\]: 0.3 mm. MuJoCo accepts no moving body without inertia,
+/// and a body with less would need a shorter time step. A body without mass has the least moments of a body with a
+/// tenth of the arm's mass.
 const LEAST_RADIUS2_M2: f64 = 1e-7;
 /// Least armature of the hinge of a backlash, relative to the motor's.
 const PLAY_ARMATURE: f64 = 1e-3;
@@ -206,19 +206,20 @@ fn armature_kgm2(hinge: &Hinge, motors: &BTreeMap<String, Motor>) -> Option<f64>
 }
 
 /// Armature of the hinge of a backlash \[kg m²\]. Without one, this hinge and that of the gear would have one axis and
-/// nothing between them, and the mass matrix would be singular. With a very small one, it would vibrate on the spring of
-/// the gear so fast that it alone would shorten the time step: an explicit step of `h` is stable up to an angular
-/// frequency of `2/h`, and half of that is permitted. `motor_kgm2` is the armature of the motor, `gear` the spring of the gear.
+/// nothing between them, and the mass matrix would be singular. With a very small one, it would vibrate on the spring
+/// of the gear so fast that it alone would shorten the time step: an explicit step of `h` is stable up to an angular
+/// frequency of `2/h`, and half of that is permitted. `motor_kgm2` is the armature of the motor, `gear` the spring of
+/// the gear.
 fn play_armature_kgm2(motor_kgm2: f64, gear: &Working) -> f64 {
     let steady_kgm2 =
         if gear.is_rigid() { 0.0 } else { gear.tangent_nm_per_rad() * PLAY_STEP_S * PLAY_STEP_S };
     steady_kgm2.max(PLAY_ARMATURE * motor_kgm2)
 }
 
-/// Writes the couplings of passive joints as tendons. The length of such a tendon is the angle of the passive joint minus
-/// the one that its driving joints ask for (with motor, backlash and gear of each). A rigid coupling keeps the length at
-/// zero. A compliant one has the spring of the passive joint: a hinge of its own for this spring would have the axis of the
-/// joint and nothing between, and the mass matrix would be singular.
+/// Writes the couplings of passive joints as tendons. The length of such a tendon is the angle of the passive joint
+/// minus the one that its driving joints ask for (with motor, backlash and gear of each). A rigid coupling keeps the
+/// length at zero. A compliant one has the spring of the passive joint: a hinge of its own for this spring would have
+/// the axis of the joint and nothing between, and the mass matrix would be singular.
 fn couplings(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
     let hinges: Vec<&Hinge> = nodes.iter().flat_map(|node| &node.hinges).collect();
     let mut followers: Vec<(usize, &Hinge, Working)> = Vec::new();
@@ -346,7 +347,7 @@ struct Least {
 }
 
 impl Least {
-    /// Those of an arm with these bodies.
+    /// The least values for an arm with these bodies.
     fn of(nodes: &[Node]) -> Self {
         let arm_kg: f64 = nodes.iter().map(|node| node.inertia[(0, 0)]).sum();
         Self { mass_kg: LEAST_MASS * if arm_kg > 0.0 { arm_kg } else { 1.0 } }
@@ -362,7 +363,8 @@ impl Least {
         }
     }
 
-    /// The inertia of a body of this mass, raised equally about all axes until its smallest moment is the least \[kg m²\].
+    /// The inertia of a body of this mass, raised equally about all axes until its smallest moment is the least
+    /// \[kg m²\].
     fn raised(&self, mass_kg: f64, inertia_kgm2: Matrix3<f64>) -> Matrix3<f64> {
         let mass_kg = if mass_kg > 0.0 { mass_kg } else { 0.1 * self.mass_kg / LEAST_MASS };
         let lacks_kgm2 = LEAST_RADIUS2_M2 * mass_kg - inertia_kgm2.symmetric_eigenvalues().min();

@@ -6,9 +6,11 @@
 //!   to a tip. `given` reads the stiffness of the joints, which a URDF does not have; `keys` has the
 //!   keys of these files. `report` says what became of
 //!   every link and joint of the URDF.
-//! - Export: `request` is what is asked for, and `export` writes an arm in a load case. `snapshot` has its springs at their working points, and `tree`
-//!   converts it to a chain of rigid bodies for `mjcf` and `urdf_out`. `motors` has what catalogs know of its drives. `calculix` converts it to solids, `bill` and
-//!   `design_table` to tables; `table_notes` says what these do not have. `left_out` lists what a file cannot represent, each with its part of the tip deflection.
+//! - Export: `request` is what is asked for, and `export` writes an arm in a load case. `snapshot` has its springs at
+//!   their working points, and `tree` converts it to a chain of rigid bodies for `mjcf` and `urdf_out`. `motors` has
+//!   what catalogs know of its drives. `calculix` converts it to solids, `bill` and `design_table` to tables;
+//!   `table_notes` says what these do not have. `left_out` lists what a file cannot represent, each with its part of
+//!   the tip deflection.
 
 pub(crate) mod bill;
 mod bill_motors;

@@ -230,7 +230,7 @@ impl ImportReport {
     }
 }
 
-/// The number, unless it stands for one without a limit.
+/// The number; `None` if it is infinite, or so large that no file may state it.
 fn finite(x: f64) -> Option<f64> {
     Some(x).filter(|x| beyond_calculation(*x).is_none())
 }

@@ -79,7 +79,7 @@ impl Working {
                 deflection_rad: self.rest_rad() + load_nm * tangent_rad_per_nm,
                 tangent_rad_per_nm,
             },
-            // a deflection without load is no spring
+            // the tangent stiffness is zero, so no linear spring can replace this one
             false => Self { load_nm, ..*self },
         }
     }
@@ -152,7 +152,7 @@ impl Snapshot {
         let mut statics = posed.statics();
         let Some(points) = &self.in_file else { return statics };
         for (i, element) in posed.elements().enumerate() {
-            // a link is linear, and its working points do not count the weight along it
+            // a link is linear, so it keeps its own deformations; its working points leave out the weight along it
             if element.own.is_none() {
                 statics.deformations[i] = points[i].iter().map(|point| point.deflection_rad).collect();
                 statics.tangent_compliances[i] =
@@ -178,7 +178,7 @@ impl Snapshot {
         }
     }
 
-    /// The prismatic joint whose guide has this name, if the guide travels with a carriage.
+    /// The prismatic joint whose guide has this name, if the guide travels with a carriage; `None` for any other name.
     pub(crate) fn carriage(&self, guide: &str) -> Option<&PrismaticPiece> {
         let prismatics = self.structure.pieces.iter().filter_map(|piece| match piece {
             Piece::Prismatic(joint) => Some(joint),

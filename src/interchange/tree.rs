@@ -33,7 +33,8 @@ const MOST_HINGES: usize = 6;
 pub(crate) enum Role {
     /// A motor turns the hinge.
     Motor,
-    /// The hinge of a passive joint follows its driving joints, and has the spring of the joint between them and itself.
+    /// The hinge of a passive joint follows its driving joints, and has the spring of the joint between them and
+    /// itself.
     Follower(Working),
     /// A spring acts on the hinge.
     Spring(Working),
@@ -132,7 +133,7 @@ pub(crate) fn tree(snapshot: &Snapshot, options: &TreeOptions) -> Vec<Node> {
     for item in &posed.items {
         match item {
             Item::Body(body) => builder.last().inertia += body.inertia(),
-            // a tree has no forces
+            // a tree has bodies and hinges only, no loads
             Item::Load(_) => {}
             Item::Elastic(element) => {
                 let workings = workings.next().unwrap_or_default();
@@ -186,7 +187,7 @@ impl Builder<'_> {
         let is_first = self.nodes.len() == 1;
         let last = self.last();
         let shares = !is_first && last.name == node && last.inertia == Matrix6::zeros();
-        // a joint that turns may bring its motor and its backlash too
+        // room for the further hinges of the same joint: the motor's, and the backlash's if the joint turns
         let more = if slides { 1 } else { 2 };
         if !shares || last.hinges.len() + element.twists.len() > MOST_HINGES - more {
             self.open(&node, element.at_m);

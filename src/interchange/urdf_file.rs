@@ -103,7 +103,7 @@ impl UrdfTree {
         if faults.is_empty() { Ok(tree) } else { Err(Faults(faults)) }
     }
 
-    /// The link with this name.
+    /// The link with this name; `None` if there is none.
     pub(crate) fn link(&self, name: &str) -> Option<&Link> {
         self.links.iter().find(|link| link.name == name)
     }

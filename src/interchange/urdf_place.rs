@@ -1,4 +1,4 @@
-//! Where in a URDF file something is that the parser of the file refuses without a place.
+//! Finds the line of a fault in a URDF file. The parser of such files reports a fault without a line number.
 
 /// Attributes of a URDF whose values are numbers, separated by spaces.
 const NUMBERS: [&str; 17] = [
@@ -21,7 +21,8 @@ const NUMBERS: [&str; 17] = [
     "damping",
 ];
 
-/// The first attribute of numbers that holds something else, with its line: `xyz="0,5 0 0"`.
+/// The first attribute of numbers that holds something else, with its line: `xyz="0,5 0 0"`. `None` if all hold
+/// numbers.
 pub(super) fn no_numbers(text: &str) -> Option<(usize, String)> {
     text.lines().enumerate().find_map(|(at, line)| {
         let wrong = NUMBERS.iter().find_map(|key| {
@@ -51,7 +52,7 @@ pub(super) fn cut_off_at(text: &str) -> Option<usize> {
     (!is_whole).then(|| text.lines().count().max(1))
 }
 
-/// The line in which the robot begins.
+/// The line in which the robot begins; `None` if there is none.
 pub(super) fn line_of_robot(text: &str) -> Option<usize> {
     text.lines().position(|line| line.contains("<robot")).map(|at| at + 1)
 }

@@ -360,13 +360,14 @@ impl Analysis {
     }
 }
 
-/// Whether a joint does not turn under its torque, and no linkage turns it either.
+/// Whether a joint is driven and has no torsion under its torque. A passive joint is left out, because its linkage
+/// turns it.
 fn is_rigid(joint: &JointPiece) -> bool {
     joint.law.is_rigid() && matches!(joint.angle, JointAngle::Driven(_))
 }
 
-/// Adds remarks on the joints: those without torsion, bodies with an inertia that no solid can have, bearings that count
-/// as rigid, and joints for which the file states no masses in addition to gear, motor and bearing.
+/// Adds remarks on the joints: those without torsion, bodies with an inertia that no solid can have, bearings that
+/// count as rigid, and joints for which the file states no masses in addition to gear, motor and bearing.
 fn joints_remarks_text(arm: &Arm, out: &mut String) {
     let structure = arm.structure(JointModel::ThreeSegment);
     let stiff: Vec<&str> = structure.joints().filter(|j| is_rigid(j)).map(|j| j.name.as_str()).collect();
@@ -417,7 +418,8 @@ fn not_in_the_part(arm: &Arm) -> String {
     lines.collect()
 }
 
-/// The part of what a guide holds that a load uses up; `None` if the arm does not state what it holds.
+/// The fraction of a guide's load capacity that a load uses, 1 if it is fully used; `None` if the arm states no limit
+/// of this guide.
 fn part_used(arm: &Arm, load: &GuideLoad) -> Option<f64> {
     let joint = arm.prismatics().find(|joint| joint.name == load.name)?;
     joint.guide.limits.part_used(&load.force_n, &load.moment_nm)

@@ -120,7 +120,7 @@ impl PickBudget {
     }
 
     /// Among the pieces of this kind (joints, or links), the one at which one more kilogram reduces the tip deflection
-    /// most, with the changes per kilogram.
+    /// most, with the changes per kilogram; `None` if the arm has no such piece.
     fn best(&self, kind: PieceKind) -> Option<(&BudgetRow, Gain)> {
         let of_kind = self.rows.iter().filter(|r| r.kind == kind).filter_map(|r| Some((r, r.in_place?)));
         of_kind.min_by(|a, b| a.1.mm_per_kg.total_cmp(&b.1.mm_per_kg))
@@ -158,8 +158,8 @@ impl PickBudget {
         }
     }
 
-    /// Words that say what one more kilogram changes at the best piece `row` of the other kind. If it lowers the deflection
-    /// at no piece of this kind, they name the next part that does.
+    /// Words that say what one more kilogram changes at the best piece `row` of the other kind. If it lowers the
+    /// deflection at no piece of this kind, they name the next part that does.
     fn elsewhere(&self, row: &BudgetRow, gain: &Gain) -> String {
         let kind = row.kind.word();
         if gain.mm_per_kg <= 0.0 {
@@ -219,7 +219,7 @@ fn effect(gain: &Gain) -> String {
     format!("{} and {}", part(gain.mm_per_kg, "deflection", "mm/kg"), part(gain.hz_per_kg, "mode", "Hz/kg"))
 }
 
-/// The pick whose budget the terminal shows: the knee, or the last pick if there is no knee.
+/// The pick whose budget the terminal shows: the knee, or the last pick if there is no knee; `None` without budgets.
 fn shown(budgets: &[PickBudget]) -> Option<&PickBudget> {
     budgets.iter().find(|b| b.names.contains(&KNEE)).or(budgets.last())
 }

@@ -34,8 +34,8 @@ impl Caveats {
         Self { given, ..self }
     }
 
-    /// Caveat of a part: `third party`, `from memory` or `representative`; `None` if its ratings were read in a document of
-    /// the vendor.
+    /// Caveat of a part: `third party`, `from memory` or `representative`; `None` if its ratings were read in a
+    /// document of the vendor.
     pub fn of_part(&self, name: &str) -> Option<&'static str> {
         self.of_parts.get(without_factors(name)).copied()
     }

@@ -1,15 +1,16 @@
-//! The remark that a body beside a link makes the lowest mode lower than the model with undivided links says.
+//! The remark that a body with its centre of gravity beside the axis of a link makes the true lowest mode lower than
+//! the printed one, which is computed with undivided links (see `src/arm/divided.rs`).
 
 use super::number::{percent, significant};
 use crate::arm::Arm;
 use crate::arm::load::LoadCase;
 use crate::mechanics::chain::Chain;
 
-/// Smallest part of the lowest mode that is remarked.
+/// Smallest difference between the two lowest modes that is reported, as a fraction of the printed one.
 const REMARKED_SHARE: f64 = 0.005;
 
-/// The lowest mode \[Hz\] of an arm in a case, with every tube divided at the bodies on it. `None` if no tube has a body
-/// between its ends.
+/// The lowest mode \[Hz\] of an arm in a case, with every tube divided at the bodies on it. `None` if no tube has a
+/// body between its ends.
 pub(crate) fn divided_lowest_hz(arm: &Arm, case: &LoadCase) -> Option<f64> {
     let structure = arm.structure_in(case).divided_at_bodies()?;
     let chain = Chain::new(&structure, case.links);

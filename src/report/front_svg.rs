@@ -23,7 +23,7 @@ const DRAWN_DISTANCE: f64 = 1.0 / 200.0;
 /// Least distance between two markers on the line of best designs of a front, in units of [`DRAWN_DISTANCE`].
 const MARKER_STEPS: f64 = 3.0;
 
-/// Entry of the legend for what has no marker there.
+/// Entry of the legend that explains what is drawn without a marker of its own in the legend.
 const SMALL_DOTS: &str = "small dots: all designs; lines: the best at each mass; rings: picks";
 
 /// A front in the picture.

@@ -35,8 +35,9 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     if is_negative_zero { text[1..].to_string() } else { text }
 }
 
-/// A value and the two ends of its interval as text. All have as many decimals as give the shorter side of the interval
-/// two digits. An end that is not known is `open`; without any end the value has four digits.
+/// A value and the two ends of its interval as text, all with the same number of decimals. With this number, the
+/// distance from the value to the nearer end has two significant digits. An end that is not known is `open`; without
+/// any end the value has four digits.
 pub(crate) fn with_ends(value: f64, ends: [Option<f64>; 2]) -> [String; 3] {
     let known = || ends.into_iter().flatten();
     let power = |x: f64| libm::log10(x.abs()).floor() as i32;

@@ -90,7 +90,7 @@ pub fn designs(front: &FrontTable) -> Vec<Design> {
 }
 
 /// The best design in one objective. Designs with equal values are ranked by the other objectives, then by cost
-/// (unknown last), then by name. So the result does not depend on the order of the rows.
+/// (unknown last), then by name. So the result does not depend on the order of the rows. `None` if there is no design.
 pub fn best<'a>(objective: Objective, among: impl IntoIterator<Item = &'a Design>) -> Option<&'a Design> {
     among.into_iter().min_by(|a, b| better(objective, a, b))
 }
@@ -104,7 +104,7 @@ fn better(objective: Objective, a: &Design, b: &Design) -> Ordering {
 }
 
 /// The knee: the design nearest to the ideal point, which has the best value of every objective on the front. Distances
-/// are measured in logarithms, and each objective is scaled by its range over the front.
+/// are measured in logarithms, and each objective is scaled by its range over the front. `None` if there is no design.
 pub fn knee(designs: &[Design]) -> Option<&Design> {
     let scales = Objective::ALL.map(|o| Scale::of(o, designs));
     let distance = |d: &Design| scales.iter().map(|s| s.regret(d).powi(2)).sum::<f64>();

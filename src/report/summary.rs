@@ -193,7 +193,7 @@ impl Found {
         Self { picks: picks(&designs), designs }
     }
 
-    /// The pick that examples of commands use: the knee.
+    /// The pick that examples of commands use: the knee; `None` if the front is empty.
     fn default_pick(&self) -> Option<&Pick> {
         self.picks.iter().find(|p| p.names.contains(&KNEE))
     }

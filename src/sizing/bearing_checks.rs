@@ -78,7 +78,7 @@ impl BlankRatings {
     }
 
     /// The blank ratings of a bearing. `names` are the names under which its four ratings are reported, in the order of
-    /// [`RATINGS`].
+    /// [`RATINGS`]. `None` if all four are known.
     fn under(names: &[&'static str; 4], bearing: Bearing) -> Option<Self> {
         let ratings = bearing.ratings;
         let loads_n = [ratings.static_load_rating_n, ratings.dynamic_load_rating_n];

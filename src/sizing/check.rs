@@ -6,29 +6,29 @@ use std::fmt;
 /// The limits of a drive that are checked: of its gear, output bearing and motor, and of their sizes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum CheckKind {
-    /// Static plus linear torque is below the gear's limit for repeated peaks.
+    /// Static plus linear torque is at most the gear's limit for repeated peaks.
     GearPeak,
-    /// Cubic mean torque is below the gear's limit for average torque.
+    /// Cubic mean torque is at most the gear's limit for average torque.
     GearMean,
-    /// Torque in an emergency stop is below the gear's limit for momentary peaks.
+    /// Torque in an emergency stop is at most the gear's limit for momentary peaks.
     GearStop,
-    /// Torque in an emergency stop is below the torque at which the flexspline buckles.
+    /// Torque in an emergency stop is at most the torque at which the flexspline buckles.
     GearBuckling,
-    /// Torque in an emergency stop is below the torque at which the teeth jump.
+    /// Torque in an emergency stop is at most the torque at which the teeth jump (ratcheting).
     GearRatcheting,
-    /// The largest moment across the axis while the joint turns is below what the output bearing permits.
+    /// The largest moment across the axis while the joint turns is at most the one that the output bearing permits.
     BearingMoment,
     /// Static safety of the output bearing at rest is at least the required one.
     BearingRest,
     /// Static safety of the output bearing in an emergency stop is at least the required one.
     BearingStop,
-    /// L10 life of the output bearing is above the required life.
+    /// L10 life of the output bearing is at least the required life.
     BearingLife,
-    /// Ratio N times the largest speed of the joint is below the gear's largest input speed.
+    /// Ratio N times the largest speed of the joint is at most the gear's largest input speed.
     GearSpeed,
-    /// Ratio N times the mean speed of the joint is below the gear's limit for average input speed.
+    /// Ratio N times the mean speed of the joint is at most the gear's limit for average input speed.
     GearMeanSpeed,
-    /// L10 life of the wave-generator bearing is above the required life.
+    /// L10 life of the gear (of a strain-wave gear: of its wave-generator bearing) is at least the required life.
     GearLife,
     /// The gear withstands the number of emergency stops that the study asks for. This check is listed only if the
     /// study states a number.
@@ -37,9 +37,9 @@ pub enum CheckKind {
     MotorHold,
     /// The motor can give static, linear and rotary torque for the duration of the ramp.
     MotorPeak,
-    /// Root mean square of the motor's torque over the cycle is below its continuous torque.
+    /// Root mean square of the motor's torque over the cycle is at most its continuous torque.
     MotorRms,
-    /// Ratio N times the largest speed of the joint is below the motor's largest speed.
+    /// Ratio N times the largest speed of the joint is at most the motor's largest speed.
     MotorSpeed,
     /// The outer diameter of the gear is at most a stated multiple of the width of the link that the joint carries.
     /// Checks of size are listed only if the study asks for them.
@@ -237,7 +237,7 @@ impl Check {
     /// Margin of the check as a factor on the torque, which makes different checks comparable. A life is proportional
     /// to a power of the torque (cube for a strain-wave gear, 10/3 for a bearing), so the root of its margin is taken.
     /// The number of stops does not depend on the torque; its margin is returned as it is. A size that fits does so at
-    /// any torque, so its margin is infinite.
+    /// any torque, so its margin is infinite. `None` if the check could not be made.
     pub fn torque_margin(&self) -> Option<f64> {
         let margin = self.margin()?;
         Some(match self.kind {
@@ -300,8 +300,8 @@ pub(super) fn digits_of(x: f64) -> usize {
     }
 }
 
-/// Number of decimals that print the larger of `a` and `b` with about three significant digits. It is larger if both
-/// numbers would look the same.
+/// Number of decimals that print the larger of `a` and `b` with about three significant digits. If the two numbers
+/// would then look the same, it is the smallest number of decimals with which they differ.
 fn digits_that_differ(a: f64, b: f64) -> usize {
     let least = digits_of(a.abs().max(b.abs()));
     (least..12).find(|&n| format!("{a:.n$}") != format!("{b:.n$}")).unwrap_or(least)

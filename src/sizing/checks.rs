@@ -178,7 +178,7 @@ pub fn all_hold(checks: &[Check]) -> bool {
 }
 
 /// The binding check: of those among `checks` that could be made, the one with the smallest torque margin (allowed over
-/// needed torque).
+/// needed torque). `None` if no check could be made.
 pub fn binding(checks: &[Check]) -> Option<&Check> {
     let made = checks.iter().filter_map(|c| Some((c.torque_margin()?, c)));
     made.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, check)| check)

@@ -1,5 +1,5 @@
-//! The demand on one joint: its motion, which the study fixes, and its torques, which follow from the masses outboard (Eqs
-//! 8 and 12, cubic mean over the duty cycle).
+//! The demand on one joint: its motion, which the study fixes, and its torques, which follow from the masses outboard
+//! (Eqs 8 and 12, cubic mean over the duty cycle).
 
 use super::bearing::BearingDemand;
 use super::duty::{HeatWeights, MeanTorqueWeights};
@@ -126,8 +126,8 @@ impl JointMotion {
 
     /// The demand on a joint with this motion (Eq 8).
     ///
-    /// `static_torque_nm` is the static torque of Eq 7 \[N m\]; its sign does not matter. `outboard_inertia_kgm2` is the
-    /// inertia of everything outboard about the axis \[kg m²\].
+    /// `static_torque_nm` is the static torque of Eq 7 \[N m\]; its sign does not matter. `outboard_inertia_kgm2` is
+    /// the inertia of everything outboard about the axis \[kg m²\].
     ///
     /// ```
     /// use armwright::sizing::MotionRequirement;
@@ -257,7 +257,8 @@ impl JointDemand {
 /// Torque of linear acceleration at the joint \[N m\] (Eq 8).
 ///
 /// - Exact reading: T_lin = Σ m a ρ² / r = I α, where I is the inertia of everything outboard about the axis.
-/// - The paper's reading: T_lin = (a / g) T, as if every mass accelerated like the tip. It is 0.5097 T, printed as T / 2.
+/// - The paper's reading: T_lin = (a / g) T, as if every mass accelerated like the tip. It is 0.5097 T, printed as
+///   T / 2.
 #[inline]
 pub fn linear_torque_nm(motion: &JointMotion, static_torque_nm: f64, outboard_inertia_kgm2: f64) -> f64 {
     match motion.linear_reading {

@@ -55,7 +55,14 @@ pub(crate) fn to_the_microgram(mass_kg: f64) -> f64 {
 ///
 /// let catalogs = Catalogs::builtin();
 /// let (gear, motor) = (catalogs.gear("HFUC-58-100").unwrap(), catalogs.motor("F11-10").unwrap());
-/// let drive = Drive { gear, motor, gear_mass: GearMass::ComponentSet, bearing: BearingSource::OfGear, extras: ExtrasSource::NONE, stage: Stage::NONE };
+/// let drive = Drive {
+///     gear,
+///     motor,
+///     gear_mass: GearMass::ComponentSet,
+///     bearing: BearingSource::OfGear,
+///     extras: ExtrasSource::NONE,
+///     stage: Stage::NONE,
+/// };
 /// assert_eq!(drive.name(), "HFUC-58-100 + F11-10");
 /// assert_eq!(drive.mass_kg().unwrap(), 12.2);
 /// // Eq 11: the torque that accelerates rotor and wave generator, on the motor's side [N m]

@@ -127,8 +127,8 @@ impl DutyCycle {
         ((up_s - down_s).abs() > SAME_TIME * (up_s + down_s)).then_some([up_s, down_s])
     }
 
-    /// The duration \[s\] of the first ramp that does not take `ramp_time_s` \[s\], the time in which the joint reaches its
-    /// speed; `None` if all ramps do. Phases of one kind that follow one another are one ramp.
+    /// The duration \[s\] of the first ramp that does not take `ramp_time_s` \[s\], the time in which the joint reaches
+    /// its speed; `None` if all ramps do. Phases of one kind that follow one another are one ramp.
     pub(crate) fn other_ramp_s(&self, ramp_time_s: f64) -> Option<f64> {
         let is_ramp = |kind| matches!(kind, PhaseKind::Accelerate | PhaseKind::Decelerate);
         let runs = self.phases.chunk_by(|a, b| a.kind == b.kind).filter(|run| is_ramp(run[0].kind));

@@ -98,8 +98,8 @@ impl<V: Lanes> EightBearing<V> {
     pub(crate) fn rest(&mut self, [u, v, along, about_u, about_v]: &[V; 5]) {
         let (radial, moment) = (*u * *u + *v * *v, *about_u * *about_u + *about_v * *about_v);
         self.at_rest.max_of_squares(radial, along.abs(), moment);
-        // `running` and `in_stop` stay: a ramp is taken with either sign, so one of the two signs loads the bearing
-        // no less than rest does
+        // `running` and `in_stop` need not be updated: `moving` takes each ramp with both signs, and one of the two
+        // loads the bearing at least as much as the load at rest does
     }
 
     /// Takes into account the load s at rest together with the load d that a ramp adds: s ± d in the ramp, and s ±

@@ -194,7 +194,8 @@ impl fmt::Display for Shortfall {
     }
 }
 
-/// A gear that passes its own checks, combined with a motor, and the checks that this motor fails.
+/// A gear that passes its own checks, combined with a motor, and the checks that this motor fails. `worst_margin` is
+/// the smallest torque margin of the motor's checks.
 struct Trial<'c> {
     drive: Drive<'c>,
     worst_margin: f64,
@@ -347,7 +348,7 @@ impl<'c> DriveTable<'c> {
     }
 
     /// The nearest drive and its check with the smallest margin. It is the drive whose smallest margin is the largest,
-    /// among the drives for which every check could be made.
+    /// among the drives for which every check could be made. `None` if there is no such drive.
     fn nearest(&self, demand: &JointDemand) -> Option<(Drive<'c>, Check)> {
         let mut best: Option<(f64, Drive<'c>, Check)> = None;
         for drive in self.all_drives().filter(|drive| self.knows_torsion(drive.gear)) {
@@ -379,7 +380,7 @@ impl<'c> DriveTable<'c> {
 
     /// The lightest drive that meets `demand` if speed and acceleration are multiplied by `factor`. All pairs of gear
     /// and motor are tried, not only those of the table: a pair that was excluded as too fast may pass at the lower
-    /// speed.
+    /// speed. `None` if no pair passes.
     fn lightest_when_slowed(&self, factor: f64, demand: &JointDemand) -> Option<Drive<'c>> {
         let motion = self.motion().slowed(factor);
         let slower = motion
@@ -397,7 +398,7 @@ impl<'c> DriveTable<'c> {
 }
 
 /// The pair of gear and motor whose smallest margin is the largest. Of pairs with equal margins, it is the one with the
-/// fewest failed checks, then the first one.
+/// fewest failed checks, then the first one. `None` if there are no trials.
 fn nearest_trial<'t, 'c: 't>(trials: impl Iterator<Item = &'t Trial<'c>>) -> Option<&'t Trial<'c>> {
     let nearness = |t: &Trial| (t.worst_margin, std::cmp::Reverse(t.failed.len()));
     trials.reduce(|best, t| if nearness(t) > nearness(best) { t } else { best })

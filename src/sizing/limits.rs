@@ -26,7 +26,14 @@ use crate::catalog::motor::Motor;
 ///
 /// let catalogs = Catalogs::builtin();
 /// let (gear, motor) = (catalogs.gear("HFUC-58-100").unwrap(), catalogs.motor("F11-10").unwrap());
-/// let drive = Drive { gear, motor, gear_mass: GearMass::ComponentSet, bearing: BearingSource::OfGear, extras: ExtrasSource::NONE, stage: Stage::NONE };
+/// let drive = Drive {
+///     gear,
+///     motor,
+///     gear_mass: GearMass::ComponentSet,
+///     bearing: BearingSource::OfGear,
+///     extras: ExtrasSource::NONE,
+///     stage: Stage::NONE,
+/// };
 /// let motion = MotionRequirement::default().joint_motion(1.35, None);
 /// let limits = DriveLimits::of(&drive, &motion).expect("nothing excludes this drive");
 /// assert!(limits.hold(&motion.demand_of_torques(500.0, 250.0)));
@@ -248,9 +255,9 @@ fn gear_stop_nm(gear: &Gear) -> Rating {
     Ok(gear_momentary_nm(gear)?.min(gear_buckling_nm(gear).unwrap_or(unknown)).min(jumps_nm))
 }
 
-/// Torque at the joint in an emergency stop at which an actuator brakes with its peak torque \[N m\]: T_peak - s J_out α. Its
-/// motor brakes its own rotor too, s times as hard as it is accelerated in a ramp. Infinite for other drives, whose rotor
-/// does not load the gear.
+/// Torque at the joint in an emergency stop at which an actuator brakes with its peak torque \[N m\]: T_peak - s J_out
+/// α. Its motor brakes its own rotor too, s times as hard as it is accelerated in a ramp. Infinite for other drives,
+/// whose rotor does not load the gear.
 pub(super) fn actuator_stop_nm(drive: &Drive, motion: &JointMotion) -> Rating {
     if drive.gear.kind != GearKind::Actuator {
         return Ok(f64::INFINITY);
@@ -268,8 +275,8 @@ pub(super) fn actuator_stop_of_rotor_nm(drive: &Drive, motion: &JointMotion) -> 
 /// generator deforms the flexspline twice in each turn. `None` if the gear is no strain-wave gear, for which alone
 /// the rule is made.
 ///
-/// Source: Harmonic Drive AG, manual 1019658, glossary (momentary peaks only in an emergency, their number by the selection
-/// procedure); the formula as in the public program AimanHaidar/harmonic-drive-selector.
+/// Source: Harmonic Drive AG, manual 1019658, glossary (momentary peaks only in an emergency, their number by the
+/// selection procedure); the formula as in the public program AimanHaidar/harmonic-drive-selector.
 pub(super) fn stops_allowed(gear: &Gear, motion: &JointMotion) -> Option<f64> {
     const LIFE_WAVES: f64 = 1e4;
     // a study states whole numbers of stops, and speeds are converted to rad/s

@@ -3,7 +3,8 @@
 //! This module knows nothing of arms. For the demand on a joint it finds the pairs of gear and motor that pass every
 //! check. The walk over an arm from tip to base is in [`space`](crate::space), which uses this module.
 //!
-//! - [`MotionRequirement`] is the motion that a study asks of the tip, [`JointMotion`] the motion that follows for a joint.
+//! - [`MotionRequirement`] is the motion that a study asks of the tip, [`JointMotion`] the motion that follows for a
+//!   joint.
 //! - [`JointDemand`] has the torques on the joint, which follow from static torque and outboard inertia.
 //! - [`Drive`] is a gear and a motor, [`Check`] compares one limit of one part with one demand.
 //! - [`MotorHeat`] compares the motor's torque over the cycle with its continuous torque; [`StatedDuty`] is a duty
@@ -21,9 +22,9 @@
 //! | N, η | reduction ratio; efficiency of the gear | - |
 //! | J_in | rotor and wave generator, motor side (9) | kg m² |
 //!
-//! *Sides.* The paper's n_j is the speed of the motor, so its J θ̈ is a torque on the motor's side. Referred to the joint it
-//! is N times as large. Every name states its side: `input` and `motor` for the fast side, `output` or nothing for the
-//! joint.
+//! *Sides.* The paper's n_j is the speed of the motor, so its J θ̈ is a torque on the motor's side. Referred to the
+//! joint it is N times as large. Every name states its side: `input` and `motor` for the fast side, `output` or nothing
+//! for the joint.
 //!
 //! *Validity.* The efficiency is a single number of the catalog, for rated torque and 2000 rpm at the input. It is
 //! also used for holding at rest, where friction in reality helps the motor. Where the catalog has no torque-speed

@@ -286,7 +286,8 @@ mod tests {
         assert!((life_h / 20_000.0 - 1.0).abs() < 1e-4, "{life_h}");
     }
 
-    /// A belt of 1 : 2 before the screw: the motor turns twice as fast with half the torque, and the screw lives as long.
+    /// A belt of 1 : 2 before the screw: the motor turns twice as fast with half the torque, and the screw lives as
+    /// long.
     #[test]
     fn a_belt_before_the_screw_changes_what_the_motor_sees_and_not_the_life() {
         let alone = Screw { dynamic_load_rating_n: Some(9000.0), further_inertia_kgm2: 1e-4, ..screw(0.8) };

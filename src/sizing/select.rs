@@ -148,8 +148,8 @@ pub(super) struct Ladder<'t> {
 }
 
 impl<'t> Ladder<'t> {
-    /// The steps of the ladder from `start` on, in flights of [`STEPS_OF_FLIGHT`] steps: the weakest limits of each flight, and
-    /// the range of its steps.
+    /// The steps of the ladder from `start` on, in flights of [`STEPS_OF_FLIGHT`] steps: the weakest limits of each
+    /// flight, and the range of its steps.
     #[inline(always)]
     pub(super) fn flights_from(self, start: usize) -> impl Iterator<Item = (&'t DriveLimits, Range<usize>)> {
         let flights = self.flights.iter().enumerate().skip(start / STEPS_OF_FLIGHT);
@@ -296,7 +296,8 @@ impl<'c> DriveTable<'c> {
         self.bearing.with_gear(gear, self.gear_mass)
     }
 
-    /// Whether the joint does not need the torsion curve of a gear, or the curve of `gear` is known.
+    /// Whether `gear` may be used as far as its torsion curve is concerned: the curve is known, or the joint does not
+    /// need it because no deflection is computed.
     pub(super) fn knows_torsion(&self, gear: &Gear) -> bool {
         !self.needs_torsion || gear.missing_of_torsion().is_empty()
     }
@@ -341,8 +342,8 @@ impl<'c> DriveTable<'c> {
         self.drive_of(self.pairs[index])
     }
 
-    /// The drive with the index `index`. If the table has none, it is the first pair that the filter allows, which turns too
-    /// fast or lacks a rating; `None` if the filter allows no pair.
+    /// The drive with the index `index`. If the table has none, it is the first pair that the filter allows, which
+    /// turns too fast or lacks a rating; `None` if the filter allows no pair.
     pub(crate) fn drive_or_illegal(&self, index: usize) -> Option<Drive<'c>> {
         self.pairs.get(index).map(|pair| self.drive_of(*pair)).or_else(|| self.all_drives().next())
     }

@@ -85,8 +85,8 @@ pub struct JointSizingRow {
     pub slides: bool,
     /// Mass of the drive \[kg\].
     pub mass_kg: Option<f64>,
-    /// Mass that the next joint inward carries from this joint outward: everything outboard of this joint, this drive as
-    /// far as it sits here, and what else is fixed to the joint, such as a half of a belt \[kg\].
+    /// Mass that the next joint inward carries from this joint outward: everything outboard of this joint, this drive
+    /// as far as it sits here, and what else is fixed to the joint, such as a half of a belt \[kg\].
     pub mass_passed_inward_kg: f64,
     /// Every check, including those that could not be made.
     #[serde(skip)]

@@ -19,8 +19,8 @@ pub struct StatedPhase {
 /// takes the place of the study's cycle. The static torque, peak and emergency stop that follow from poses and masses
 /// are still checked.
 ///
-/// A phase at half the speed of the next one (within 5 %) is a ramp up to it; a phase at half the speed of the one before
-/// is a ramp down from it. In ramps rotor and wave generator are accelerated too.
+/// A phase at half the speed of the next one (within 5 %) is a ramp up to it; a phase at half the speed of the one
+/// before is a ramp down from it. In ramps rotor and wave generator are accelerated too.
 ///
 /// ```
 /// use armwright::sizing::{StatedDuty, StatedPhase};
@@ -51,8 +51,8 @@ pub struct StatedDemand {
     pub heat: StatedHeat,
 }
 
-/// Relative tolerance within which the speed of a phase counts as half the speed of a neighbouring phase. Data sheets and
-/// worked examples print speeds with two or three digits.
+/// Relative tolerance within which the speed of a phase counts as half the speed of a neighbouring phase. Data sheets
+/// and worked examples print speeds with two or three digits.
 const SPEED_TOLERANCE: f64 = 0.05;
 
 impl StatedDuty {
@@ -167,11 +167,11 @@ impl StatedDemand {
 /// torque to continuous torque for each newton metre at the joint, and c is this ratio for each rad/s² of the joint.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct StatedHeat {
-    /// Sum of w T² (w: fraction of the time, T: torque) \[(N m)²\]: first over the phases in which the motor drives, then over those in which the load
-    /// drives it.
+    /// Sum of w T² (w: fraction of the time; T: torque) \[(N m)²\]: first over the phases in which the motor drives,
+    /// then over those in which the load drives it.
     torque_nm2: [f64; 2],
-    /// Sum of w T α (α: acceleration) over the phases in which the motor drives, then over those in which the load drives it \[N m
-    /// rad/s²\].
+    /// Sum of w T α (α: acceleration of the joint) over the phases in which the motor drives, then over those in which
+    /// the load drives it \[N m rad/s²\].
     mixed_nm_rad_s2: [f64; 2],
     /// Sum of w α² over all phases \[rad²/s⁴\].
     acceleration_rad2_s4: f64,

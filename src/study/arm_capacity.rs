@@ -34,12 +34,12 @@ pub fn is_arm_file(document: &Document) -> bool {
     file["chain"].is_array() && file["poses"].is_null()
 }
 
-/// The payloads that an arm holds at rest, as `armwright capacity` finds them for an arm file. Without `cases`, every joint
-/// stands at zero. `limits` states the largest torques and forces of the joints; without it they are those of the gears
-/// and motors that the arm names.
+/// The payloads that an arm holds at rest, as `armwright capacity` finds them for an arm file. Without `cases`, every
+/// joint stands at zero. `limits` states the largest torques and forces of the joints; without it they are those of the
+/// gears and motors that the arm names.
 ///
 /// # Errors
-/// All faults of the cases or of the limits, or [`Refusal::Unknown`] if nothing is known of what the joints may bear.
+/// All faults of the cases or of the limits, or [`Refusal::Unknown`] if no limit of any joint or bearing is known.
 pub fn capacity_of_arm(
     arm: &Arm,
     cases: Option<Document>,
@@ -98,7 +98,7 @@ fn arm_capacity(arm: &Arm, cases: &[LoadCase], limits: &[LoadLimit]) -> Capacity
     Capacity::new(all, table, remark.into_iter().collect())
 }
 
-/// The payloads that hold in one case.
+/// The payloads that an arm holds at rest in one case, limited by its joints and by its output bearings.
 fn held_payloads(arm: &Arm, case: &LoadCase, limits: &[LoadLimit]) -> Window {
     let chain = Chain::new(&arm.structure_in(case), case.links);
     let loads = |payload_kg: f64| {
@@ -119,7 +119,9 @@ fn held_payloads(arm: &Arm, case: &LoadCase, limits: &[LoadLimit]) -> Window {
     of_joints.and(of_bearings)
 }
 
-/// The payloads m with |`empty` + `per_kg` m| <= the limit. An end beyond [`MOST_KG`] counts as none.
+/// The payloads m \[kg\] with |`empty` + `per_kg` m| <= the limit of a joint. `empty` is the load on the joint without
+/// a payload \[N m, or N of a prismatic joint\], `per_kg` its change per kilogram. An end of the interval beyond
+/// [`MOST_KG`] is stated as no limit.
 fn affine_window(empty: f64, per_kg: f64, limit: &LoadLimit) -> Window {
     let fails = Overload { piece: limit.joint.clone(), check: limit.check.into() };
     let within = empty.abs() <= limit.most;
@@ -193,8 +195,8 @@ fn held_by_bearings(arm: &Arm, case: &LoadCase, least_kg: f64, most_kg: f64) -> 
     }
 }
 
-/// A payload from `least_kg` to `most_kg` at which the convex function `use_of` is at most 1, or its smallest value if
-/// it is nowhere so small.
+/// A payload \[kg\] from `least_kg` to `most_kg` at which the convex function `use_of` is at most 1. If there is no
+/// such payload, the one at which the function is smallest.
 fn least_loading(least_kg: f64, most_kg: f64, use_of: &dyn Fn(f64) -> f64) -> f64 {
     let most_kg = most_kg.min(MOST_KG);
     let (mut low_kg, mut high_kg) = (least_kg, (2.0 * least_kg).max(1.0).min(most_kg));

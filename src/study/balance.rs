@@ -7,6 +7,7 @@ use crate::input::json::Object;
 use crate::space::design_space::{DesignSpace, SpacePiece};
 
 /// Reads the springs of a study from `root`, and adds its counterweights as bodies to the pieces on which they sit.
+/// Returns `None` after recording a fault.
 pub(super) fn read_balance(root: &Object, pieces: &mut [SpacePiece]) -> Option<Vec<Spring>> {
     let named: Vec<Named> = pieces.iter().map(|p| (p.name(), matches!(p, SpacePiece::Joint(_)))).collect();
     let springs = read_springs(root, &named, Values::Choices);
@@ -27,6 +28,7 @@ pub(super) fn read_balance(root: &Object, pieces: &mut [SpacePiece]) -> Option<V
 }
 
 /// Reads the number of choices of springs and counterweights that a study leaves open; 1 if it leaves none open.
+/// Returns `None` after recording a fault.
 pub(super) fn read_number_of_choices(root: &Object) -> Option<usize> {
     match root.node().value().as_object().map_or(1, number_of_choices) {
         many if many > MOST_CHOICES => root.node().fault(

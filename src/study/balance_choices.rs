@@ -1,19 +1,20 @@
 //! Choices of springs and counterweights: a study may list several values for a number of a spring or a counterweight.
 //!
-//! Each combination of these values is a study of its own, with one value each. A design of the study is a design of
-//! one of these studies, so the front of the study is that part of their fronts that no design of another one
-//! dominates.
+//! Each combination of these values is a study of its own, with one value each. Every design belongs to one of these
+//! studies. The front of the whole study therefore consists of the designs on their fronts that no design on the front
+//! of another one dominates.
 
 use serde_json::{Map, Value};
 
-/// The largest number of choices of a study, because each is searched by itself.
+/// Largest number of choices of a study (combinations of the listed values). It is limited because each choice needs a
+/// search of its own.
 pub(super) const MOST_CHOICES: usize = 200;
 
 /// The springs or the counterweights of a study, with those of their numbers that may be lists of values.
 struct Balanced {
     /// Key of the list in the study.
     list: &'static str,
-    /// What an item without a name of its own is called, with its number.
+    /// Word that names an item without a name of its own; its number in the list, from 1, follows the word.
     unnamed: &'static str,
     /// Key, name and unit of each number.
     numbers: &'static [[&'static str; 3]],
@@ -62,8 +63,8 @@ pub struct BalanceChoice {
     pub text: String,
 }
 
-/// The choices of springs and counterweights in the text of a study that was read without faults, in the order of their
-/// values; the last number changes first. A study that leaves nothing open has none.
+/// The choices of springs and counterweights in the text of a study that was read without faults. They are in the order
+/// of the values in the file, and the last number changes first. The list is empty if the study leaves nothing open.
 ///
 /// ```
 /// use armwright::study::balance_choices;

@@ -1,5 +1,5 @@
-//! Capacity: the payloads that an arm holds with its drives unchanged, in each pose of a study and in all of them, and the
-//! largest speed at which it holds the payloads of the study.
+//! Capacity: the payloads that an arm holds with its drives unchanged, in each pose of a study and in all of them, and
+//! the largest speed at which it holds the payloads of the study.
 //!
 //! The mass of the payload grows, and shrinks, from the one that the study states until a drive, an output bearing or
 //! the stress of a link exceeds its limit. The payload keeps its centre of gravity and its moments of inertia. The
@@ -164,8 +164,8 @@ fn unjudged_remark(problem: &ArmProblem, catalogs: &Catalogs) -> Option<String> 
     })
 }
 
-/// The sentence that duties which joints state in numbers are the same for every payload and speed; `None` if no joint
-/// states one.
+/// A sentence that names the joints whose duty the study states in numbers, and says that this duty is taken for every
+/// payload and speed; `None` if there are none.
 fn duty_remark(space: &DesignSpace) -> Option<String> {
     let stated: Vec<&str> =
         space.joints().filter(|(_, j)| j.duty.is_some()).map(|(_, joint)| joint.name.as_str()).collect();
@@ -178,9 +178,10 @@ fn duty_remark(space: &DesignSpace) -> Option<String> {
     })
 }
 
-/// Up to which payload the design `built` meets the study's limits on deflection and lowest mode in the judged cases, as a
-/// sentence; `None` if the study has no such limits. Drives that hold a payload do not care for them. The cases with the
-/// indices `own` keep their payload, unless all cases have one.
+/// A sentence that states up to which payload the design `built` meets the study's limits on deflection and lowest mode
+/// in the judged cases; `None` if the study has no such limits. They are judged separately, because the drives may hold
+/// a payload with which the arm exceeds these limits. The cases with the indices `own` keep their payload, unless all
+/// cases have one.
 fn limits_remark(space: &DesignSpace, built: &Arm, own: &[usize]) -> Option<String> {
     let limits = &space.constraints;
     if limits.tip_deflection_max_m.is_none() && limits.required_mode_hz() <= 0.0 {
@@ -229,7 +230,7 @@ fn limits_remark(space: &DesignSpace, built: &Arm, own: &[usize]) -> Option<Stri
 const SMALLER_PAYLOADS: u32 = 16;
 
 /// The payloads that hold in the cases with the indices `cases`, by bisection from the payload that the study states.
-/// The payload changes in the cases `vary`. All other cases keep theirs, with which the arm holds.
+/// Only the payload of the cases `vary` changes. The other cases keep their payload, which the arm is known to hold.
 fn held_payloads(
     space: &DesignSpace,
     catalogs: &Catalogs,

@@ -30,6 +30,7 @@ struct ReadCase {
 }
 
 /// Reads the poses of a study and repeats them for every environment. `joints` are the driven joints of the study.
+/// Returns `None` after recording a fault.
 pub(super) fn read_cases(root: &Object, joints: &[DrivenJoint]) -> Option<Cases> {
     let payload = root.or("payload", Payload::default(), Payload::read);
     let force = root.or("tip_force_n", Vector3::zeros(), vector);

@@ -13,7 +13,7 @@ use crate::space::prismatic::SpacePrismatic;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-/// Longest time for the search for changes of the limits.
+/// Longest time that is spent on the search for changes of the limits.
 const LONGEST: Duration = Duration::from_secs(60);
 
 /// The reason why no design meets the study, in words. If at some joint no drive meets the demand, it names every such
@@ -46,9 +46,9 @@ pub fn why_infeasible(
     format!("{head}\n  {}", reasons.join("\n  "))
 }
 
-/// The reasons why no design is feasible, in words, for a space that the exact search does not cover because of
-/// `unknown`. They are the joints at which no drive meets the demand. The limits that exclude all designs are not
-/// searched for.
+/// The reasons why no design is feasible, in words, for a space that the exact search does not cover. `unknown` names
+/// the property of the study that it does not cover. They are the joints at which no drive meets the demand. The limits
+/// that exclude all designs are not searched for.
 fn obstacles_alone(without_limits: &DesignSpace, catalogs: &Catalogs, unknown: &str) -> Vec<String> {
     let mut reasons = joint_obstacles(without_limits, catalogs);
     reasons.push(format!(
@@ -120,7 +120,8 @@ pub fn empty_pieces(space: &DesignSpace, catalogs: &Catalogs) -> Vec<String> {
     space.pieces.iter().filter_map(words).collect()
 }
 
-/// Largest number of pairs of gear and motor of all joints together. This many take about a gigabyte.
+/// Largest number of pairs of gear and motor of all joints together. The tables of so many pairs take about a gigabyte
+/// of memory.
 const MOST_PAIRS: usize = 3_000_000;
 
 /// The reason why a space is too large to compute, in words; `None` if it is not.

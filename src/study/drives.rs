@@ -77,7 +77,8 @@ pub(super) fn read_drives(node: &Node, catalogs: &Catalogs) -> Option<Drives> {
     })
 }
 
-/// Reads `"all"`, which means no restriction, or a list of models of actuators.
+/// Reads `"all"`, which means no restriction, or a list of models of actuators. The inner `None` means no restriction,
+/// the outer `None` that a fault was recorded.
 fn read_actuators(node: &Node, catalogs: &Catalogs) -> Option<Option<Vec<String>>> {
     if node.value().as_str() == Some("all") {
         return Some(None);
@@ -86,7 +87,8 @@ fn read_actuators(node: &Node, catalogs: &Catalogs) -> Option<Option<Vec<String>
     list(node, &actuators.map(|g| g.id.as_str()).collect::<Vec<_>>()).map(Some)
 }
 
-/// Reads a list of names, all of which must be known. `None` (no restriction) without the key.
+/// Reads a list of names, all of which must be among `known`. The inner `None` means that the object has no such key,
+/// which is no restriction; the outer `None` means that a fault was recorded.
 fn names(object: &Object, key: &str, known: &[&str]) -> Option<Option<Vec<String>>> {
     object.or(key, None, |node| list(node, known).map(Some))
 }
@@ -108,7 +110,8 @@ fn list(node: &Node, known: &[&str]) -> Option<Vec<String>> {
     read.into_iter().collect()
 }
 
-/// Reads the kinds of gears that may be chosen. The catalogs must have a gear of one of them.
+/// Reads the kinds of gears that may be chosen. The catalogs must have a gear of one of them. Returns `None` after
+/// recording a fault.
 fn read_gear_kinds(node: &Node, catalogs: &Catalogs) -> Option<Vec<GearKind>> {
     let kind = |n: &Node| {
         let word = n.string()?;

@@ -52,7 +52,7 @@ fn in_words(effect: &Effect) -> String {
     format!("{} ({})", effect.label(), parameters.collect::<Vec<_>>().join("; "))
 }
 
-/// Records a fault for each effect that is not possible in the study.
+/// Records a fault for each effect that is not possible in the study. Returns `None` after recording a fault.
 pub(super) fn check_effects(space: &DesignSpace, root: &Object) -> Option<()> {
     let Some(node) = root.optional("effects") else { return Some(()) };
     let mut sound = true;
@@ -119,7 +119,7 @@ pub fn left_out(study: &Study) -> Vec<Correction> {
     of_test.map(|effect| Correction { what: effect.label(), applied: false, words: OF_TEST.into() }).collect()
 }
 
-/// The corrections as JSON: what each one is, whether it was applied, and why. The key of this in files is
+/// The corrections as JSON: what each one is, whether it was applied, and why. Files have this list under the key
 /// `carried_over`.
 pub fn corrections_json(corrections: &[Correction]) -> Value {
     corrections.iter().map(|c| json!({"what": c.what, "carried": c.applied, "words": c.words})).collect()

@@ -11,8 +11,8 @@ use crate::sizing::select::DriveFilter;
 use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiece};
 use crate::space::fit::joints_without_link;
 
-/// Reads the key `fit` of a study or of a joint. Keys that are missing are taken from `usual`; `null` means no
-/// limits.
+/// Reads the key `fit` of a study or of a joint. Keys that are missing are taken from `usual`; `null` means no limits.
+/// Returns `None` after recording a fault.
 pub(super) fn read_fit(object: &Object, usual: FitRequirement) -> Option<FitRequirement> {
     object.or("fit", usual, |node| match node.is_null() {
         true => Some(FitRequirement::default()),
@@ -128,13 +128,13 @@ fn phrases(asking: &[&SpaceJoint]) -> Vec<String> {
     phrases.into_iter().map(|(phrase, names)| format!("{phrase} ({})", names.join(", "))).collect()
 }
 
-/// Whether something holds for the sizes and the drives that some of the joints ask.
+/// Whether `holds` is true for at least one of the joints, given its limits on sizes and its filter of parts.
 fn by_any(asking: &[&SpaceJoint], holds: &dyn Fn(&FitRequirement, &DriveFilter) -> bool) -> bool {
     asking.iter().any(|joint| joint.drive.filter().is_some_and(|filter| holds(&joint.fit, filter)))
 }
 
-/// Number of allowed gears whose limited sizes are in the catalogs, but were not seen in a document, in words; `None` if
-/// there are none.
+/// Number of allowed gears whose limited sizes are in the catalogs, but were not seen in a document, in words; `None`
+/// if there are none.
 fn recalled_sizes(asking: &[&SpaceJoint], catalogs: &Catalogs) -> Option<String> {
     let gears = catalogs.gears.iter().filter(|gear| {
         by_any(asking, &|fit, filter| {

@@ -45,8 +45,8 @@ pub(crate) fn caveats_of(study: &Study, catalogs: &Catalogs) -> Caveats {
     Caveats::of(catalogs).with_given(given_parts(&study.space))
 }
 
-/// A sentence on parts whose ratings were not read in a document of their vendor. It names the picks of the front that use
-/// them. It is the one that `run.json` has under `caveats`. `None` if there is no such part.
+/// A sentence on parts whose ratings were not read in a document of their vendor. It names the picks of the front that
+/// use them. It is the one that `run.json` has under `caveats`. `None` if there is no such part.
 pub fn caveats_on(study: &Study, catalogs: &Catalogs, front: &FrontTable) -> Option<String> {
     let picked = picks::rows_and_names(&picks::picks(&picks::designs(front)));
     let sentence = caveats_of(study, catalogs).sentence(front, &picked);

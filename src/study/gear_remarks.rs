@@ -1,5 +1,5 @@
-//! Remarks on the gears of a result: on lives that rest on a figure which the catalog's row does not have or that are not
-//! checked, and on the play that the deflection leaves out.
+//! Remarks on the gears of a result: on lives that rest on a figure which the catalog's row does not have or that are
+//! not checked, and on the play that the deflection leaves out.
 //!
 //! A gear with a play of β (the whole angle between its two stops) leaves the tip loose by β ρ, where ρ is the largest
 //! displacement of the tip per radian of the joint in the judged cases: the distance of the tip from the axis, unless
@@ -18,7 +18,7 @@ use crate::space::station::reaches_m;
 
 /// Largest number of gears that one sentence names.
 const MOST_NAMES: usize = 4;
-/// Play that moves the tip by less than this fraction of the deflection of every pick is not said.
+/// Play is not reported if it moves the tip by less than this fraction of the deflection of every pick.
 const LEAST_SHARE: f64 = 0.02;
 
 /// Names of gears, grouped by what is to be said of them, in the order of the first name.
@@ -38,16 +38,17 @@ impl<W: PartialEq> ByWords<W> {
     }
 }
 
-/// Remarks on the lives of the gears in a front: those of [`life_remarks`] on every gear that some design has at a joint
-/// whose drive is checked.
+/// Remarks on the lives of the gears in a front: those of [`life_remarks`] on every gear that some design has at a
+/// joint whose drive is checked.
 pub(crate) fn life_remarks_on(space: &DesignSpace, catalogs: &Catalogs, front: &FrontTable) -> Vec<String> {
     let is_checked = |joint: &SpaceJoint| !matches!(joint.drive, DriveChoice::Given { motor: None, .. });
     let joints = space.joints().map(|(_, joint)| joint).filter(|joint| is_checked(joint));
     life_remarks(joints.flat_map(|joint| gears_of(front, joint)), catalogs)
 }
 
-/// Remarks, in sentences, on the gears with these names: a kind or a life that their rows do not state, so that the usual
-/// one stands for it, and a life that is not checked because no row states it.
+/// Remarks, in sentences, on those of the gears with these names whose kind or life is uncertain. The rows of these
+/// gears leave the kind or the life blank. A remark says which usual value is taken for a blank cell, or that the life
+/// is not checked because no usual value exists.
 pub(crate) fn life_remarks<'n>(names: impl Iterator<Item = &'n str>, catalogs: &Catalogs) -> Vec<String> {
     let mut said = ByWords(Vec::new());
     for gear in names.filter_map(|name| catalogs.gear(name).ok()) {
@@ -58,12 +59,14 @@ pub(crate) fn life_remarks<'n>(names: impl Iterator<Item = &'n str>, catalogs: &
     said.sentences(|words, names| format!("{names}: {words}."))
 }
 
-/// What is to be said of the kind and the life of a gear, by the cells of its row that are blank.
+/// The remarks on the kind and the life of one gear, which follow from the blank cells of its row; empty if no needed
+/// cell is blank.
 fn of_row(gear: &Gear, catalogs: &Catalogs) -> Vec<String> {
     let row = catalogs.printed_row(&gear.provenance);
     let is_blank =
         |column: &str| !row.is_empty() && !row.iter().any(|(name, cell)| *name == column && !cell.is_empty());
-    // the built-in strain-wave gears leave the column blank and are what it means
+    // a blank cell means a strain-wave gear, and a built-in row with a blank cell is one; only a row of the user may be
+    // meant otherwise
     let kind = (gear.kind == GearKind::StrainWave && !gear.provenance.is_built_in() && is_blank("kind"))
         .then(|| "taken as a strain-wave gear (column kind is blank)".to_string());
     let usual_rpm = gear.life.rated_speed_rpm.map_or(String::new(), |rpm| format!(" at {rpm} rpm"));

@@ -85,8 +85,8 @@ impl GivenDrives {
         }
     }
 
-    /// A sentence for each given drive that fails checks in some of the `designs` designs of a front, and one on the checks
-    /// that cannot be made.
+    /// A sentence for each given drive that fails checks in some of the `designs` designs of a front, and one on the
+    /// checks that cannot be made.
     pub(crate) fn remarks(&self, designs: usize) -> Vec<String> {
         let too_weak = self.0.iter().filter_map(|drive| drive.sentence(designs));
         too_weak.chain(self.open_sentence()).collect()

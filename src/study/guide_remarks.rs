@@ -1,5 +1,5 @@
-//! What the guides of a study's prismatic joints bear, for comparison with the ratings of their makers, where the study
-//! does not state them.
+//! Remarks on the loads on the guides of a study's prismatic joints. Where the study does not state what a guide holds,
+//! a reader can compare its load with the ratings of the maker.
 
 use crate::arm::Arm;
 use crate::arm::load::LoadCase;
@@ -20,7 +20,8 @@ struct Largest {
     across_n: f64,
     /// Moment \[N m\].
     moment_nm: f64,
-    /// The part of what the guide holds that is used up; `None` if nothing is known of what it holds.
+    /// Fraction of the guide's load capacity that the load uses, 1 if it is fully used; `None` if the study states no
+    /// limit of this guide.
     part_used: Option<f64>,
 }
 
@@ -111,8 +112,8 @@ fn load_by_picks(guides: &mut [OnGuide], problem: &ArmProblem, front: &FrontTabl
 }
 
 impl OnGuide<'_> {
-    /// Adds the loads of an arm in a case. In a stop everything outboard is accelerated along the travel, which acts as
-    /// gravity the other way does. `None` if the arm has no such guide.
+    /// Adds the loads of an arm in a case. In a stop everything outboard is accelerated along the travel, which acts
+    /// like an additional gravity in the opposite direction. `None` if the arm has no such guide.
     fn add(&mut self, arm: &Arm, case: &LoadCase) -> Option<()> {
         let limits = &self.joint.guide.limits;
         self.at_rest = self.at_rest.with(&self.load(arm, case, 0.0)?, limits);
@@ -122,7 +123,8 @@ impl OnGuide<'_> {
         Some(())
     }
 
-    /// The load on the guide while everything outboard has this acceleration along the travel.
+    /// The load on the guide while everything outboard has this acceleration along the travel; `None` if the arm has no
+    /// such guide.
     fn load(&self, arm: &Arm, case: &LoadCase, acceleration_m_s2: f64) -> Option<GuideLoad> {
         let mut structure = arm.structure_in(case);
         let of_guide = |structure: &_| {
@@ -133,7 +135,8 @@ impl OnGuide<'_> {
         if acceleration_m_s2 == 0.0 {
             return Some(at_rest);
         }
-        // the water bears the arm and does not brake with it: the inertia is that of the dry arm
+        // The inertia load is the difference between two computations without water. Buoyancy must not change with the
+        // acceleration, and added mass is left out.
         structure.water = None;
         let dry = of_guide(&structure)?;
         let gravity = structure.down * structure.gravity_m_s2 - at_rest.travel * acceleration_m_s2;

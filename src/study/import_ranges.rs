@@ -33,5 +33,6 @@ pub(crate) fn beyond_ranges(import: &Value, arm: &Arm, cases: &[LoadCase]) -> Op
     })
 }
 
-/// Part of a degree or millimetre by which a pose may be beyond a range that was converted from radians or metres.
+/// Amount by which a pose may exceed a range without being reported \[deg or mm\]. The range was converted from radians
+/// or metres, so its ends have rounding errors.
 const ROUNDING: f64 = 1e-6;

@@ -59,7 +59,8 @@ fn few_sections(space: &DesignSpace) -> DesignSpace {
     out
 }
 
-/// The outermost joint at which no drive meets the demand: the index of its piece, and the reason.
+/// The outermost joint at which no drive meets the demand: the index of its piece, and the reason; `None` if every
+/// joint gets a drive.
 fn first_obstacle(space: &DesignSpace, catalogs: &Catalogs) -> Option<(usize, String)> {
     let problem = ArmProblem::new(space, catalogs);
     let mut sections = lightest_sections(space);
@@ -228,8 +229,8 @@ fn missing_words(table: &DriveTable) -> String {
 /// Where to state a rating that the catalogs lack.
 const OWN_CATALOG: &str = " (state what you know of them in a catalog of your own, --catalogs DIR)";
 
-/// The actuators of the catalogs with the passage for cables that the study asks, if it does not offer them, as the end of
-/// a sentence. Empty if the study asks no passage.
+/// The actuators of the catalogs that have the passage for cables which the study asks for, but are not among the
+/// drives that it allows, as the end of a sentence. Empty if there are none, or if the study asks for no passage.
 fn passage_advice(table: &DriveTable, catalogs: &Catalogs) -> String {
     let fit = &table.motion().fit;
     if fit.cable_bore_min_m.is_none() {
@@ -260,7 +261,8 @@ fn passage_advice(table: &DriveTable, catalogs: &Catalogs) -> String {
     }
 }
 
-/// The largest joint speed that any pair of gear and motor allows \[rad/s\], and the names of this pair.
+/// The largest joint speed that any pair of gear and motor allows \[rad/s\], and the names of this pair; `None` if no
+/// pair has both speeds stated.
 fn fastest(table: &DriveTable) -> Option<(f64, String)> {
     let pairs = table.gears().iter().flat_map(|gear| table.motors().iter().map(move |motor| (gear, motor)));
     let speeds = pairs.filter(|(gear, motor)| gear.goes_with(motor)).filter_map(|(gear, motor)| {

@@ -1,8 +1,8 @@
 //! The largest speed at which an arm holds the payloads of its study with its drives unchanged.
 //!
-//! The speed of the tip and every speed that a joint states grow by one factor. The times of the cycle stay as they are, so
-//! accelerations grow by the same factor. A stated deceleration in an emergency stop and a duty that a joint states in
-//! numbers do not change.
+//! The speed of the tip and every speed that a joint states grow by one factor. The times of the cycle stay as they
+//! are, so accelerations grow by the same factor. A stated deceleration in an emergency stop and a duty that a joint
+//! states in numbers do not change.
 
 use super::overload::{Overload, overload};
 use super::window::largest_held;
@@ -30,8 +30,8 @@ impl LargestSpeed {
     }
 }
 
-/// The largest speed at which the design with these options holds the study's payloads in all sizing cases; `None` if it
-/// does not hold them even at the study's speed, or if no speed is too large.
+/// The largest speed at which the design with these options holds the study's payloads in all sizing cases; `None` if
+/// it does not hold them even at the study's speed, or if no speed is too large.
 pub(super) fn largest_speed(
     problem: &ArmProblem,
     options: &[u32],
@@ -46,8 +46,9 @@ pub(super) fn largest_speed(
     Some(LargestSpeed { factor, tip_speed_m_s: factor * space.motion.tip_speed_m_s, joint: piece, check })
 }
 
-/// The space of the problem with the drives of these options as the only ones, and the options in it. The number of a drive
-/// in its table depends on the speed, because drives that would turn too fast are not in the table.
+/// A copy of the problem's space in which each joint may have only its drive in `options`, and the options of the same
+/// design in this copy. The number of a drive in its table changes with the speed, because the table leaves out drives
+/// that would turn too fast. In the copy each table has at most one drive, so its number does not change.
 fn with_these_drives(problem: &ArmProblem, options: &[u32]) -> (DesignSpace, Vec<u32>) {
     let (mut space, mut pinned) = (problem.space().clone(), options.to_vec());
     for (slot, &option) in options.iter().enumerate() {

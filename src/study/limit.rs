@@ -6,7 +6,7 @@ use crate::report::number::significant;
 use crate::space::constraint::Constraints;
 use crate::space::problem::{ArmProblem, Partial};
 
-/// The quantity that a limit is on.
+/// A quantity of a design that a study can limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Quantity {
     Deflection,

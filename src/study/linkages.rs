@@ -4,7 +4,8 @@ use crate::input::json::Node;
 use crate::space::design_space::SpacePiece;
 
 /// Checks that every passive joint is turned by driven joints inboard of it. Drives are sized from the tip inward, so
-/// the torque that a linkage transfers to its driving joint must be known before this joint is sized.
+/// the torque that a linkage transfers to its driving joint must be known before this joint is sized. Returns `None`
+/// after recording a fault.
 pub(super) fn drivers_are_inboard(items: &[Node], pieces: &[SpacePiece]) -> Option<()> {
     let mut sound = Some(());
     let mut inboard: Vec<&str> = Vec::new();

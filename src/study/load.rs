@@ -55,8 +55,8 @@ pub(super) fn refuse_choices(study: &Study) -> Result<(), Refusal> {
     }
 }
 
-/// Refuses a study in which some link or joint has nothing to choose from, which is too large, or which leaves values of
-/// springs or counterweights open. It is called before designs are built.
+/// Refuses a study in which some link or joint has nothing to choose from, which is too large, or which leaves values
+/// of springs or counterweights open. It is called before designs are built.
 ///
 /// # Errors
 /// [`Refusal::EmptySpace`] with every link and joint without options; [`Refusal::Unknown`] with the limit on size

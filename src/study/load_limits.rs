@@ -102,7 +102,7 @@ pub(crate) fn read_limits(document: Document, arm: &Arm) -> Result<Vec<LoadLimit
 }
 
 fn read_joints(root: &Node, arm: &Arm) -> Option<Vec<LoadLimit>> {
-    // an import.json states much more of the robot, in keys that are none of the limits
+    // an import.json also describes the robot, so keys that state no limit are allowed in it
     let of_import = root.value().get("robot").is_some() && root.value().get("tip").is_some();
     let Some(joints) = object(root, &["joints"], of_import)?.optional("joints") else {
         return root.fault("has no \"joints\"", &format!("write {}", example(arm)));
@@ -124,14 +124,14 @@ fn read_joints(root: &Node, arm: &Arm) -> Option<Vec<LoadLimit>> {
     limits
 }
 
-/// A node as an object with the keys `known`, or with any keys at all.
+/// A node as an object with the keys `known`, or with any keys at all. Returns `None` after recording a fault.
 fn object<'a>(node: &Node<'a>, known: &[&str], any: bool) -> Option<Object<'a>> {
     let all: Vec<&str> = node.entries()?.into_iter().map(|(key, _)| key).collect();
     node.object(if any { &all } else { known })
 }
 
-/// Reads the limit of the joint with the name `text`. Faults of the name are recorded at the node `name`. The outer `None`
-/// means a fault, the inner `None` that the file states no limit.
+/// Reads the limit of the joint with the name `text`. Faults of the name are recorded at the node `name`. The outer
+/// `None` means a fault, the inner `None` that the file states no limit.
 fn read_limit(joint: &Object, name: &Node, text: &str, arm: &Arm) -> Option<Option<LoadLimit>> {
     let Some(motion) = motion_of(arm, text) else {
         let names: Vec<&str> = joint_names(arm).collect();
@@ -168,7 +168,8 @@ fn motion_of(arm: &Arm, name: &str) -> Option<Motion> {
     }
 }
 
-/// The text of a file that states a limit of the first joint of an arm that turns, or else of one that slides.
+/// The text of an example file, for messages. It states a limit of the arm's first driven joint that turns, or of its
+/// first prismatic joint if no joint turns.
 pub(crate) fn example(arm: &Arm) -> String {
     let turning = arm.joints().find(|joint| joint.coupled.is_none()).map(|joint| joint.name.as_str());
     let (name, key) = match (turning, arm.prismatics().next()) {

@@ -11,7 +11,7 @@ use crate::sizing::stated::{StatedDuty, StatedPhase};
 use crate::space::design_space::{DesignSpace, SpaceJoint};
 use crate::space::station::reaches_m;
 
-/// Reads the motion of the tip. Keys that are missing have the paper's values.
+/// Reads the motion of the tip. Keys that are missing have the paper's values. Returns `None` after recording a fault.
 pub(super) fn read_motion(node: &Node) -> Option<MotionRequirement> {
     let object = node.shaped(&MOTION)?;
     let default = MotionRequirement::default();
@@ -48,8 +48,8 @@ pub(super) fn ramp_remark(motion: &MotionRequirement) -> Option<String> {
     })
 }
 
-/// Remarks on the joints with a stated duty: where it is slower than the speed that the study asks of the tip, and where it
-/// has no ramps.
+/// Remarks on the joints with a stated duty: where it is slower than the speed that the study asks of the tip, and
+/// where it has no ramps.
 pub(super) fn duty_remarks(space: &DesignSpace) -> Vec<String> {
     let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
     let remark = |((_, joint), reach_m): ((usize, &SpaceJoint), f64)| {
@@ -87,7 +87,7 @@ fn rpm_words(speed_rad_s: f64) -> String {
     if rpm < 1.0 { significant(rpm, 2) } else { format!("{rpm:.1}") }
 }
 
-/// Reads the duty cycle that every joint repeats, a list of phases.
+/// Reads the duty cycle that every joint repeats, a list of phases. Returns `None` after recording a fault.
 fn read_cycle(node: &Node) -> Option<DutyCycle> {
     let read: Vec<Option<Phase>> = node.array()?.iter().map(read_phase).collect();
     let cycle = DutyCycle { phases: read.into_iter().collect::<Option<_>>()? };
@@ -146,7 +146,7 @@ fn read_fraction(node: &Node) -> Option<f64> {
     }
 }
 
-/// Reads the duty of one joint in numbers, as in a vendor's worked example.
+/// Reads the duty of one joint in numbers, as in a vendor's worked example. Returns `None` after recording a fault.
 pub(super) fn read_duty(node: &Node) -> Option<StatedDuty> {
     let read: Vec<Option<StatedPhase>> = node.array()?.iter().map(read_stated_phase).collect();
     let duty = StatedDuty { phases: read.into_iter().collect::<Option<_>>()? };

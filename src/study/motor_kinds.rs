@@ -27,7 +27,7 @@ pub(super) fn usual_motor_kinds() -> Vec<MotorKind> {
     MotorKind::ALL.into_iter().filter(|kind| *kind != MotorKind::Stepper).collect()
 }
 
-/// Reads a list of words for kinds of motors.
+/// Reads a list of words for kinds of motors. Returns `None` after recording a fault.
 pub(super) fn read_motor_kinds(node: &Node) -> Option<Vec<MotorKind>> {
     let read: Vec<Option<&[MotorKind]>> = node
         .array()?

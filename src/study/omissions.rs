@@ -49,13 +49,13 @@ pub(super) fn omissions(space: &DesignSpace) -> Vec<String> {
     [rigid, bare, bare_given, heat, Some(left_out_everywhere(space))].into_iter().flatten().collect()
 }
 
-/// Ratings of actuators that decide whether they hold and how far the arm deflects.
+/// Columns of the ratings of actuators that decide whether an actuator meets a demand and how far the arm deflects.
 const OF_ACTUATORS: [&str; 2] = ["rated_torque_nm", "tilting_stiffness_nm_per_rad"];
 /// Number of actuators that the remark on their ratings names.
 const ACTUATORS_NAMED: usize = 3;
 
-/// A sentence on the actuators that the joints may have and of which a rating was not seen as it is used; `None` if there
-/// are none.
+/// A sentence that names the actuators that the joints may have and whose ratings in [`OF_ACTUATORS`] were not all read
+/// in a document; `None` if there are none.
 pub(super) fn actuators_remark(space: &DesignSpace, catalogs: &Catalogs) -> Option<String> {
     let may_have = |gear: &Gear| {
         joints(space).any(|joint| match &joint.drive {
@@ -129,8 +129,8 @@ fn places_of<'a>(space: &'a DesignSpace, effect: &str) -> Vec<&'a str> {
     space.effects.iter().filter(|e| e.effect == effect).map(|e| e.at.as_str()).collect()
 }
 
-/// What no number says of the guides of the study; `None` if no joint slides. The loads on a guide are compared with what
-/// the study says that it holds.
+/// What no number says of the guides of the study; `None` if no joint slides. The loads on a guide are compared with
+/// what the study says that it holds.
 fn guide_words(space: &DesignSpace) -> Option<&'static str> {
     let guide = |piece: &SpacePiece| match piece {
         SpacePiece::Prismatic(rail) => Some(rail.joint.guide.limits.unknown().is_empty()),
@@ -152,7 +152,8 @@ const SIZE_OF_ALL_TOGETHER: &str = "How much this may be: on the knees of two na
     are gears and bearings 20 % softer, connections, a compliant floor, drives 1.5 times as heavy (31 to 34 % of the mass), \
     end plates, cables and moduli 3 % low; friction, castings, fit and temperature are not among them.";
 
-/// In place of [`SIZE_OF_ALL_TOGETHER`] in a study that states connections or cables, which are among these rows.
+/// The sentence that replaces [`SIZE_OF_ALL_TOGETHER`] in a study that states connections or cables. The numbers in
+/// that sentence include both, so they do not hold for such a study.
 const SIZES_ONE_BY_ONE: &str = "How much each of these may be: docs/left-out.md.";
 
 fn joints(space: &DesignSpace) -> impl Iterator<Item = &SpaceJoint> {

@@ -207,7 +207,7 @@ impl Searched {
             materials => (0..materials).map(of_material).collect(),
         };
         Self {
-            // with millions of ties left out, they would be the only near designs
+            // if the front leaves out millions of ties, these ties would be the only near designs
             near: near.filter(|_| whole.ties_listed).and_then(|slack| {
                 let most = slack.most + whole.front.len();
                 search.near(&whole.front, Slack { most, ..slack })

@@ -13,7 +13,8 @@ pub(crate) struct Overload {
     pub check: String,
 }
 
-/// The first piece of the arm with these options that is overloaded in the cases with the indices `cases`.
+/// The first piece of the arm with these options that is overloaded in the cases with the indices `cases`; `None` if no
+/// piece is.
 pub(super) fn overload(
     space: &DesignSpace,
     catalogs: &Catalogs,

@@ -3,8 +3,8 @@
 use crate::space::design_space::{DesignSpace, SpacePiece};
 use std::collections::BTreeMap;
 
-/// For each material that some open links of the study offer and others do not, the names of the links that do not offer
-/// it. No design is of such a material alone.
+/// For each material that some open links of the study offer and others do not, the names of the links that do not
+/// offer it. No design is of such a material alone.
 pub(crate) fn links_without(space: &DesignSpace) -> BTreeMap<String, Vec<String>> {
     let lacking = |material: &String| -> Vec<String> {
         let choices = space.pieces.iter().filter_map(SpacePiece::as_choice);

@@ -10,7 +10,7 @@ use std::collections::HashMap;
 const LINK_COLUMNS: [&str; 6] = ["material", "shape", "width_mm", "height_mm", "wall_mm", "profile"];
 /// Columns of every joint that has a gear and a motor: the parts.
 const DRIVE_COLUMNS: [&str; 2] = ["gear", "motor"];
-/// Columns of every joint that has a gear and a motor: how they hold.
+/// Columns of every joint that has a gear and a motor: margins and speeds of the drive.
 const JOINT_COLUMNS: [&str; 6] =
     ["margin", "binds", "bearing_margin", "motor_rms_margin", "input_rpm", "critical_rpm"];
 
@@ -24,7 +24,7 @@ pub(super) fn choice_columns(piece: &SpacePiece) -> Vec<String> {
     }
 }
 
-/// Names of the columns of a front that say how the drive of a joint holds.
+/// Names of the columns of a front with the margins and speeds of the drive of a joint.
 pub(super) fn joint_columns(piece: &SpacePiece) -> Vec<String> {
     of(piece.name(), &JOINT_COLUMNS)
 }
@@ -38,8 +38,8 @@ fn of(name: &str, columns: &[&str]) -> Vec<String> {
     columns.iter().map(|what| format!("{name}_{what}")).collect()
 }
 
-/// Checks the names of the chain `node`: each is unique, none is that of a part of a joint, and no two pieces would give
-/// two columns of a front the same name.
+/// Checks the names of the chain `node`: each is unique, none is that of a part of a joint, and no two pieces would
+/// give two columns of a front the same name. Returns `None` after recording a fault.
 pub(super) fn check_names(node: &Node, pieces: &[SpacePiece]) -> Option<()> {
     let names: Vec<&str> = pieces.iter().map(SpacePiece::name).collect();
     if let Some(i) = (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
@@ -69,7 +69,7 @@ fn shared_column(pieces: &[SpacePiece]) -> Option<(String, [&str; 2])> {
     let mut owners: HashMap<String, &str> = HashMap::new();
     for piece in pieces {
         let chosen = choice_columns(piece);
-        // a link has columns of its choice alone, and a joint without gear and motor has none
+        // a chosen link has no margins, and a joint without gear and motor has no columns at all
         let holds = match piece {
             SpacePiece::Choice(_) => Vec::new(),
             _ if chosen.is_empty() => Vec::new(),

@@ -184,7 +184,8 @@ impl PoseRanges {
         followed.into_iter().reduce(|best, other| if other.score > best.score { other } else { best })
     }
 
-    /// The poses of `from` with the highest scores that are at least [`APART_DEG`] apart, at most [`COMPASS_STARTS`] of them.
+    /// The poses of `from` with the highest scores that are at least [`APART_DEG`] apart, at most [`COMPASS_STARTS`] of
+    /// them.
     fn starts(&self, from: &[Scored]) -> Vec<Scored> {
         let mut order: Vec<&Scored> = from.iter().collect();
         order.sort_by(|a, b| b.score.total_cmp(&a.score));

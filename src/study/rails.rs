@@ -12,7 +12,8 @@ use crate::space::prismatic::RailDrive;
 /// Keys of a prismatic joint that need a drive which is sized.
 const OF_SIZED: [&str; 5] = ["drives", "screws", "racks", "max_speed_m_s", "brake"];
 
-/// Reads how the drive of a prismatic joint is sized. The inner `None` means that the study gives the drive.
+/// Reads how the drive of a prismatic joint is sized. The inner `None` means that the study gives the drive, the outer
+/// `None` that a fault was recorded.
 pub(super) fn read_rail_drive(
     object: &Object,
     usual: &Drives,

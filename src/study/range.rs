@@ -9,7 +9,8 @@ use crate::space::design_space::{Case, DesignSpace, SpacePiece};
 /// The range of a revolute joint that states none \[deg\]: a full turn.
 pub(crate) const NOT_STATED_DEG: [f64; 2] = [-180.0, 180.0];
 
-/// Reads a range: smallest and largest angle of a joint \[deg\], or smallest and largest travel \[mm\].
+/// Reads a range: smallest and largest angle of a joint \[deg\], or smallest and largest travel \[mm\]. Returns `None`
+/// after recording a fault.
 pub(super) fn read_range(node: &Node) -> Option<[f64; 2]> {
     match node.numbers::<2>()? {
         [low, high] if low < high => Some([low, high]),
@@ -28,8 +29,8 @@ struct Ranged<'s> {
     range: Option<[f64; 2]>,
 }
 
-/// Reports a fault for every angle or travel of a pose outside the range of its joint. Nothing is checked if the
-/// chain or the cases could not be read.
+/// Reports a fault for every angle or travel of a pose outside the range of its joint. Nothing is checked if the chain
+/// or the cases could not be read. Returns `None` after recording a fault.
 pub(super) fn check_poses(root: &Object, chain: Option<&[SpacePiece]>, cases: Option<&[Case]>) -> Option<()> {
     let (Some(chain), Some(cases)) = (chain, cases) else { return Some(()) };
     let joints: Vec<Ranged> = joints(chain).collect();

@@ -137,8 +137,8 @@ fn study(node: &Node, catalogs: &Catalogs) -> Option<Study> {
     })
 }
 
-/// Reads the chain of a study, and what holds for all of its open links and drives. `constraints` is `None` if the
-/// study's are faulty.
+/// Reads the chain of a study, and the defaults for all of its open links and drives. `constraints` is `None` if the
+/// study's constraints are faulty. Returns `None` after recording a fault.
 fn read_open_chain(
     root: &Object,
     constraints: Option<&Constraints>,
@@ -158,6 +158,7 @@ fn read_open_chain(
 }
 
 /// Reads the name of a study. It must have a letter or a digit, because the folder of results is named after it.
+/// Returns `None` after recording a fault.
 fn read_study_name(node: &Node) -> Option<String> {
     match node.string()? {
         name if name.chars().any(|c| c.is_alphanumeric()) => Some(name.to_string()),
@@ -186,7 +187,7 @@ fn remarks_on(space: &DesignSpace, harness_kg_per_m: f64, catalogs: &Catalogs) -
     out
 }
 
-/// The required motion `motion` under the gravity of the study.
+/// The required motion `motion` under the gravity of the study. Returns `None` after recording a fault.
 fn under_gravity(
     root: &Object,
     gravity_m_s2: f64,
@@ -201,7 +202,8 @@ fn under_gravity(
 }
 
 /// Checks that a study without gravity asks for nothing that is defined as a multiple of the weight: the paper's
-/// reading of Eq 8, and the stress at peak load, which is taken as 1 + a/g times the stress under the weight.
+/// reading of Eq 8, and the stress at peak load, which is taken as 1 + a/g times the stress under the weight. Returns
+/// `None` after recording a fault.
 fn weight_is_needed(root: &Object, gravity_m_s2: f64, motion: &MotionRequirement) -> Option<()> {
     let stress = root.optional("constraints").filter(|n| n.value().get("stress_safety_factor_min").is_some());
     let node = match motion.linear_reading {
@@ -217,7 +219,7 @@ fn weight_is_needed(root: &Object, gravity_m_s2: f64, motion: &MotionRequirement
     }
 }
 
-/// Reads a fraction that is written in percent.
+/// Reads a fraction that is written in percent. Returns `None` after recording a fault.
 fn read_gap(node: &Node) -> Option<f64> {
     match node.non_negative()? {
         percent if percent < 100.0 => Some(percent / 100.0),
@@ -244,7 +246,7 @@ fn driven_joints(study: &Node) -> Vec<DrivenJoint> {
 }
 
 /// Reads a duty that is stated for the whole study. It is allowed only if the study has a single joint, as in the
-/// worked examples of vendors.
+/// worked examples of vendors. Returns `None` after recording a fault.
 fn read_duty_of_only_joint(node: &Node, study: &Node) -> Option<StatedDuty> {
     let duty = read_duty(node);
     match driven_joints(study).len() {
@@ -280,7 +282,7 @@ struct Open<'a> {
     duty: Option<&'a StatedDuty>,
 }
 
-/// Refuses a chain that is too long, or has too many joints, for a search.
+/// Refuses a chain that is too long, or has too many joints, for a search. Returns `None` after recording a fault.
 fn fits_a_search(node: &Node, items: &[Node]) -> Option<()> {
     let elements: usize = items.iter().map(elements_of).sum();
     let joints = items.iter().filter(|n| n.value().get("type").is_some_and(|kind| kind != "link")).count();
@@ -335,8 +337,8 @@ fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePi
     Some(pieces)
 }
 
-/// Reads a joint that turns, and its transmission; `None` in the place of the transmission if no key of the joint
-/// describes one.
+/// Reads a joint that turns, and its transmission. The inner `None` means that no key of the joint describes a
+/// transmission, the outer `None` that a fault was recorded.
 fn read_space_joint(node: &Node, open: &Open) -> Option<(SpaceJoint, Option<Transmission>)> {
     let object = node.shaped(&JOINT)?;
     let name = read_name(&object);
@@ -410,6 +412,7 @@ fn refuse_keys_of_other_joints(object: &Object) {
 }
 
 /// Reads the drive of a joint: it is searched for if the joint has the key `drive`, otherwise the study gives it.
+/// Returns `None` after recording a fault.
 fn read_drive(object: &Object, open: &Open) -> Option<DriveChoice> {
     let Some(drive) = object.optional("drive") else {
         stray(
@@ -436,7 +439,8 @@ fn read_drive(object: &Object, open: &Open) -> Option<DriveChoice> {
     read_drive_choice(&drive, &own?)
 }
 
-/// Reads a prismatic joint. The study gives its guide and masses, and also its drive unless the drive is sized.
+/// Reads a prismatic joint. The study gives its guide and masses, and also its drive unless the drive is sized. Returns
+/// `None` after recording a fault.
 fn read_space_prismatic(node: &Node, open: &Open) -> Option<SpacePrismatic> {
     if let Some(key) = OF_CATALOG_DRIVE.iter().find(|key| node.value().get(*key).is_some()) {
         return node.fault_below(
@@ -456,7 +460,7 @@ fn read_space_prismatic(node: &Node, open: &Open) -> Option<SpacePrismatic> {
 }
 
 /// Whether the bearing of a joint is the stated one or the one of its gear. A component set has no bearing, so a joint
-/// that is sized with component sets must state its bearing.
+/// that is sized with component sets must state its bearing. Returns `None` after recording a fault.
 fn bearing_source(
     object: &Object,
     stated: Stated,

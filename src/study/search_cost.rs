@@ -60,7 +60,8 @@ impl SearchCost {
         }
     }
 
-    /// Both estimated times and the search that is chosen, in two sentences; `None` if the exact search was not estimated.
+    /// Both estimated times and the search that is chosen, in two sentences; `None` if the exact search was not
+    /// estimated.
     pub(crate) fn words(&self) -> Option<String> {
         let seconds = |s: f64| format!("{} s", significant(s, 1));
         let exact_core_s = self.exact_core_s?;
@@ -73,8 +74,8 @@ impl SearchCost {
         ))
     }
 
-    /// Whether the exact search is estimated to be cheaper by the factor [`LEAST_SAVING`], or an exhaustive search is ruled
-    /// out.
+    /// Whether the exact search is estimated to be cheaper by the factor [`LEAST_SAVING`], or an exhaustive search is
+    /// ruled out.
     pub(crate) fn speaks_for_exact(&self) -> bool {
         match self.exact_core_s {
             Some(exact_core_s) => exact_core_s * LEAST_SAVING < self.exhaustive_core_s,

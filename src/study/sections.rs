@@ -18,7 +18,8 @@ use std::collections::{BTreeSet, HashSet};
 const MOST_POINTS: usize = 100_000;
 /// Largest number of sections that one family of a study file may have, before walls that do not fit are left out.
 const MOST_SECTIONS: usize = 1_000_000;
-/// Largest number of options (pairs of material and section) of all links together. This many take about a gigabyte.
+/// Largest number of options (pairs of material and section) of all links together. So many options take about a
+/// gigabyte of memory.
 pub(super) const MOST_OPTIONS: usize = 3_000_000;
 
 /// The sections from which an open link is chosen, each with its profile name if it is a catalog profile.
@@ -44,7 +45,7 @@ struct ProfileName {
     family: String,
 }
 
-/// Reads a list of names of materials. A name must not occur twice.
+/// Reads a list of names of materials. A name must not occur twice. Returns `None` after recording a fault.
 pub(super) fn read_materials<'c>(node: &Node, catalogs: &'c Catalogs) -> Option<Vec<&'c Material>> {
     let items = node.array()?;
     if items.is_empty() {
@@ -85,7 +86,7 @@ impl Sections {
     }
 }
 
-/// Reads a list of section families.
+/// Reads a list of section families. Returns `None` after recording a fault.
 pub(super) fn read_sections(node: &Node, catalogs: &Catalogs) -> Option<Sections> {
     let read: Vec<_> = node.array()?.iter().map(|n| read_family(n, catalogs)).collect();
     let mut sections = read.into_iter().collect::<Option<Vec<_>>>()?.concat();
@@ -143,7 +144,7 @@ fn read_rectangular_bar(node: &Node) -> Option<Vec<Named>> {
 }
 
 /// Reads `width_mm` and `height_mm` as outer sizes \[mm\]. The result has every pair of a width and a height, or
-/// squares if no height is given.
+/// squares if no height is given. Returns `None` after recording a fault.
 fn read_outlines(object: &Object) -> Option<Vec<(f64, f64)>> {
     let widths = object.required("width_mm").and_then(|n| read_grid(&n));
     if object.optional("height_mm").is_none_or(|n| n.value().as_str() == Some("=width")) {
@@ -226,7 +227,8 @@ fn profile_section(profile: &Profile) -> Named {
     (section, Some(name))
 }
 
-/// Reports a fault if two grids together give more sections than a family may have.
+/// Reports a fault if two grids together give more sections than a family may have. Returns `None` after recording a
+/// fault.
 fn refuse_too_many(node: &Node, [a, b]: [usize; 2]) -> Option<()> {
     match a.saturating_mul(b) {
         0..=MOST_SECTIONS => Some(()),
@@ -238,6 +240,7 @@ fn refuse_too_many(node: &Node, [a, b]: [usize; 2]) -> Option<()> {
 }
 
 /// Reads a grid: a number, a list of numbers, or `{"from", "to", "step"}`. All numbers must be greater than zero.
+/// Returns `None` after recording a fault.
 fn read_grid(node: &Node) -> Option<Vec<f64>> {
     if node.value().is_number() {
         return Some(vec![node.positive()?]);
@@ -278,8 +281,8 @@ fn sold_in_words(family: &str) -> &str {
     }
 }
 
-/// A remark on the materials that `link` offers and of which it has no section: all its sections are profiles, and none of
-/// them is sold in these materials. `None` if every material has a section.
+/// A remark on the materials that `link` offers and of which it has no section: all its sections are profiles, and none
+/// of them is sold in these materials. `None` if every material has a section.
 fn without_section(materials: &[&Material], sections: &Sections, link: &str) -> Option<String> {
     // a section that is no profile is made of any material
     let families: Option<BTreeSet<&str>> =

@@ -53,12 +53,13 @@ pub fn read_candidates(text: &str, materials: usize) -> Result<(Vec<Candidate>, 
 }
 
 /// Index of the front with this name in a list that has the front of all designs first: 0 for `all`, and `k + 1` for
-/// the index `k` of a material.
+/// the index `k` of a material. `None` if the name is neither.
 fn front_at(name: &str) -> Option<usize> {
     if name == ALL { Some(0) } else { name.parse::<usize>().ok()?.checked_add(1) }
 }
 
-/// Reads a candidate from the cells of its number and objectives.
+/// Reads a candidate from the cells of its number and objectives; `None` if a cell is not a number or their count is
+/// wrong.
 fn candidate(cells: &[&str]) -> Option<Candidate> {
     let [number, tip, mass, mode] = cells[..] else { return None };
     let value = |cell: &str| cell.parse::<f64>().ok();

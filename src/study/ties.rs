@@ -41,7 +41,8 @@ pub fn ties(problem: &ArmProblem, front: &Front) -> Ties {
     Ties { rows, front: front.len(), designs }
 }
 
-/// The rows of one design in `ties.csv`, and the number of designs with the same objectives that it represents.
+/// The rows of one design in `ties.csv`, and the number of designs with the same objectives that it represents, itself
+/// among them. `None` if the design does not meet its limits.
 fn ties_of(problem: &ArmProblem, judged: &Judged) -> Option<(Vec<Vec<String>>, f64)> {
     let mut demands: Vec<(usize, JointDemand)> = Vec::new();
     let chosen = options(problem.level_sizes(), judged.design.number)?;

@@ -10,7 +10,8 @@ use crate::sizing::select::DriveFilter;
 use crate::space::design_space::{DriveChoice, MotorPlace, SpaceJoint, SpacePiece};
 use crate::space::effects::along;
 
-/// Puts the motors of a study where they sit, and stores in every joint the other joints with which it turns.
+/// Puts the motors of a study where they sit, and stores in every joint the other joints with which it turns. Returns
+/// `None` after recording a fault.
 pub(super) fn place_transmissions(
     pieces: &mut [SpacePiece],
     mut driven: Vec<Driven>,
@@ -39,7 +40,7 @@ pub(super) fn place_transmissions(
 
 /// Sets the gear ratio of a transmission between a motor and a gear that is sized. If the joint turns with other joints
 /// because of the transmission, all gears that may be chosen must have the same ratio. Otherwise a fault is reported,
-/// as it is for actuators, which have their motors inside.
+/// as it is for actuators, which have their motors inside. Returns `None` after recording a fault.
 fn behind_one_ratio(
     node: Node,
     transmission: &mut Transmission,
@@ -75,8 +76,9 @@ fn behind_one_ratio(
     Some(())
 }
 
-/// Stores in the joint number `number` where its motor stands, if the drive is sized and the motor stands elsewhere.
-/// The mass of the motor is known only when a drive is chosen.
+/// Stores in the joint with the number `number` where its motor stands, if the drive is sized and the motor does not
+/// stand at the joint. A motor along a tube is a fault, for which `None` is returned. The mass of the motor is known
+/// only when a drive is chosen.
 fn of_sized(driven: &[Driven], number: usize, placed: &Placed, pieces: &mut [SpacePiece]) -> Option<()> {
     let of = driven.iter().find(|of| of.joint == number)?;
     let (piece, on, point_m) = placed.motor;

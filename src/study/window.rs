@@ -90,8 +90,8 @@ pub(crate) fn window_around(held_kg: f64, overload: &dyn Fn(f64) -> Option<Overl
     }
 }
 
-/// The largest amount that holds, and what a larger one overloads; `None` if amounts beyond [`MOST_KG`] hold. `overload`
-/// says what an amount overloads; it must be `None` for `held`.
+/// The largest amount that holds, and what a larger one overloads; `None` if amounts beyond [`MOST_KG`] hold.
+/// `overload` says what an amount overloads; it must be `None` for `held`.
 pub(crate) fn largest_held(
     mut held: f64,
     overload: &dyn Fn(f64) -> Option<Overload>,
@@ -106,8 +106,8 @@ pub(crate) fn largest_held(
     }
 }
 
-/// The last amount that holds between one that holds and one that fails, by bisection, and what fails beyond it. `fails`
-/// is what the amount `failed` overloads.
+/// The last amount that passes, between the amount `held` that passes and the amount `failed` that does not, by
+/// bisection, and what fails beyond it. `fails` is what the amount `failed` overloads.
 fn end_between(
     mut held: f64,
     mut failed: f64,

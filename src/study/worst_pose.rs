@@ -68,8 +68,8 @@ pub(super) fn loads(cases: &[LoadCase]) -> Vec<&LoadCase> {
     out
 }
 
-/// The worst poses under the load of the case `load`: the one with the largest deflection, and the one with the lowest
-/// mode.
+/// The worst poses under the load of the case `load`: the pose with the largest deflection, and the pose with the
+/// lowest mode. The fields `judged` are left undefined (NaN). `None` if there is no pose to start from.
 fn worst_under(
     arm: &Arm,
     load: &LoadCase,

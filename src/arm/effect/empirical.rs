@@ -1,7 +1,7 @@
 //! `empirical`: a law without a name, as it was found in readings. At a joint it is a further twist, which is a
-//! polynomial of the torque, a housing that tilts about two axes unequally, or a compliance that changes in the course of
-//! the tests. At the base it is a tilt that differs about x and y. At a channel it is a nonlinearity, a gain for each
-//! direction, or a rotation of the base between two rows.
+//! polynomial of the torque, a housing that tilts about two axes unequally, or a compliance that changes in the course
+//! of the tests. At the base it is a tilt that differs about x and y. At a channel it is a nonlinearity, a gain for
+//! each direction, or a rotation of the base between two rows.
 
 use super::channel::Channel;
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
@@ -17,20 +17,21 @@ pub(crate) const ODD_TWIST: &str = "odd_twist_rad";
 /// Name of the parameter with the coefficients of a joint's further angle of torsion, for the terms that do not change
 /// sign with the torque.
 pub(crate) const EVEN_TWIST: &str = "even_twist_rad";
-/// Name of the parameter with the reference torque of these coefficients. At this torque the further angle is the sum
-/// of all coefficients.
+/// Name of the parameter with the reference torque of the coefficients [`ODD_TWIST`] and [`EVEN_TWIST`]. At this torque
+/// the further angle is the sum of all coefficients.
 pub(crate) const TORQUE: &str = "torque_nm";
 /// Names of the parameters with the change of a joint's compliance: in the course of the static tests, and in the
 /// course of the modal tests.
 pub(crate) const SOFTENING: [&str; 2] = ["static_softening", "modal_softening"];
-/// Names of the parameters with the number of rows after which 63 % of each of these changes is reached.
+/// Names of the parameters with the number of rows after which 63 % of each change in [`SOFTENING`] is reached.
 pub(crate) const SOFTENING_ROWS: [&str; 2] = ["static_softening_rows", "modal_softening_rows"];
-/// Name of the parameter with the part of the change in the static tests that is already present when the reference of
-/// a displacement is read.
+/// Name of the parameter with the fraction of the change in the static tests that is already present when the reference
+/// of a displacement is read.
 pub(crate) const SOFTENING_REFERENCE: &str = "static_softening_reference";
 /// Name of the parameter with the two coefficients of the nonlinearity of readings.
 pub(crate) const BEND: &str = "bend";
-/// Name of the parameter with the reading at which these coefficients are the relative deviation from a straight line.
+/// Name of the parameter with the reading at which the coefficients [`BEND`] are the relative deviation from a straight
+/// line.
 pub(crate) const BEND_SCALE: &str = "bend_scale";
 /// Name of the parameter with a factor on the reading for each direction.
 pub(crate) const GAIN: &str = "gain";
@@ -120,7 +121,8 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
         soften(softening, at, subject);
     } else if let Some(reading) = subject.channel_mut(at) {
         let [a, b, bend_scale, x, y, z, ref turn @ ..] = numbers[..] else { return };
-        // one law has a nonlinearity, another has gains: if a channel has both laws, both act
+        // a channel may have two laws, one with a nonlinearity and one with gains, and both act; so a law without a
+        // nonlinearity must not erase the nonlinearity of the other law
         if [a, b] != [0.0; 2] {
             (reading.bend, reading.bend_scale) = ([a, b], bend_scale);
         }
@@ -144,7 +146,7 @@ fn soften(numbers: &[f64], at: &str, subject: &mut Subject) {
     {
         if change != 0.0 {
             let own = &mut subject.setups[channel as usize].softening;
-            // one law with the order of the tests is enough for a joint, so the last one replaces those before it
+            // a joint has at most one law of change with the order of the tests, so a later law replaces an earlier one
             own.retain(|(joint, _)| joint != at);
             own.push((at.into(), Softening { change, rows, reference }));
         }
@@ -209,8 +211,8 @@ mod tests {
             let posed = chain.pose_rad(&[FRAC_PI_2, FRAC_PI_2], &Payload::default(), force_n);
             posed.statics().shares_m.iter().find(|(name, _)| name == "j2.bearing").expect("share").1
         };
-        // the axes of j2, which turns about y, are -z and -x of the upper arm; x is along the upper arm, which is world y
-        // now: 10 N at the end of 0.5 m put 5 N m about it and move the tip by a lever of 0.5 m
+        // the axes of j2, which turns about y, are -z and -x of the upper arm; x is along the upper arm, which is world
+        // y now: 10 N at the end of 0.5 m put 5 N m about it and move the tip by a lever of 0.5 m
         let along = share_of([0.0, 1e-5]);
         assert!((along - Vector3::new(2.5e-5, 0.0, 0.0)).norm() < 1e-15, "{along}");
         // the forearm hangs along the other axis

@@ -237,7 +237,7 @@ pub enum ElasticRotation {
 /// A parameter that a search fits: its name, and the index of one of its numbers, or `None` for all of its numbers.
 pub type Freed = (&'static str, Option<usize>);
 
-/// The places of an effect that every kind of readings can have.
+/// The places of an effect that can be at every measuring channel.
 pub(super) const EVERY_CHANNEL: &[Place] = &[
     Place::Channel(Channel::Static),
     Place::Channel(Channel::Modal),
@@ -298,7 +298,8 @@ pub struct Traits {
     /// The elastic rotation under gravity by which absolute positions show the effect; `None` if positions are not
     /// searched for it.
     pub rotation: Option<ElasticRotation>,
-    /// Name of the effect at the first joint that is identical with this one if that joint is vertical.
+    /// Name of an effect at the first joint that has the same consequences as this effect if the axis of this joint is
+    /// vertical; `None` if there is no such effect.
     pub same_at_vertical_first_joint: Option<&'static str>,
     /// Finds a contradiction between the values of all parameters, each of which is within its limits. Returns the
     /// problem and the advice; `None` if there is no contradiction.

@@ -54,7 +54,7 @@ impl Structure {
         })
     }
 
-    /// The revolute joint with this name.
+    /// The revolute joint with this name; `None` if there is none.
     pub fn joint_mut(&mut self, name: &str) -> Option<&mut JointPiece> {
         self.pieces.iter_mut().find_map(|p| match p {
             Piece::Joint(joint) if joint.name == name => Some(joint),
@@ -70,7 +70,7 @@ impl Structure {
         })
     }
 
-    /// The prismatic joint with this name.
+    /// The prismatic joint with this name; `None` if there is none.
     pub fn prismatic_mut(&mut self, name: &str) -> Option<&mut PrismaticPiece> {
         self.pieces.iter_mut().find_map(|p| match p {
             Piece::Prismatic(joint) if joint.name == name => Some(joint),
@@ -78,7 +78,7 @@ impl Structure {
         })
     }
 
-    /// The link with this name.
+    /// The link with this name; `None` if there is none.
     pub fn link_mut(&mut self, name: &str) -> Option<&mut LinkPiece> {
         self.pieces.iter_mut().find_map(|p| match p {
             Piece::Link(link) if link.name == name => Some(link),

@@ -64,7 +64,8 @@ fn contradiction(numbers: &[f64]) -> Option<(&'static str, &'static str)> {
 
 fn apply(numbers: &[f64], _at: &str, subject: &mut Subject) {
     subject.warming.per_k += numbers[0];
-    // one change with the order of the tests is enough, so the last effect with such a change counts
+    // the moduli have at most one law of change with the order of the tests, so a later effect with such a change
+    // replaces an earlier one
     if numbers[1] != 0.0 {
         (subject.warming.change, subject.warming.rows) = (numbers[1], numbers[2]);
     }

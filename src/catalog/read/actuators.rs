@@ -51,7 +51,8 @@ pub(crate) fn gear(row: &Row) -> Option<Gear> {
     })
 }
 
-/// The motor of an actuator, with the ratings converted to the motor's shaft.
+/// The motor of an actuator, with the ratings converted to the motor's shaft; `None` if its name or source is blank or
+/// not valid.
 pub(crate) fn motor(row: &Row) -> Option<Motor> {
     let ratio = ratio(row);
     let at_shaft = |column: &str, factor: f64| row.number(column).map(|x| x * factor);

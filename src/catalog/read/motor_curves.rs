@@ -1,4 +1,5 @@
-//! Rows of `motor_curves.csv`: points of torque against speed, of a motor at its shaft and of an actuator at its output.
+//! Rows of `motor_curves.csv`: points of torque against speed, of a motor at its shaft and of an actuator at its
+//! output.
 
 use super::log::Log;
 use super::row::Row;

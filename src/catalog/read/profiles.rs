@@ -92,8 +92,8 @@ fn density_kg_m3(family: &str) -> Option<f64> {
     }
 }
 
-/// Outer and inner corner radius \[m\]; zero if the row gives none. For rolled steel the inner radius equals the
-/// wall.
+/// Outer and inner corner radius \[m\]; zero if the row gives none. For steel profiles the inner radius is taken equal
+/// to the wall thickness.
 fn corner_radii(row: &Row, wall_m: f64) -> [f64; 2] {
     let Some(outer) = row.number("corner_radius_outer_m") else { return [0.0, 0.0] };
     let steel = row.text("material_family").eq_ignore_ascii_case("steel");

@@ -3,8 +3,8 @@
 //! The poses are divided into four folds. Each fold in turn is held out, the model is refitted to the rest, and the
 //! fold is predicted. The effects stay the same. Their sizes and the calibration are fitted again. Only the break
 //! points of gear curves keep their values. All rows of a pose belong to the same fold, because they share a history
-//! and a reference reading. Bench rows belong to no pose and stay in every fit, unless there is nothing else: then every
-//! fourth row of the bench is a fold.
+//! and a reference reading. Bench rows belong to no pose and stay in every fit, unless there is nothing else: then
+//! every fourth row of the bench is a fold.
 
 use super::descent::{Effort, Weights, descent};
 use crate::reconcile::forward::prepared::Forward;

@@ -96,8 +96,8 @@ fn refit(forward: &Forward, mut model: Model, u: &[f64], weights: &Weights, enou
 }
 
 /// One end of the 95 % interval of the parameter with index `p`: the value at which the objective, with all other
-/// parameters refitted, has risen by [`RISE_AT_95`]. `side` is -1 for the lower end and 1 for the upper end; `sd` is the
-/// standard deviation from which the first guess comes. `None` if the objective does not rise so much within the
+/// parameters refitted, has risen by [`RISE_AT_95`]. `side` is -1 for the lower end and 1 for the upper end; `sd` is
+/// the standard deviation from which the first guess comes. `None` if the objective does not rise so much within the
 /// range of the parameter.
 fn profile(forward: &Forward, best: &Fit, weights: &Weights, p: usize, side: f64, sd: f64) -> Option<f64> {
     let (low, high) = best.model.bounds(p);

@@ -40,7 +40,8 @@ pub struct Forward {
     pub lightest_payload_kg: f64,
     /// For each driven joint, the change of every reading by an angle whose zero is off; empty until it is asked for.
     pub(crate) zero_columns: OnceLock<Vec<Vec<f64>>>,
-    /// For each horizontal axis, the change of every reading by an arm that is out of level; empty until it is asked for.
+    /// For each horizontal axis, the change of every reading by an arm that is out of level; empty until it is asked
+    /// for.
     pub(crate) level_columns: OnceLock<Vec<Vec<f64>>>,
     /// For each link, the change of every reading by a length other than drawn; empty until it is asked for.
     pub(crate) length_columns: OnceLock<Vec<Vec<f64>>>,

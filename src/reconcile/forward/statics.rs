@@ -233,7 +233,8 @@ impl PoseGeometry {
         torques_nm
     }
 
-    /// Replaces the content of `torques_nm` by the result of `dead_torques_nm`. No memory is allocated if it is large enough.
+    /// Replaces the content of `torques_nm` by the result of `dead_torques_nm`. No memory is allocated if it is large
+    /// enough.
     fn add_up_dead_torques(
         &self,
         coefficients: &Coefficients,

@@ -30,8 +30,8 @@ pub struct FreeParameter {
     /// The value of `u` at which the effect is absent; `None` if the parameter does not say how large the effect is,
     /// but only how it acts.
     absent: Option<f64>,
-    /// Smallest and largest value of the scaled parameter `u` that are expected before the readings are used (the range of
-    /// the prior).
+    /// Smallest and largest value of the scaled parameter `u` that are expected before the readings are used (the range
+    /// of the prior).
     expected: (f64, f64),
 }
 

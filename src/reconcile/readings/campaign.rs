@@ -162,7 +162,8 @@ fn statement(node: &Node) -> Option<Statement> {
 const DEFAULT_TOLERANCE: Tolerance =
     Tolerance { joint_stiffness: 0.10, modulus: 0.03, joint_mass: 0.02, bearing_stiffness: 0.0 };
 
-/// Reads the density of the payloads from `conventions`; everything else in `conventions` is text for people.
+/// Reads the density of the payloads from `conventions`; everything else in `conventions` is text for people. Returns
+/// `None` after recording a fault.
 fn read_payload_density(node: &Node) -> Option<f64> {
     let (_, density) = node.entries()?.into_iter().find(|(key, _)| *key == "payload_density_kg_m3").unzip();
     density.map_or(Some(DEFAULT_PAYLOAD_DENSITY_KG_M3), |density| density.positive())
@@ -418,7 +419,8 @@ impl Campaign {
         Fault { file, line: None, field: field.into(), problem, hint: hint.into() }
     }
 
-    /// The file of a channel: the one named in `campaign.json`, or else the usual one if it exists.
+    /// The file of a channel: the one named in `campaign.json`, or else the usual one if it exists. `None` if there is
+    /// neither.
     fn file(&self, channel: Channel) -> Option<PathBuf> {
         let usual = self.folder.join(DEFAULT_FILES[channel as usize]);
         match self.statement.source(channel).file {

@@ -22,7 +22,7 @@ impl DeclaredSession {
     }
 }
 
-/// Reads the list `positions.sessions`.
+/// Reads the list `positions.sessions`. Returns `None` after recording a fault.
 pub(super) fn read(node: &Node) -> Option<Vec<DeclaredSession>> {
     let session = |n: &Node| {
         let object = n.shaped(&SESSION)?;

@@ -125,8 +125,8 @@ impl Placement {
         numbers.into_iter().map(|number| of(number).unwrap_or(&self.usual)).collect()
     }
 
-    /// The number of each row's test, as the sessions count them; NaN for a test that the campaign does not name. `None`
-    /// if the tests should be numbers and are not.
+    /// The number of each row's test, as the sessions count them; NaN for a test that the campaign does not name.
+    /// `None` if the tests should be numbers and are not.
     fn numbers(&self, rows: &[PositionRow]) -> Option<Vec<f64>> {
         if self.order.is_empty() {
             return test_numbers(rows);

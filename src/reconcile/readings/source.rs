@@ -109,13 +109,15 @@ pub(crate) fn read_sources(root: &Object) -> [Option<Source>; 4] {
     })
 }
 
-/// Reads the name of the file from the block of a channel. Everything else in a block is text for people.
+/// Reads the name of the file from the block of a channel. Everything else in a block is text for people. `None` if the
+/// block has no key `file`, or after recording a fault.
 fn read_block(node: &Node) -> Option<String> {
     let (_, file) = node.entries()?.into_iter().find(|(key, _)| *key == "file")?;
     file.string().map(String::from)
 }
 
 /// Reads where the readings of a channel are: `"m.xlsx"`, or `{"file": "m.xlsx", "sheet": "S1", "header_row": 3}`.
+/// Returns `None` after recording a fault.
 fn read_file(node: &Node) -> Option<Source> {
     if node.value().is_string() {
         return Some(Source { file: Some(node.string()?.into()), ..Source::default() });
@@ -131,6 +133,7 @@ fn read_file(node: &Node) -> Option<Source> {
 }
 
 /// Reads pairs of column names, such as `{"dz_mm": "Gauge 1"}`: the name in this program, and the name in the file.
+/// Returns `None` after recording a fault.
 fn read_columns(node: &Node, channel: Channel) -> Option<Vec<(String, String)>> {
     let known = COLUMNS[channel as usize];
     let mut out = Vec::new();

@@ -3,8 +3,8 @@
 //!
 //! [`unnamed`](super::unnamed) asks whether a law competes with named effects, with the model made linear. Here a law
 //! becomes an effect of the arm, so that a corrected arm can have it: a further twist of a joint as a polynomial of its
-//! torque, a housing or base that tilts unequally about two axes, a stiffness of a joint that changes with the order of the tests, readings that bend or have a gain in each
-//! direction, or a base that turned once.
+//! torque, a housing or base that tilts unequally about two axes, a stiffness of a joint that changes with the order of
+//! the tests, readings that bend or have a gain in each direction, or a base that turned once.
 
 use super::search::{Scored, Search};
 use crate::arm::BASE;
@@ -72,7 +72,7 @@ pub(crate) fn laws(forward: &Forward, baseline: &Fit, weights: &Weights) -> Vec<
 }
 
 /// The candidate that the stiffness of a joint changes with the order of the tests of one channel. `channel` is the
-/// index of this channel in [`SOFTENING_IN`].
+/// index of this channel in [`SOFTENING_IN`]. `None` if the channel has no readings.
 fn softening(forward: &Forward, joint: &str, torque_nm: f64, channel: usize) -> Option<Candidate> {
     let range = forward.range(SOFTENING_IN[channel]);
     let rows = forward.data[range].iter().map(|datum| datum.row + 1).max()? as f64;
@@ -110,8 +110,8 @@ fn upright() -> Vec<Number> {
     vec![Stated(0.0); 2]
 }
 
-/// The candidate that the base tilts about world x and about world y with a compliance of its own for each. `None` if no
-/// joint is compliant, or if a piece of the arm has the name of the base.
+/// The candidate that the base tilts about world x and about world y with a compliance of its own for each. `None` if
+/// no joint is compliant, or if a piece of the arm has the name of the base.
 fn lean(forward: &Forward) -> Option<Candidate> {
     let is_free = forward.nominal.structure.pieces.iter().all(|piece| piece.name() != BASE);
     leaning(forward, BASE, vec![Free; 2]).filter(|_| is_free)
@@ -129,6 +129,7 @@ fn housing(forward: &Forward, joint: &str, torque_nm: f64) -> Option<Candidate> 
 }
 
 /// A law of two tilts at a place. The usual size of the two compliances is the compliance of the first compliant joint.
+/// `None` if no joint is compliant.
 fn leaning(forward: &Forward, at: &str, numbers: Vec<Number>) -> Option<Candidate> {
     let laws = forward.coefficients(&forward.nominal).laws;
     let size = laws.iter().map(|law| law.tangent_compliance_rad_per_nm(0.0)).find(|c| *c > 0.0)?;
@@ -149,6 +150,7 @@ fn base_turn(from_row: usize) -> Candidate {
 }
 
 /// The first row of a pose, from 0, before which a turn of the base would explain most of the residuals of a fit.
+/// `None` if there are too few poses.
 fn most_telling_row(forward: &Forward, fit: &Fit, weights: &Weights) -> Option<usize> {
     let residuals = fit.residuals(forward, weights);
     // normal equations of the turn for each pose, in units of the rows' standard deviations

@@ -203,8 +203,8 @@ fn gap(search: &Search, baseline: &Fit) -> String {
 }
 
 /// A sentence that names the outermost joint outboard of which the mass is wrong. Only sets of effects that leave the
-/// stiffnesses unchanged are considered, and all of them must agree. `None` if there is no such joint. `subjects` are the
-/// arms with the sets `explaining`.
+/// stiffnesses unchanged are considered, and all of them must agree. `None` if there is no such joint. `subjects` are
+/// the arms with the sets `explaining`.
 fn missing_mass(
     search: &Search,
     campaign: &Campaign,

@@ -138,8 +138,8 @@ impl<'a> Search<'a> {
     }
 
     /// Whether the search ends because the law without a name `law` raises the logarithm of the evidence above `best`
-    /// by more than [`SETTLING_GAIN`]. If `best` has one effect so far, the law must also leave no more than noise, because
-    /// two effects could still be better.
+    /// by more than [`SETTLING_GAIN`]. If `best` has one effect so far, the law must also leave no more than noise,
+    /// because two effects could still be better.
     fn is_settled_by(&self, law: &Option<Better>, baseline: &Scored, best: &Scored) -> bool {
         let readings = self.forward.data.len() as f64;
         let noise = readings + 2.0 * (2.0 * readings).sqrt();

@@ -108,8 +108,8 @@ struct Round {
 }
 
 impl Round {
-    /// The score of the best model, less [`GROSS_ERROR_CHARGE`] for each reading that was left out of the fit as a gross error
-    /// \[ln of the evidence\].
+    /// The score of the best model, less [`GROSS_ERROR_CHARGE`] for each reading that was left out of the fit as a
+    /// gross error \[ln of the evidence\].
     fn score(&self) -> f64 {
         self.selection.best.score - GROSS_ERROR_CHARGE * self.noise.outliers.len() as f64
     }

@@ -93,8 +93,8 @@ pub(crate) fn instead(search: &Search, best: &Scored, baseline: &Fit) -> Option<
 }
 
 /// The best of the `competitors` by evidence, if its evidence, less a charge for having tried `places` places, is
-/// higher than `evidence` by more than [`LEAST_GAIN`]; otherwise `None`. `evidence` is that of the model with which they
-/// compete. Effects that are in both models are not charged for their places.
+/// higher than `evidence` by more than [`LEAST_GAIN`]; otherwise `None`. `evidence` is that of the model with which
+/// they compete. Effects that are in both models are not charged for their places.
 fn best_of(competitors: Vec<Competitor>, evidence: f64, places: f64) -> Option<Better> {
     let gain = |r: &Competitor| r.evidence - libm::log(places) - evidence;
     let best = competitors.into_iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;

@@ -146,15 +146,15 @@ pub(crate) fn impossible_calibration(
     ))
 }
 
-/// A calibrated factor, its departure from nominal and its tolerance, in words with an open bracket. `sd` is the standard
-/// deviation of its logarithm by the tolerance.
+/// A calibrated factor, its departure from nominal and its tolerance, in words with an open bracket. `sd` is the
+/// standard deviation of its logarithm by the tolerance.
 fn departure_words(sd: f64, of: &Calibrated) -> String {
     let (part, tolerance) = (of.factor.value - 1.0, TOLERANCE_SIGMAS * sd);
     format!("{} by {:+.1} % (tolerance {:.1} %", of.name, 100.0 * part, 100.0 * tolerance)
 }
 
-/// The number n such that one in n faultless parts departs from nominal as far as a calibrated factor. `sd` is the standard
-/// deviation of its logarithm by the tolerance.
+/// The number n such that one in n faultless parts departs from nominal as far as a calibrated factor. `sd` is the
+/// standard deviation of its logarithm by the tolerance.
 fn one_in(sd: f64, of: &Calibrated) -> f64 {
     honest_parts_for_one(libm::log(of.factor.value) / sd)
 }

@@ -1,4 +1,5 @@
-//! What a fitted model states: its effects, its laws without a name and its calibrated factors, each with 95 % intervals.
+//! What a fitted model states: its effects, its laws without a name and its calibrated factors, each with 95 %
+//! intervals.
 
 use super::outcome::{Calibrated, Law};
 use crate::arm::effect::empirical::KIND;

@@ -73,7 +73,8 @@ impl CampaignPage {
         !part.part.contains([',', ' '])
     }
 
-    /// A picture of the root mean square of the residuals in each channel, before and after the effects were added.
+    /// A picture of the root mean square of the residuals in each channel, before and after the effects were added;
+    /// `None` if no channel has readings.
     fn channels_figure(&self) -> Option<Figure> {
         let channels: Vec<Compared> = self.parts.iter().filter(|p| Self::is_channel(p)).cloned().collect();
         (!channels.is_empty()).then(|| {

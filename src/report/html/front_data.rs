@@ -314,7 +314,7 @@ fn natural(a: &str, b: &str) -> Ordering {
 }
 
 /// At most `room` designs, lightest first. The front of all designs gets at least four fifths of the places, if it has
-/// that many designs. Designs named in `kept` stay.
+/// that many designs. Designs whose `design_id` is in `kept` stay.
 fn sampled<'a>(rows: &[Row<'a>], room: usize, kept: &[String]) -> Vec<Row<'a>> {
     let (front, own): (Vec<Row>, Vec<Row>) = rows.iter().partition(|r| r.on_front);
     let room_of_front = room.saturating_sub(own.len().min(room / 5));
@@ -323,8 +323,8 @@ fn sampled<'a>(rows: &[Row<'a>], room: usize, kept: &[String]) -> Vec<Row<'a>> {
     by_mass(front.into_iter().chain(own).collect())
 }
 
-/// At most `room` of the designs `rows`. Designs named in `kept` stay. The designs that [`edges`] finds get up to half
-/// of the places. The others are taken at even steps in the order of mass.
+/// At most `room` of the designs `rows`. Designs whose `design_id` is in `kept` stay. The designs that [`edges`] finds
+/// get up to half of the places. The others are taken at even steps in the order of mass.
 fn thinned<'a>(rows: Vec<Row<'a>>, room: usize, kept: &[String]) -> Vec<Row<'a>> {
     if rows.len() <= room {
         return rows;

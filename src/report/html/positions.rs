@@ -52,7 +52,8 @@ fn length(v: &[f64; 3]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// A picture of the position error (median, mean and largest) at each stage of the model.
+/// A picture of the position error (median, mean and largest) at each stage of the model; `None` if there are no
+/// stages.
 pub(crate) fn steps_figure(steps: &[Step]) -> Option<Figure> {
     let row = |s: &Step| Row {
         label: s.added.clone(),
@@ -88,7 +89,7 @@ pub(crate) fn steps_figure(steps: &[Step]) -> Option<Figure> {
 }
 
 /// A picture of the distribution of position errors: the percentage of positions whose error is at most a given size
-/// \[mm\], with calibration only, with the effects found, and held out.
+/// \[mm\], with calibration only, with the effects found, and held out. `None` if there are no positions.
 pub(crate) fn sizes_figure(positions: &[Position]) -> Option<Figure> {
     let sorted = |of: fn(&Position) -> &[f64; 3]| {
         let mut out: Vec<f64> = positions.iter().map(|p| length(of(p))).collect();
@@ -135,7 +136,8 @@ pub(crate) fn sizes_figure(positions: &[Position]) -> Option<Figure> {
     })
 }
 
-/// A picture of the position errors along each axis of the instrument, over the rows of the file.
+/// A picture of the position errors along each axis of the instrument, over the rows of the file. `None` if there are
+/// no positions.
 pub(crate) fn axes_figure(positions: &[Position]) -> Option<Figure> {
     let panel = |axis: usize| {
         let points =
@@ -197,8 +199,8 @@ struct Bin {
     after_mm: f64,
 }
 
-/// Median position errors in each bin of the range of the joint with the index `joint`. Bins with fewer than [`FEWEST_IN_BIN`]
-/// positions are left out.
+/// Median position errors in each bin of the range of the joint with the index `joint`. Bins with fewer than
+/// [`FEWEST_IN_BIN`] positions are left out.
 fn bins(positions: &[Position], joint: usize) -> Vec<Bin> {
     let angles = || positions.iter().filter_map(|p| p.pose_deg.get(joint).copied());
     let (low, high) = angles().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(a), h.max(a)));
@@ -227,7 +229,7 @@ fn bins(positions: &[Position], joint: usize) -> Vec<Bin> {
 }
 
 /// Pictures of the median position error over the angle of each joint. The joints whose angle has the most effect come
-/// first.
+/// first. `None` if no joint has several bins with enough positions.
 pub(crate) fn angles_figure(joints: &[String], positions: &[Position]) -> Option<Figure> {
     let swing = |bins: &[Bin]| {
         let (low, high) =

@@ -28,7 +28,8 @@ impl Builder<'_> {
     }
 
     /// The change of every reading, in its unit, by friction of the joint with index `joint`, per unit of the part
-    /// `part` of the torque that the friction torque is. Friction does not slip in small vibrations, so frequencies stay.
+    /// `part` of the torque that the friction torque is. Friction does not slip in small vibrations, so frequencies
+    /// stay.
     fn friction_column(&self, joint: usize, part: f64) -> Vec<f64> {
         let forward = self.forward;
         let coefficients = &self.fit.point.coefficients;
@@ -55,8 +56,8 @@ impl Builder<'_> {
     }
 }
 
-/// By how much the torque that twists a joint differs from the torque on it \[N m\], for each torque of a sequence,
-/// because a friction torque of the part `part` of the torque holds the joint. `state_nm` is the twisting torque before
+/// Difference between the torque that twists a joint and the torque on it \[N m\], for each torque of a sequence. The
+/// cause is a friction torque, the fraction `part` of the torque on the joint. `state_nm` is the twisting torque before
 /// the first.
 fn lags_nm(torques_nm: impl Iterator<Item = f64>, mut state_nm: f64, part: f64) -> Vec<f64> {
     let lag = |torque_nm: f64| {

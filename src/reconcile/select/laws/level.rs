@@ -20,8 +20,8 @@ impl Builder<'_> {
     }
 
     /// For each horizontal axis of the world, the change of every reading of the nominal arm, in its unit, per full
-    /// size of the angle. Frequencies depend on the direction of gravity through the gears' curves alone, and the arm's own
-    /// weight deflects it in the reference of every reading too. Both are left out.
+    /// size of the angle. Frequencies depend on the direction of gravity through the gears' curves alone, and the arm's
+    /// own weight deflects it in the reference of every reading too. Both are left out.
     fn level_columns(&self) -> Vec<Vec<f64>> {
         let stated = self.static_readings_with(Vector3::zeros());
         let column = |axis: Vector3<f64>| {

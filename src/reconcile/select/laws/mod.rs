@@ -2,11 +2,11 @@
 //! library lacks.
 //!
 //! A law may be a twist of a joint as a function of its torque (odd or even), of its angle, or of the order of the
-//! tests, or of the torque of its neighbour, friction in proportion to the torque, or an angle whose zero is off. It may
-//! be a compliance of a base, a bearing or a link in one direction only, or of a guide that changes with its position, a mass, wall or length of a link that differs
-//! from the drawing, or another direction of gravity. It may also be an error of a reading as a function of the actual value, the direction, the
-//! kind of load, or the time in a pose. A law consists of a few columns: changes of the readings, linearized about a
-//! fit.
+//! tests, or of the torque of its neighbour, friction in proportion to the torque, or an angle whose zero is off. It
+//! may be a compliance of a base, a bearing or a link in one direction only, or of a guide that changes with its
+//! position, a mass, wall or length of a link that differs from the drawing, or another direction of gravity. It may
+//! also be an error of a reading as a function of the actual value, the direction, the kind of load, or the time in a
+//! pose. A law consists of a few columns: changes of the readings, linearized about a fit.
 
 mod coupling;
 mod friction;
@@ -75,8 +75,8 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    /// The readings of the nominal arm of another campaign, which differs from this one in poses, loads or geometry and has
-    /// the same rows, in the units of the file.
+    /// The readings of the nominal arm of another campaign, which differs from this one in poses, loads or geometry and
+    /// has the same rows, in the units of the file.
     fn nominal_readings(&self, campaign: &Campaign) -> Vec<f64> {
         let mut forward = Forward::of_the_nominal_arm(campaign);
         // modes that were put in order, or found to be missed, stay as they are

@@ -1,5 +1,5 @@
-//! Laws of readings: an instrument that is not straight, that has a gain of its own for a direction or a kind of load, or
-//! that is turned.
+//! Laws of readings: an instrument that is not straight, that has a gain of its own for a direction or a kind of load,
+//! or that is turned.
 
 use super::{Builder, Law, one_or_both};
 use crate::arm::effect::channel::Channel;
