@@ -28,7 +28,7 @@ pub(super) const START_SHAPES: [[f64; 3]; 2] = [[0.0, 0.0, 1.0], [0.3, 1.0, 0.0]
 /// Greatest number of refinement steps of the trial shapes on a box of one design.
 const MOST_STEPS: usize = 30;
 
-/// Fraction of the frequency of a bound below which a better trial shape is assumed not to lower it.
+/// A better trial shape is assumed to lower the frequency of a bound to no less than this fraction of it.
 const LOWEST_BY_SHAPE: f64 = 0.4;
 
 /// A box of designs: the number of one node of each level's tree, tip first.

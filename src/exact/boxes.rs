@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// Greatest number of boxes that one task bounds. After that, the task returns the boxes that are still open.
 const BOXES_PER_TASK: usize = 32;
 
-/// A box that waits to be bounded, with the trial shapes and the bound of the box from which it was halved.
+/// A box that waits to be bounded, with the trial shapes and the bound of its parent, the box of which it is a half.
 pub(super) struct OpenBox {
     pub design_box: DesignBox,
     pub shapes: Arc<Vec<Shape>>,

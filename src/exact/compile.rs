@@ -118,7 +118,7 @@ impl<'c> Problem<'c> {
         Self::with_joints(space, &TabulatedJoints::new(space, catalogs), takes, ties)
     }
 
-    /// As [`new`](Self::new), of joints that are tabulated already.
+    /// Does the same as [`new`](Self::new), for joints whose drives are tabulated already.
     pub(super) fn with_joints(
         space: &'c DesignSpace,
         tabulated: &TabulatedJoints<'c>,
@@ -142,7 +142,7 @@ impl<'c> Problem<'c> {
             force_bounds: Arc::default(),
         };
         for (place, layer) in space.layers() {
-            // The tilts of a gear's bearing are coordinates of its joint.
+            // The tilts of a gear's bearing are coordinates of its joint, so they make no part of their own.
             if let Layer::Bearing(_) = layer {
                 continue;
             }
@@ -324,8 +324,8 @@ impl<'c> Problem<'c> {
         Rays::new(motion, static_nm, inertia_kgm2)
     }
 
-    /// Adds the inertia matrices of every judged case to the problem. An arbitrary arm of the space shows which
-    /// coordinates deflect elastically.
+    /// Adds the inertia matrices of every judged case to the problem. The ideal arm of the box of all designs shows
+    /// which coordinates deflect elastically. No matrices are added if no design meets the constraints.
     pub(super) fn with_inertias(mut self) -> Self {
         let mut work = BoxWork::default();
         let filled = self.fill(&mut self.root(), &mut work);

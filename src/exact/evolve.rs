@@ -34,7 +34,7 @@ const MOST_TIME: f64 = 0.25;
 const MOST_CHILDREN: f64 = 8192.0;
 /// Width of a cell of the grid that thins out similar designs, in logarithms of the objectives.
 const CELL_WIDTH: f64 = 0.02;
-/// The designs are ordered by mass. The second parent is at most this many places away from the first.
+/// Greatest distance between the two parents of a child, in places of the list of designs by mass.
 const MATING_DISTANCE: u64 = 12;
 
 /// A design with trial shapes that bound its modes. The shapes were computed for this design or for a similar one.
@@ -48,10 +48,10 @@ pub(super) struct Individual {
 enum Offspring {
     /// The child has the same parts as its first parent.
     Unchanged,
-    /// A design that was found before dominates the child, or a part of the child cannot carry its load, or even the
+    /// A design that was found before dominates the child, a part of the child cannot carry its load, or even the
     /// bound of the child breaks a limit.
     Dominated,
-    /// The objectives of the child are known, and it breaks a constraint.
+    /// The child breaks a constraint, or rounding leaves open whether a part of it carries its load.
     Infeasible,
     /// The child meets every constraint, and no design that was found before dominates it.
     Feasible(Individual),

@@ -14,7 +14,7 @@ use crate::space::slot::SizedJoint;
 
 /// Relative margin for rounding of a sum of a few dozen terms.
 pub(super) const ROUNDING: f64 = 1e-12;
-/// Greatest number of steps down a tree of drives in which drives that cannot carry a demand are searched for.
+/// Greatest depth to which a tree of drives is searched for drives that cannot carry a demand.
 const MOST_TREE_STEPS: usize = 6;
 
 impl Problem<'_> {
@@ -155,8 +155,8 @@ impl Problem<'_> {
         (rounded(static_nm), rounded(inertia_kgm2))
     }
 
-    /// The least and the greatest loads on the output bearing of a joint, over all cases; zero if this bearing is not
-    /// checked.
+    /// The least and the greatest loads on the output bearing of a joint, over the sizing cases; zero if this bearing
+    /// is not checked.
     pub(super) fn bearing_loads(&self, piece: usize, work: &BoxWork) -> [BearingDemand; 2] {
         let Some(lever) = self.levers[piece] else { return [BearingDemand::default(); 2] };
         let cases = self.poses.iter().zip(&work.weights);
@@ -185,9 +185,9 @@ impl Problem<'_> {
         }
     }
 
-    /// The least loads on each end section of a tube in each case: axial force \[N\], moments about y and z and torsion
-    /// \[N m\]. They are multiplied by the peak factor and by `safety`, the safety factor, so that they can be compared
-    /// with the strength.
+    /// The least loads on each end section of a tube in each case: axial force \[N\], moments about y and z and
+    /// torsion \[N m\]. They are multiplied by `safety`, the safety factor, and in sizing cases also by the peak
+    /// factor, so that they can be compared with the strength.
     fn least_loads(&self, piece: usize, safety: f64, work: &BoxWork) -> Vec<[f64; 4]> {
         let cases = self.poses.iter().zip(&work.weights);
         cases

@@ -1,5 +1,5 @@
-//! A matrix game, solved by the simplex method: the weights of columns under which the least weighted row is as large
-//! as possible.
+//! A matrix game, solved by the simplex method. The solution is the weights of the columns under which the least
+//! weighted sum of a row is as large as possible.
 
 use crate::mechanics::lanes::{LANES, LaneWork, Lanes, in_lanes, subtract_multiple};
 use std::ops::Range;
@@ -17,15 +17,15 @@ const BALANCE_TOLERANCE: f64 = 1e-6;
 pub(super) struct Game {
     /// Weights of the columns. None is negative, and they sum to one.
     pub weights: Vec<f64>,
-    /// Weights of the rows in the mixture that makes the greatest weighted sum of a column as small as possible. They
-    /// sum to one.
+    /// Weights of the rows in a mixture. They make the greatest weighted sum of a column as small as possible, and
+    /// they sum to one.
     pub mix: Vec<f64>,
     /// Value of the game: the weighted sum of the numbers of a row, for the row in which it is least.
     pub value: f64,
 }
 
-/// Solves a matrix game: finds weights of the columns that make the weighted sum of the worst row as large as possible.
-/// `rows` has the numbers of all rows one after the other, `width` numbers for each row.
+/// Solves a matrix game: finds the weights of the columns that make the weighted sum of the worst row as large as
+/// possible. `rows` has the numbers of all rows one after the other, `width` numbers for each row.
 ///
 /// The simplex method solves the linear program of the other player: `max Σ z` with `Σ_j (a_ji + c) z_j <= 1` for every
 /// column `i`, and `z >= 0`. The dual values of this program are the weights.

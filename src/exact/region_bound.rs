@@ -133,9 +133,10 @@ impl Rows<'_> {
         }
     }
 
-    /// Removes the local upper bounds from a group below which a box is proved to have no design. Every set of multipliers
-    /// is tried on all of them. Then new ones are looked for, for the bound that is nearest to a refutation, until that
-    /// fails: a search of the halves of the group, with fewer options, is the better way for those that are left.
+    /// Removes from a group the local upper bounds below which a box is proved to have no design. Every set of
+    /// multipliers found so far is tried on all bounds. Then new multipliers are sought for the bound that is nearest
+    /// to a refutation, until they refute none. The bounds that are left are better searched in two halves of the
+    /// group, with fewer options.
     fn refute_one_by_one(&mut self, design_box: &[u32], below: &mut LocalUpperBounds, proofs: &mut Proofs) {
         let mut open: Vec<(f64, LocalUpperBound)> = Vec::new();
         let first: Vec<Plane> = proofs.points.iter().map(|point| self.plane(point)).collect();
@@ -160,7 +161,7 @@ impl Rows<'_> {
                 *nearest = nearest.max(plane.above(upper));
                 *nearest <= ROUNDING
             });
-            // The point was made for one of the bounds and refutes none.
+            // The new multipliers refute no bound, not even the one for which they were made.
             if open.len() == before {
                 break;
             }
@@ -168,7 +169,7 @@ impl Rows<'_> {
         *below = open.into_iter().map(|(_, upper)| upper).collect();
     }
 
-    /// What a dual point says about any local upper bound.
+    /// The dual point as a plane in the space of objectives, which is quick to test on any local upper bound.
     fn plane(&self, point: &DualPoint) -> Plane {
         let weights: Vec<f64> =
             point.multipliers.iter().zip(&self.scale).map(|(w, scale)| w / scale).collect();
@@ -186,7 +187,8 @@ impl Rows<'_> {
     }
 }
 
-/// A half space of objectives in which a box has no design.
+/// A dual point (set of multipliers), written as an inequality in the numbers of a local upper bound. If
+/// [`above`](Self::above) is positive for a bound, the box has no design below that bound.
 struct Plane {
     /// The least weighted sum of the rows.
     least: f64,
@@ -202,7 +204,7 @@ struct Plane {
 impl Plane {
     /// By how much the least weighted sum of the rows exceeds the sum that the local upper bound `upper` allows.
     fn above(&self, upper: &LocalUpperBound) -> f64 {
-        // A limit may be infinite, and its weight zero.
+        // A limit may be infinite. Its product with a weight of zero would be NaN.
         let term = |weight: f64, limit: f64| if weight > 0.0 { weight * limit } else { 0.0 };
         let below = self.lambda - upper.lambda();
         let moves = self.moves[usize::from(below > 0.0)];

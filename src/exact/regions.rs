@@ -131,7 +131,8 @@ impl<'p> Search<'_, 'p> {
             let [first, second] = halves.map(|below| Task::Region { below, subproblem: subproblem.clone() });
             return vec![second, first];
         }
-        // What was learned about a group does not tell how to divide the options below its last bound.
+        // The survivors belong to the bound that covers the whole group. They do not tell how to divide the options
+        // below the one bound that is left, so its region is bounded anew.
         if !was_single {
             return vec![Task::Region { below, subproblem }];
         }

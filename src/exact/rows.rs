@@ -8,8 +8,8 @@
 //!   own, and the deflections of tubes and bearings. A product of the force `F` and the compliance `c` of a tube or a
 //!   bearing is replaced by `F₀ c + c₀ (F - F₀)`, where `F₀` and `c₀` are the least of the box (McCormick). The error
 //!   is at most the product of the widths of the two intervals.
-//! - *torque of a gear*: its own torque less the torque that the weights outboard make. The difference is zero, and
-//!   nothing is lost.
+//! - *torque of a gear*: the torque at which its curve is evaluated, less the torque that the weights outboard make.
+//!   For a member the difference is zero, so this row is exact.
 //! - *mode*: `λ xᵀMx - xᵀKx` for a trial shape `x`. It is not positive for a member whose eigenvalues are at least `λ`.
 //!   The error is about the square of the shape's error.
 //!

@@ -216,9 +216,9 @@ impl<'p> Exact<'p> {
         Problem::with_joints(self.space, self.joints(), takes, ties)
     }
 
-    /// Searches one part of the study (all designs, or those of one material) and starts with a state. If an earlier
-    /// process has finished this part, its result is returned. `whole` is the compiled space of the part; `None` if it
-    /// has no design. The flag tells whether no designs are known at the start.
+    /// Searches one part of the study: all designs, or those of one material. The search starts from the given state;
+    /// the flag tells whether no designs are known in it. `whole` is the compiled space of the part; `None` if it has
+    /// no design. If an earlier process has finished this part, its result is returned.
     pub(super) fn search_part(
         &self,
         whole: Option<&Problem<'p>>,

@@ -169,7 +169,8 @@ impl<'q> Judge<'q> {
             (false, _) => offers.first_fit(&least)?,
         };
         if !offers.is_choice {
-            // a drive before it in the list must not surely pass, or it would be the first that fits
+            // no drive before it in the list may carry even the greatest demand, because that drive would be the
+            // first fit
             let before = offers.offers.iter().take_while(|other| *other != offer);
             before.into_iter().all(|other| !other.ratings.hold(&most)).then_some(())?;
         }

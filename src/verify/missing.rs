@@ -68,8 +68,8 @@ impl Judge<'_> {
         self.missing_since(&Ledger::default(), front, settings, (stop, deadline))
     }
 
-    /// As [`missing`](Self::missing), without the branches that are finished in `ledger`. The ledger must be of the
-    /// same question and the same front.
+    /// Does the same as [`missing`](Self::missing), but skips the branches that are finished in `ledger`. The ledger
+    /// must be of the same question and the same front.
     pub fn missing_since(
         &self,
         ledger: &Ledger,
@@ -145,7 +145,8 @@ impl Judge<'_> {
 }
 
 /// The options of each single design, in ascending order, and a flag that tells whether all ties are listed. If there
-/// are too many, one design of each set of ties is listed.
+/// are too many, one design of each set of ties is listed. A level at which no option surely passes its checks keeps
+/// all of its options, because the first one may fail.
 fn one_by_one(designs: &BTreeSet<Design>) -> (Vec<Vec<u32>>, bool) {
     let count = |design: &Design| design.iter().map(|choice| choice.options.len() as f64).product::<f64>();
     let is_one = |design: &Design| count(design) == 1.0;

@@ -173,7 +173,8 @@ fn torsion_curve(gear: &Gear, joint: &AskedJoint) -> Option<Windup> {
         let own = stiffness? * (1.0 / (1.0 + share));
         Some(if before > 0.0 { 1.0 / (1.0 / own + before) } else { own })
     };
-    // K1 alone, or equal slopes without break points, are a straight line; its break points may be chosen at will
+    // K1 alone, or three equal slopes with a blank break point, make a straight line: its break points have no
+    // effect, so any two serve
     let [k1, k2, k3] = [gear.k1_nm_per_rad, gear.k2_nm_per_rad, gear.k3_nm_per_rad];
     let breaks = gear.t1_nm.is_some() as usize + gear.t2_nm.is_some() as usize;
     let one_line = (k2.is_none() && k3.is_none() && breaks == 0) || (k1 == k2 && k2 == k3 && breaks < 2);

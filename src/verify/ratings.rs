@@ -173,7 +173,7 @@ fn actuator_stop_nm(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<f64> {
 fn bears_the_stops(gear: &Gear, duty: &Duty) -> bool {
     let waves = 2.0 * input_rpm(gear, duty.speed_rad_s) / 60.0 * duty.stop_s;
     let has_waves = gear.kind == GearKind::StrainWave;
-    // the study states a whole number, and the speed has gone through rad/s
+    // the margin is for rounding: the speed was converted to rad/s and back to rpm
     duty.emergency_stops.is_none_or(|stops| !has_waves || stops * waves.max(1.0) <= 1e4 * (1.0 + 1e-9))
 }
 

@@ -32,7 +32,7 @@ pub(super) struct TubeNumbers {
     /// Stress divided by the strength, per unit of each internal load, in the order of [`STRESSES`] \[1/N, 1/(N m)\];
     /// zero if the strength is unknown.
     pub stresses: [f64; STRESSES],
-    /// 1 for a round tube, 0 for a rectangular one.
+    /// 1 for a round section whose strength is known, 0 for any other.
     pub round: f64,
     /// Half the width of the tube along the axis of the joint next to its root \[m\]; zero if it does not start at
     /// a joint.

@@ -16,8 +16,8 @@ use super::weights::{Member, Reduced};
 /// Smallest score for which a level or torque is branched, as a fraction of what the upper bound allows. If no
 /// score is larger, the level with the most options is branched.
 const WORTH_IT: f64 = 1e-4;
-/// If a row's value for the mixture is within this distance of zero (its limit), [`EXTRA_WEIGHT`] is added to the weight of the
-/// row in the score.
+/// If a row's value for the mixture is within this distance of zero (its limit), [`EXTRA_WEIGHT`] is added to the
+/// weight of the row in the score.
 const NEAR_LIMIT: f64 = 0.2;
 const EXTRA_WEIGHT: f64 = 0.1;
 /// A member with a smaller weight in the mixture than this has no influence on the torque at which an interval is
@@ -122,8 +122,8 @@ impl Rows<'_> {
         }
     }
 
-    /// Weight of a row in the score of a branching: its multiplier, and [`EXTRA_WEIGHT`] more if the mixture, with the numbers
-    /// `between`, is close to the row's limit. Rows of torque intervals have weight zero.
+    /// Weight of a row in the score of a branching: its multiplier, and [`EXTRA_WEIGHT`] more if the mixture, with
+    /// the numbers `between`, is close to the row's limit. Rows of torque intervals have weight zero.
     fn says(&self, row: usize, between: &[f64], left: &Reduced) -> f64 {
         let near = self.rows[row].value(between) > -NEAR_LIMIT;
         match (self.first_interval..self.first_mode).contains(&row) {
