@@ -22,8 +22,8 @@ use std::sync::Arc;
 /// The refinement of the trial shapes (motions that give an upper bound of the lowest mode) stops when a step lowers
 /// the bound by less than this fraction.
 const SHAPE_CONVERGENCE: f64 = 1e-10;
-/// Accelerations of the base \[m/s²\] whose inertia forces deform the arm into the first trial shapes: one vertical,
-/// and one sideways with a little forward.
+/// Accelerations of the base \[m/s²\], one vertical and one sideways with a little forward. The first trial shapes are
+/// the deformations of the arm by the inertia forces of these accelerations.
 pub(super) const START_SHAPES: [[f64; 3]; 2] = [[0.0, 0.0, 1.0], [0.3, 1.0, 0.0]];
 /// Greatest number of refinement steps of the trial shapes on a box of one design.
 const MOST_STEPS: usize = 30;
@@ -47,8 +47,8 @@ impl BoxBound {
     /// The bound of a box of which nothing is known yet: no mass, no deflection and an infinite frequency.
     pub(super) const OPEN: Self = Self { mass_kg: 0.0, tip_m: 0.0, hz: f64::INFINITY };
 
-    /// The bound that a better trial shape might have. It is assumed to lower the frequency to no less than a fraction of
-    /// it. If the box would not be pruned even then, no better shape is computed.
+    /// This bound with the lowest frequency that a better trial shape is assumed to reach ([`LOWEST_BY_SHAPE`]). If
+    /// even this bound would not prune the box, no better shape is computed.
     pub(super) fn with_better_shape(&self) -> Self {
         Self { hz: LOWEST_BY_SHAPE * self.hz, ..*self }
     }

@@ -86,8 +86,9 @@ impl Problem<'_> {
 }
 
 impl Rows<'_> {
-    /// Looks for multipliers that prove a box to have no design below the local upper bound `upper`. `None` if there are
-    /// some; otherwise the game between the rows and the relaxed designs at which the attempt ended.
+    /// Looks for multipliers that prove a box to have no design below the local upper bound `upper`. `None` if such
+    /// multipliers are found. Otherwise the result is the game between the rows and the relaxed designs at which the
+    /// attempt ended.
     fn refute(
         &mut self,
         design_box: &[u32],

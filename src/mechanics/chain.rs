@@ -226,7 +226,7 @@ impl Chain {
         self.pose_with(pose_rad, payload, tip_force_n, Deflections::default())
     }
 
-    /// The same, with the deflections `deflections` of the elements.
+    /// Does the same as [`pose_rad`](Self::pose_rad), for an arm whose elements have deflected by `deflections`.
     pub(crate) fn pose_with(
         &self,
         pose_rad: &[f64],
@@ -248,8 +248,8 @@ impl Chain {
         }
     }
 
-    /// Walks from base to tip and collects the elements and bodies. `springs` are the forces of the springs, which are
-    /// inserted on the way, and `deflections` those of the elements.
+    /// Walks from base to tip and collects the elements and bodies. On the way it inserts the forces of the springs,
+    /// `springs`, and moves the arm by the deflections of its elements, `deflections`.
     fn walk(&self, pose_rad: &[f64], springs: Vec<EndLoad>, deflections: Deflections) -> Walk {
         let mut walk = Walk {
             items: Vec::new(),

@@ -10,7 +10,7 @@ use nalgebra::DVector;
 
 /// Largest residual of an accepted eigenvector, relative to the eigenvalue.
 const RESIDUAL: f64 = 1e-12;
-/// The golden ratio less 1. Its multiples are spread evenly over the fractions.
+/// The golden ratio less 1. The fractional parts of its multiples are spread evenly between 0 and 1.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// The matrix in the vectors of Lanczos' method: symmetric and tridiagonal.
@@ -91,8 +91,8 @@ impl Tridiagonal {
         })
     }
 
-    /// Size of the last number of the unit eigenvector of the eigenvalue `value`. The numbers are computed from the
-    /// last to the first, because in this direction they grow and rounding does not.
+    /// Magnitude of the last component of the unit eigenvector for the eigenvalue `value`. The components are computed
+    /// from the last to the first, because in this direction they grow and rounding errors do not.
     fn last_part(&self, value: f64) -> f64 {
         let (mut after, mut here, mut squares) = (0.0, 1.0, 1.0);
         for (i, next) in self.next.iter().enumerate().rev() {

@@ -58,7 +58,8 @@ impl LinkedCoordinates {
 }
 
 impl ElasticElement {
-    /// Whether the element is the torsion spring of the revolute joint `name`. A base has a name that joints may have.
+    /// Whether the element is the torsion spring of the revolute joint `name`. The name alone does not tell, because
+    /// the element of a base may have the name of a joint.
     fn is_joint(&self, name: &str) -> bool {
         matches!(self.compliance, Compliance::Joint(_)) && self.name == name
     }

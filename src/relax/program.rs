@@ -42,7 +42,7 @@ pub(super) struct Solution {
 
 impl Program {
     /// A program that starts with three kinds of options: those of the known design, the lightest one of each slot,
-    /// and the one with the least coefficient in each row.
+    /// and for each row the option of each slot with the least coefficient.
     pub(super) fn new(parts: &Parts, rows: Vec<Row>) -> Self {
         let masses = parts.masses();
         let seen = (0..masses.len())

@@ -223,7 +223,8 @@ impl ShapeModel {
                 inertia += field.transpose() * weighted;
             }
         }
-        // Scaled by `K^-½`, so that a rigid coordinate has weight 0 and the matrix stays symmetric.
+        // The eigenvalue problem is scaled by `K^-½`, so that a rigid coordinate has weight 0 and the matrix stays
+        // symmetric.
         let soft = DVector::from_iterator(count, resistance.iter().map(|k| 1.0 / k.sqrt()));
         let scaled = DMatrix::from_fn(count, count, |i, j| soft[i] * inertia[(i, j)] * soft[j]);
         let modes = SymmetricEigen::new(scaled);

@@ -1,5 +1,5 @@
-//! What loads output bearings, apart from the masses: where links attach, how joints accelerate, and which components
-//! of a wrench load a bearing.
+//! Data from which the loads on output bearings follow, apart from the masses: where links attach, how joints
+//! accelerate, and which components of a wrench load a bearing.
 
 use super::design_space::{DesignSpace, SpaceJoint, SpacePiece};
 use super::slot::Slot;
@@ -114,8 +114,8 @@ fn half_width_m(axis: &Vector3<f64>, vector_m: &Vector3<f64>, section: &Section)
 }
 
 impl BearingLoads {
-    /// Collects these data of a space. `piece_slots` has the slot of each piece, base to tip. `reaches_m` has, for each
-    /// joint, base to tip, the largest distance of the tip from its axis \[m\].
+    /// Collects the levers and accelerations of a space. `piece_slots` has the slot of each piece, base to tip.
+    /// `reaches_m` has, for each joint, base to tip, the largest distance of the tip from its axis \[m\].
     pub(crate) fn new(space: &DesignSpace, slots: &[Slot], piece_slots: &[usize], reaches_m: &[f64]) -> Self {
         let mut levers: Vec<Option<Lever>> = slots.iter().map(|_| None).collect();
         let mut checked = vec![false; slots.len()];

@@ -208,7 +208,7 @@ impl SpacePiece {
         }
     }
 
-    /// The options of a link, for changing them; `None` for a piece that leaves no section open.
+    /// The choices of a link, to be changed. `None` for a piece that leaves no section open.
     pub(crate) fn as_choice_mut(&mut self) -> Option<&mut LinkChoice> {
         match self {
             Self::Choice(choice) => Some(choice),

@@ -99,7 +99,7 @@ impl<'c> ArmProblem<'c> {
         Self::with_joints(space, &TabulatedJoints::new(space, catalogs))
     }
 
-    /// As [`new`](Self::new), with the joints `joints`, whose drives are already in tables.
+    /// Does the same as [`new`](Self::new), for joints whose drives are already in tables.
     pub(crate) fn with_joints(space: &'c DesignSpace, joints: &TabulatedJoints<'c>) -> Self {
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
         let reaches = reaches_m(space, sizing);

@@ -42,7 +42,8 @@ pub struct SizedJoint<'c> {
     /// For each drive of the table, the part of its mass that does not sit at the joint \[kg\], such as that of a motor
     /// that stands elsewhere; 0 if the whole drive sits at the joint.
     pub(crate) away_kg: Vec<f64>,
-    /// Whether every drive that holds is an option of the search; if not, the lightest one that holds is taken.
+    /// Whether the search may choose every drive that meets the demand. If not, the joint gets the lightest one that
+    /// does.
     pub(crate) all_fits: bool,
 }
 
