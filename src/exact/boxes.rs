@@ -55,10 +55,10 @@ impl OpenBox {
     }
 }
 
-/// Bounds the box of all designs, then the boxes into which it is divided, and so on. `open` bounds one box and returns
-/// the boxes into which it is divided. At the end of each round of tasks, `learn` adds the designs found to `state`,
-/// and then `see` is shown `state` and the boxes that are still open. Returns the boxes that are open when the search
-/// is stopped.
+/// Bounds the box of all designs, then the boxes into which it is divided, and so on. `open` bounds one box and
+/// returns the boxes into which it is divided. At the end of each round of tasks, `learn` adds the designs found to
+/// `state`. Then `see` is called with `state` and the boxes that are still open. Returns the boxes that are open when
+/// the search is stopped.
 pub(super) fn open_all_boxes<K: Sync, F: Send + Default>(
     budget: &Budget,
     problem: &Problem,
@@ -87,9 +87,9 @@ fn go_through_boxes<K: Sync, F: Send + Default>(
     in_rounds(state, first, || budget.stopped(), task, learn, see)
 }
 
-/// Bounds the box `first` and then boxes into which it is divided, depth first, until [`BOXES_PER_TASK`] boxes are bounded.
-/// `open` bounds one box and returns the boxes into which it is divided. Returns the boxes that are still open and the
-/// designs found.
+/// Bounds the box `first` and then the boxes into which it is divided, depth first. It stops after [`BOXES_PER_TASK`]
+/// boxes. `open` bounds one box and returns the boxes into which it is divided. Returns the boxes that are still open
+/// and the designs found.
 pub(super) fn open_boxes<F: Default>(
     budget: &Budget,
     first: OpenBox,
@@ -106,9 +106,9 @@ pub(super) fn open_boxes<F: Default>(
     Done { tasks: stack, findings }
 }
 
-/// One pass with the slack `slack` over the boxes `first` and all boxes into which they are divided. `keep` is shown
-/// the state and the open boxes after each round. Returns the bounds of the boxes that are still open when the search
-/// is stopped.
+/// One pass with the slack `slack` over the boxes `first` and all boxes into which they are divided. `keep` is called
+/// after each round with the state and the open boxes. Returns the bounds of the boxes that are still open when the
+/// search is stopped; there are none if the pass is complete.
 pub(super) fn pass_by_boxes(
     budget: &Budget,
     problem: &Problem,

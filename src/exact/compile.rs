@@ -89,8 +89,8 @@ impl<'c> Joints<'c> {
 }
 
 impl JointNeeds {
-    /// What a compiled pose needs to know about `joint`, whose drives are in `slot`. `reach_m` is the distance of the
-    /// tip from the joint's axis \[m\]; the angular acceleration follows from it and the tip's acceleration.
+    /// The data of `joint` that a compiled pose needs. `slot` has its drives. `reach_m` is the distance of the tip
+    /// from the joint's axis \[m\]; the angular acceleration follows from it and the tip's acceleration.
     fn of(space: &DesignSpace, joint: &SpaceJoint, reach_m: f64, slot: &Slot) -> Self {
         let motion = joint.motion(&space.motion, reach_m);
         let of_gear = Self { acceleration_rad_s2: motion.acceleration_rad_s2, ..Self::default() };
@@ -196,8 +196,8 @@ impl<'c> Problem<'c> {
         })
     }
 
-    /// Adds the compiled part of the joint at `place`, with its play and with what its bearing and its drive need to
-    /// know about the link outboard.
+    /// Adds the compiled part of the joint at `place`, with its play. The lever of its bearing and the space for its
+    /// drive, which depend on the link outboard, are added too.
     fn push_joint(&mut self, part: Part<'c>, joint: &SpaceJoint, joints: &Joints<'c>, place: usize) {
         self.levers.push(joints.levers[place].as_ref().map(|lever| self.lever(lever)));
         self.rooms.push(joints.rooms[place].as_ref().map(|room| self.room_at(room)));

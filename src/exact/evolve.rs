@@ -1,9 +1,9 @@
 //! Better incumbents from those that the probes found, by a genetic algorithm.
 //!
 //! The proof of a front is faster with better incumbents, because everything that the incumbents leave open has to be
-//! searched. Probes find some hundreds of designs one by one. The algorithm makes others from them. A child takes some
-//! parts from a parent of similar mass, or options close to its first parent's, and is kept if no design seen before
-//! dominates it. Of designs that differ by little, one is kept for each cell of a grid
+//! searched. Probes find some hundreds of designs one by one. The algorithm makes further designs from these. A child
+//! takes some parts from a parent of similar mass, or options close to its first parent's, and is kept if no design
+//! seen before dominates it. Of designs that differ by little, one is kept for each cell of a grid
 //! ([`thinned`](super::grid::thinned)), so that they do not crowd out the others.
 //!
 //! The result proves nothing. Its designs are evaluated and listed like all others.
@@ -118,7 +118,7 @@ fn by_mass(members: Vec<Individual>) -> Vec<Individual> {
     kept
 }
 
-/// What is needed to make one child.
+/// The inputs for making one child.
 struct Recombination<'a, 'p> {
     budget: &'a Budget<'p>,
     problem: &'a Problem<'p>,

@@ -80,8 +80,8 @@ impl Problem<'_> {
     }
 
     /// Writes the intervals of a joint that takes the lightest drive which carries its demand (first fit). They extend
-    /// over all drives from the first fit of the least demand to that of the greatest. `None` if no drive carries the
-    /// least demand.
+    /// over all drives from the first fit of the least demand to the first fit of the greatest demand. `None` if no
+    /// drive carries the least demand.
     fn fill_first_fit(
         &self,
         piece: usize,

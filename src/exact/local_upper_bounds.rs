@@ -128,8 +128,8 @@ impl LocalUpperBounds {
         Some([self, Self(high)])
     }
 
-    /// Removes from the region of the group what the designs `found` dominate. A bound with such designs below it is
-    /// replaced by the local upper bounds of the region that these designs leave undominated.
+    /// Removes the objectives that the designs `found` dominate from the region of the group. A bound with such
+    /// designs below it is replaced by the local upper bounds of the region that these designs leave undominated.
     pub(super) fn cut_by(&mut self, found: &[Objectives]) {
         let mut cut = Vec::new();
         self.0.retain(|upper| {

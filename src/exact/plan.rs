@@ -5,9 +5,9 @@
 //! design some design found is worse by at most `ε`. The time of a pass grows as a power of the reciprocal of its
 //! slack, `t ∝ ε^-g`. The exponent `g` is measured on the last two completed passes.
 //!
-//! Without a time limit the slacks are those of a fixed list and do not depend on the machine. With a time limit they
-//! are taken from the same list as long as a pass is short compared with the time left, and if the gap that was asked
-//! for can be proved in time. Otherwise the last pass gets the least slack for which there should be time.
+//! Without a time limit the slacks come from a fixed list and do not depend on the machine. With a time limit they
+//! come from the same list as long as a pass is short compared with the time left, and if the gap that was asked for
+//! can be proved in time. Otherwise the last pass gets the least slack for which there should be time.
 
 use serde::{Deserialize, Serialize};
 

@@ -33,7 +33,7 @@ pub(super) struct Survivors {
     pub candidates: Vec<DesignBox>,
 }
 
-/// What the multipliers tried so far prove about a box.
+/// The dual points and relaxed designs of the multipliers tried so far for a box.
 #[derive(Default)]
 struct Proofs {
     points: Vec<DualPoint>,
@@ -52,9 +52,9 @@ impl Proofs {
 }
 
 impl Problem<'_> {
-    /// Tests whether a box has designs below the local upper bounds of a group. The intervals of the box are in `work`,
-    /// and the multipliers of the parent box are in `warm_start`. Bounds below which the box is proved to have no design
-    /// are removed from `below`. `None` if none is left; otherwise the options and designs that remain possible.
+    /// Tests whether a box has designs below the local upper bounds of a group. `work` has the intervals of the box,
+    /// and `warm_start` the multipliers of the parent box. Bounds below which the box is proved to have no design are
+    /// removed from `below`. `None` if none is left; otherwise the options and designs that remain possible.
     pub(super) fn bound_below(
         &self,
         design_box: &[u32],
@@ -87,7 +87,7 @@ impl Problem<'_> {
 
 impl Rows<'_> {
     /// Looks for multipliers that prove a box to have no design below the local upper bound `upper`. `None` if such
-    /// multipliers are found. Otherwise the result is the game between the rows and the relaxed designs at which the
+    /// multipliers are found. Otherwise the result is the game between the rows and the relaxed designs with which the
     /// attempt ended.
     fn refute(
         &mut self,
@@ -196,8 +196,8 @@ struct Plane {
     /// Weights of the mass and of the deflection of a local upper bound.
     mass: f64,
     tip: f64,
-    /// Weight of the difference between `lambda` and the eigenvalue of a local upper bound, with the lightest and with the
-    /// heaviest parts of the box.
+    /// Weight of the difference between `lambda` and the eigenvalue of a local upper bound, once with the lightest and
+    /// once with the heaviest parts of the box.
     moves: [f64; 2],
     lambda: f64,
 }

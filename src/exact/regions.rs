@@ -104,8 +104,8 @@ pub(super) fn pass_by_regions<'p>(
 }
 
 impl<'p> Search<'_, 'p> {
-    /// Searches the region below a group of local upper bounds. If it has at most `regions_to` designs, it is searched box
-    /// by box. Returns the tasks that remain.
+    /// Searches the region below a group of local upper bounds. If it has at most `regions_to` designs, it is searched
+    /// box by box. Returns the tasks that remain.
     fn region(
         &self,
         mut below: LocalUpperBounds,
@@ -143,8 +143,8 @@ impl<'p> Search<'_, 'p> {
         vec![second, first]
     }
 
-    /// Excludes options of a subproblem and local upper bounds as long as that is worth the time, and evaluates promising
-    /// designs. Returns what remains. `None` if the region is empty.
+    /// Excludes options of a subproblem, and local upper bounds, as long as that is worth the time. Then evaluates
+    /// promising designs. Returns the remaining options. `None` if the region is empty.
     fn reduce(
         &self,
         subproblem: &mut Subproblem<'p>,
@@ -225,7 +225,8 @@ impl<'p> Subproblem<'p> {
 
     /// Bounds a subproblem below a group of local upper bounds and removes the bounds that are refuted. Returns the
     /// survivors, and whether the subproblem was restricted to them. It is restricted if enough designs were excluded.
-    /// `is_beaten` tells whether a known design dominates every design with a given bound. `None` if the region is empty.
+    /// `is_beaten` tells whether a known design dominates every design with a given bound. `None` if the region is
+    /// empty.
     pub(super) fn reduce(
         &mut self,
         below: &mut LocalUpperBounds,

@@ -345,7 +345,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Makes the mode rows for another eigenvalue `lambda` \[1/s²\], with their values for the relaxed designs `members`.
+    /// Makes the mode rows for another eigenvalue `lambda` \[1/s²\], and updates their values for the relaxed designs
+    /// `members`.
     pub(super) fn set_lambda(&mut self, lambda: f64, members: &mut [RelaxedDesign]) {
         let more = lambda - self.lambda;
         for (m, mode) in self.modes.iter().enumerate() {
@@ -370,8 +371,8 @@ impl<'a> Rows<'a> {
         objectives.chain(torques).chain(modes).zip(&self.scale).map(|(row, scale)| row / scale)
     }
 
-    /// The upper limit that each scaled row has for every member below the local upper bound `upper`, with the mode rows
-    /// as they are made now.
+    /// The upper limit that each scaled row has for every member below the local upper bound `upper`. The mode rows
+    /// are taken for the present eigenvalue.
     pub(super) fn row_limits_now<'b>(&'b self, upper: &'b LocalUpperBound) -> impl Iterator<Item = f64> + 'b {
         self.row_limits(self.lambda, upper)
     }

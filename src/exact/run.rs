@@ -43,8 +43,8 @@ const PROBES_PER_SQUARED_DECADE: f64 = 0.12;
 /// Number of probes per squared decade of designs if the genetic algorithm ([`evolve`]) follows. It is a third of
 /// [`PROBES_PER_SQUARED_DECADE`].
 const PROBES_TO_EVOLVE: f64 = 0.04;
-/// Default of the greatest number of designs that are listed with all their ties. A tie is a design that differs from
-/// another only in drives of equal mass, torsion curve and bearing stiffness.
+/// Greatest number of designs up to which all ties are listed, unless the caller sets another number. A tie is a
+/// design that differs from another only in drives of equal mass, torsion curve and bearing stiffness.
 const MOST_WITH_TIES: usize = 20_000;
 
 /// A search for the exact front. Other threads can watch and stop it.
