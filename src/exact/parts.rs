@@ -207,8 +207,8 @@ pub(super) const HEAT_ROUNDING: f64 = 1e-12;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct LeastDemand {
     pub demand: JointDemand,
-    /// For each ray (fixed proportion of static torque and inertia), the greatest multiple of its demand that lies
-    /// below this demand.
+    /// For each ray (a fixed proportion of static torque and inertia), the greatest multiple of the ray's demand that
+    /// lies below `demand`.
     multiples: [f64; RAYS],
 }
 

@@ -79,7 +79,7 @@ impl<'p> Exact<'p> {
 
 impl Problem<'_> {
     /// Disjoint boxes that together contain every design, each with its name and sorted by name. There are at most
-    /// `most` of them.
+    /// `most` of them. The largest box is halved first.
     fn divided(&self, most: usize) -> Vec<(String, DesignBox)> {
         let size = |design_box: &DesignBox| self.members(design_box).to_bits();
         let root = self.root();
