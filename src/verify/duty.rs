@@ -166,10 +166,11 @@ impl AskedMotion {
         self.tip_speed_m_s / self.ramp_time_s
     }
 
-    /// Whether no torque of a demand and no heat decreases when static torque or inertia grows. Only while the joint
-    /// slows down is the linear torque subtracted from the static torque. If the joint speeds up for at least as long
-    /// as it slows down, speeding up outweighs this: the motor then has its largest torque of the cycle while the joint
-    /// speeds up, and that torque grows at least as fast as any other decreases.
+    /// Whether every torque of a demand and the motor's heat grow, or stay the same, if static torque or inertia
+    /// grows. The linear torque (due to linear acceleration) is subtracted from the static torque only while the joint
+    /// slows down. If the joint speeds up for at least as long as it slows down, speeding up outweighs this: the motor
+    /// then has its largest torque of the cycle while the joint speeds up, and that torque grows at least as fast as
+    /// any other decreases.
     pub fn grows(&self) -> bool {
         let mean = self.mean_torque();
         mean.of_difference <= mean.of_sum

@@ -42,8 +42,8 @@ pub(super) struct CycleShares {
     /// this fraction.
     pub travel: f64,
     pub ramp_down: f64,
-    /// Rest, weighted with the square of its fraction of the static torque in the same way; 0 if a brake holds the
-    /// joint.
+    /// Rest. A phase with a stated fraction of the static torque is weighted with the square of this fraction. 0 if a
+    /// brake holds the joint.
     pub rest: f64,
 }
 

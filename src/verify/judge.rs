@@ -1,8 +1,8 @@
 //! Evaluation of one design by the full model, with all checks and limits.
 //!
-//! The arm of a design is built from the question's own numbers and the catalog rows of its drives. Statics and
-//! modes are those of `mechanics`, the full model that `armwright analyze` uses. The demands on drives and tubes
-//! are computed by this folder, with each weight known exactly.
+//! The arm of a design is built from the question's own numbers and the catalog rows of its drives. Statics and modes
+//! are computed by `mechanics`, the full model that `armwright analyze` uses. The demands on drives and tubes are
+//! computed by this folder, with each weight known exactly.
 
 use super::bound::Members;
 use super::carriers::carriers;

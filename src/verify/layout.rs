@@ -1,9 +1,9 @@
 //! Where joints, tubes and masses are in a pose, and how each coordinate moves a point.
 //!
-//! The coordinates are the angle of torsion of each joint, its tilts about two axes across, the springs of effects
-//! and of prismatic joints and, for each tube, constant and linear curvature in both planes, and constant shear,
-//! torsion and stretch. The full model has all of these, and more. A model with fewer ways to deform is stiffer, so
-//! its lowest mode is no lower than that of the full model.
+//! The coordinates are the angle of torsion of each joint, its tilts about two axes at right angles to the joint's
+//! axis, the springs of effects and of prismatic joints and, for each tube, constant and linear curvature in both
+//! planes, and constant shear, torsion and stretch. The full model has all of these, and more. A model with fewer ways
+//! to deform is stiffer, so its lowest mode is at least as high as that of the full model.
 
 use crate::arm::LinkModel;
 use crate::arm::body::RigidBody;
@@ -51,7 +51,7 @@ pub(super) struct PlacedMass {
     /// Vector from the point `carrier` to the centre of mass \[m\].
     pub arm_m: Vector3<f64>,
     pub mass_kg: f64,
-    /// Inertia about the centre of mass, in axes of the world \[kg m²\].
+    /// Inertia about the centre of mass, in the axes of the world \[kg m²\].
     pub inertia_kgm2: Matrix3<f64>,
 }
 
@@ -348,8 +348,8 @@ pub(super) enum Coordinate {
     Spring(usize),
 }
 
-/// All coordinates (ways to deform) of an arm, those of the joints first. `model` tells which deformations of links
-/// count, and `tilting` tells for each joint whether its bearing may tilt.
+/// All coordinates (ways to deform) of an arm, the coordinates of the joints first. `model` tells which deformations
+/// of links count, and `tilting` tells for each joint whether its bearing may tilt.
 pub(super) fn coordinates(layout: &Layout, model: LinkModel, tilting: &[bool]) -> Vec<Coordinate> {
     let shapes: &[&[Shape]] = match model {
         LinkModel::Rigid => &[],

@@ -42,8 +42,7 @@ pub struct Looked {
 
 /// Checks whether the verifier's bounds are valid for a question.
 ///
-/// # Errors
-/// A sentence that names what the bounds do not take into account.
+/// If they are not valid, a sentence that names what the bounds do not take into account.
 pub fn conditions(question: &Question) -> Result<(), String> {
     match question.motion.grows() {
         true => Ok(()),

@@ -1,4 +1,4 @@
-//! What loads a drive can take, computed from its catalog rows (Eqs 7-12; docs/sizing.md, "The checks").
+//! The loads that a drive can bear, computed from its catalog rows (Eqs 7-12; docs/sizing.md, "The checks").
 //!
 //! Speed and duty cycle of a joint are fixed, so every check of a drive compares one torque with one number. The
 //! torques are those of [`Quantity`]. Each check is an entry of [`CHECKS`], which says which quantity it limits and

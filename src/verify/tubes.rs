@@ -115,7 +115,7 @@ impl TubeOptions {
         })
     }
 
-    /// The same list with only some of its options. `some` has the indices of these options in ascending order.
+    /// A list of some of the options of this list. `some` has the indices of these options in ascending order.
     pub(super) fn only(&self, some: &[u32]) -> Self {
         Self { tubes: some.iter().map(|&i| self.tubes[i as usize].clone()).collect(), ..*self }
     }

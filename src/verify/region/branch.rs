@@ -82,9 +82,9 @@ impl Rows<'_> {
         between
     }
 
-    /// Score of a division by the options of a part, and this division. The score says how much the members of the
-    /// mixture differ in what the part adds to the rows. The options are divided by their value in the row in which the
-    /// members differ most. `between` are the numbers of the mixture.
+    /// The branching that divides the options of `part`, with its score. The score says how much the members of the
+    /// mixture differ in what the part adds to the rows. The options are divided by what they add to one row: the row
+    /// in which the members differ most. `between` are the numbers of the mixture.
     fn by_options(
         &self,
         part: usize,

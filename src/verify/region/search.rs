@@ -39,7 +39,7 @@ pub(in super::super) struct RegionSearch<'s> {
     work: &'s Work<'s>,
 }
 
-/// The result of reducing the options of a subproblem.
+/// How the reduction of the options of a subproblem ended.
 enum Narrowed {
     /// The subproblem is done: it is proved that no member is below the upper bound.
     Refuted,

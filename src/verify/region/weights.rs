@@ -160,8 +160,8 @@ impl Rows<'_> {
             }
             weights = minimax.weights;
         };
-        // weightings of a single row; those of mass and tip displacement were tried for the parent already, if there is
-        // one
+        // each row by itself, with weight 1; a subproblem with a parent leaves out the rows of mass and tip
+        // displacement, which were tried for the parent already
         let first = if subproblem.weights.is_empty() { 0 } else { self.first_interval };
         let singles = (first..self.first_mode).map(|row| {
             let mut weights = vec![0.0; self.rows.len()];
