@@ -1,8 +1,8 @@
 //! The paper's coupled masses and springs (Eqs 16 to 18), written separately from the general mechanics.
 //!
 //! The unknowns are the absolute angles ψ of three rigid links. The matrices follow from Lagrange's equations. Here
-//! m_i and I_i are a tube's mass and moment of inertia about its centre, m_w is the mass of the wrist and m_p that
-//! of the load.
+//! m_i and I_i are a tube's mass and moment of inertia about its centre, m_w is the mass of the wrist and m_p is the
+//! mass of the load.
 //!
 //! ```text
 //! M11 = I1 + m1 l1²/4 + (m3 + m2 + m_w + m_p) l1²     K = | K2+K3  -K3     0  |
