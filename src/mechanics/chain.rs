@@ -490,7 +490,8 @@ impl Walk {
         });
     }
 
-    /// Adds the feet of a base that can lift off, which tilt about world x and y; nothing for `None`.
+    /// Adds the element of a base whose feet can lift off. It tilts about the x and y axes of the world. `None` adds
+    /// nothing.
     fn lift(&mut self, lift: Option<BaseLift>) {
         let Some(lift) = lift else { return };
         let name = base_lift::KIND.name.into();

@@ -20,7 +20,8 @@ impl Deflections {
         Self { strains, next: 0 }
     }
 
-    /// The motion of everything outboard of the next element, whose twists are `twists`; `None` in the undeflected pose.
+    /// The motion of everything outboard of the next element, whose twists are `twists`; `None` in the undeflected
+    /// pose.
     pub(super) fn motion_of_next(&mut self, twists: &[Twist]) -> Option<Twist> {
         if self.strains.is_empty() {
             return None;

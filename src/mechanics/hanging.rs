@@ -1,9 +1,9 @@
 //! The arm as it hangs: statics about the deflected pose, with large displacements.
 //!
 //! [`Posed::statics`] is linear about the undeflected pose. In truth each element turns everything outboard of it by a
-//! finite angle, and the loads then act with the levers of the deflected pose. Both change the displacement by terms of
-//! the order of `δ²/L`, with `δ` the displacement and `L` the reach: 0.03 mm if a reach of 1 m deflects by 5 mm, which is
-//! more than a laser tracker's error.
+//! finite angle, and the loads then act with the levers of the deflected pose. Both change the displacement by terms
+//! of the order of `δ²/L`, with `δ` the displacement and `L` the reach. If a reach of 1 m deflects by 5 mm, this is
+//! 0.03 mm, which is more than a laser tracker's error.
 //!
 //! The arm is built up from base to tip, and each element moves everything outboard by the screw motion (exponential)
 //! of its deflection. Statics in this pose give new deflections, until the tip rests. The rotation of a link's end is
@@ -24,8 +24,8 @@ const RESTS_M: f64 = 1e-9;
 const SMALL_M: f64 = 1e-4;
 
 impl Chain {
-    /// Position of the tip of the arm as it hangs in the pose `pose_rad` \[rad, m\] under gravity, with a payload, in the
-    /// world \[m\].
+    /// Position of the tip of the arm as it hangs in the pose `pose_rad` \[rad, m\] under gravity, with a payload, in
+    /// the world \[m\].
     pub(crate) fn hanging_tip_m(&self, pose_rad: &[f64], payload: &Payload) -> Vector3<f64> {
         hanging_tip_m(|deflections| self.pose_with(pose_rad, payload, Vector3::zeros(), deflections))
     }

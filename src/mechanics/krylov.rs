@@ -53,7 +53,8 @@ fn start(size: usize) -> DVector<f64> {
     DVector::from_fn(size, |i, _| number(i)).normalize()
 }
 
-/// Makes `vector` orthogonal to all vectors of `basis`. The second pass removes what rounding leaves in the first.
+/// Makes `vector` orthogonal to all vectors of `basis`, in two passes. The second pass removes what rounding leaves in
+/// the first.
 fn remove_parts(vector: &mut DVector<f64>, basis: &[DVector<f64>]) {
     for other in basis.iter().chain(basis) {
         let part = other.dot(vector);

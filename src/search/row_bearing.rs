@@ -1,9 +1,9 @@
 //! Loads on the output bearings of inner joints, eight designs at once.
 //!
-//! The loads are those of [`bearing_loads`](crate::space::bearing_loads). Each load is a sum of three terms: that of
-//! everything outboard of the row, that of the row's link, and that of the inner drives, which grows linearly with
-//! their masses. Each term is projected in advance on the five force and moment components that load a bearing.
-//! During the sweep the terms then only need to be added and squared.
+//! The loads are defined in [`bearing_loads`](crate::space::bearing_loads). Each load is a sum of three terms: from
+//! everything outboard of the row, from the row's link, and from the inner drives. The third term grows linearly with
+//! the masses of these drives. Each term is projected in advance on the five force and moment components that load a
+//! bearing. During the sweep the terms then only need to be added and squared.
 
 use crate::mechanics::Wrench;
 use crate::mechanics::lanes::{Eight, LANES, Lanes};

@@ -199,8 +199,8 @@ fn link_weight_per_n(links: &[StationLink], down: &Vector3<f64>) -> Wrench {
 }
 
 /// For each block of the eigenvalue problem, the number of inner slots that take part in its modes: all from the row
-/// level to the last compliant one. `first` is the slot of the row level, and `links_are_compliant` tells whether some option
-/// of the row's link is compliant.
+/// level to the last compliant one. `first` is the slot of the row level, and `links_are_compliant` tells whether some
+/// option of the row's link is compliant.
 fn compliant_ends(modal: &Modal, first: usize, links_are_compliant: bool) -> [usize; 2] {
     match modal {
         Modal::Planar(blocks) => [0, 1].map(|b| last_compliant(&blocks[b], first, links_are_compliant)),

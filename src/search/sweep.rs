@@ -172,7 +172,7 @@ pub struct Sweep<'p, P: FinishRows> {
     done: Mutex<(Done, Tally)>,
 }
 
-/// The candidates that all tasks have found for one front: that of all designs, or that of a material.
+/// The candidates that all tasks have found for one front: the front of all designs, or the front of one material.
 struct Pool {
     /// Table that rejects dominated candidates at once.
     archive: Archive,
@@ -437,8 +437,8 @@ impl Keep for Worker<'_> {
         self.tally.excluded += designs;
     }
 
-    // A design of a group can be on two fronts: that of the group and that of all designs. If a design of its own
-    // group dominates it, it is on neither, so the bar of the group is used.
+    // A design of a group can be on two fronts: the front of the group and the front of all designs. If a design of
+    // its own group dominates it, it is on neither front, so the bar of the group is used.
     fn bar_hz(&self, group: Option<usize>, mass_kg: f64, tip_deflection_m: f64) -> f64 {
         let pool = group.map_or(self.overall, |group| &self.groups[group]);
         pool.archive.bar_hz(mass_kg, tip_deflection_m)

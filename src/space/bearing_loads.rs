@@ -22,7 +22,7 @@ pub(crate) struct BearingLoads {
     /// For each slot, the lever of its joint: how far from the face of the flange the link attaches. `None` if the slot
     /// has no joint with a bearing.
     pub levers: Vec<Option<Lever>>,
-    /// Whether the bearing in each slot can exclude a design. One whose ratings are unknown cannot.
+    /// Whether the bearing in each slot can exclude a design. A bearing whose ratings are unknown cannot.
     pub checked: Vec<bool>,
     /// Ratio of emergency deceleration to acceleration.
     pub stop_factor: f64,

@@ -186,7 +186,7 @@ impl DesignSpace {
     }
 }
 
-/// The same chain with the lever of every output bearing as a number, computed from the link next to the bearing.
+/// Returns the chain with the lever of every output bearing as a number, computed from the link next to the bearing.
 fn with_levers(mut chain: Vec<Element>) -> Vec<Element> {
     for index in 0..chain.len() {
         let (inboard, outboard) = chain.split_at_mut(index + 1);

@@ -153,7 +153,7 @@ pub struct Case {
     /// Pose of the arm: one entry per driven joint, base to tip. An entry is an angle \[deg\], or the travel of a
     /// prismatic joint \[mm\].
     pub pose_deg: Vec<f64>,
-    /// What the arm holds at the tip.
+    /// The payload at the tip.
     pub payload: Payload,
     /// Force on the tip, in world axes \[N\].
     pub tip_force_n: Vector3<f64>,

@@ -352,8 +352,8 @@ fn station_link(
     let tips: Vec<Vector3<f64>> =
         (0..6).map(|g| displacement_at(&placed.end.column(g).into(), tip_m)).collect();
     StationLink {
-        // the part of the inertia that does not depend on the frequency, for motions of the root: that of the link as
-        // a rigid body
+        // the part of the inertia that does not depend on the frequency, for motions of the root: the inertia of the
+        // link as a rigid body
         inertia: placed.inertia[0].fixed_view::<6, 6>(0, 0).into_owned(),
         // the weight of a uniform tube acts at mid-length
         weight: weight_wrench(tube.weight_n_per_m * tube.length_m, down, &place.centre_m),

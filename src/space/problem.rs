@@ -38,7 +38,7 @@ pub struct ArmProblem<'c> {
     space: &'c DesignSpace,
     /// The slots of the arm: what is added in each step, tip first.
     slots: Vec<Slot<'c>>,
-    /// Slot of each piece, base to tip. Effects may have further slots.
+    /// Slot of each piece, base to tip. The effects of a piece may have further slots.
     piece_slots: Vec<usize>,
     /// Slot of each level, tip first.
     level_slots: Vec<usize>,

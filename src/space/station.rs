@@ -21,7 +21,7 @@ use nalgebra::{Matrix3, Matrix3x6, Matrix6, Rotation3, SMatrix, SVector, Vector3
 pub(crate) struct Station {
     /// The data of each slot in this pose, tip first.
     pub slots: Vec<StationSlot>,
-    /// The same slots, as the computation of the lowest mode needs them.
+    /// The slots in the form that the computation of the lowest mode needs.
     pub modal: Modal,
     /// Force and moment of the payload's weight and of the tip load, as a wrench.
     pub start_wrench: Wrench,
