@@ -15,8 +15,8 @@ use nalgebra::{Matrix6, Vector3};
 /// A component of a wrench is set to zero if its magnitude is below this fraction of the greatest magnitude that a
 /// component of this wrench could have. Such a component is due to rounding.
 const RELATIVE_ROUNDING: f64 = 1e-13;
-/// Number of components of a load: moments about the two axes across the joint axis, forces along these two axes, and
-/// the force along the joint axis.
+/// Number of components of a load: the moments about two axes at right angles to the joint axis, the forces along
+/// these two axes, and the force along the joint axis.
 const COMPONENTS: usize = 5;
 /// Indices of the components that make up the moment, the radial force and the axial force. Each of these three is the
 /// length of its components as a vector.
@@ -79,8 +79,8 @@ pub(super) struct Ramp<'a> {
 struct Frame([Twist; COMPONENTS]);
 
 impl Frame {
-    /// The frame of a joint at the point `at_m` with the given `axis`. `first` and `second` are two directions across
-    /// that axis.
+    /// The frame of a joint at the point `at_m` with the given `axis`. `first` and `second` are two directions at
+    /// right angles to the axis.
     fn new(at_m: &Vector3<f64>, axis: &Vector3<f64>, [first, second]: &[Vector3<f64>; 2]) -> Self {
         let along = |direction: &Vector3<f64>| stack(direction, &Vector3::zeros());
         let about = |direction: &Vector3<f64>| rotation_twist(direction, at_m);
@@ -114,7 +114,7 @@ impl Frame {
 
 impl BearingRows {
     /// Prepares the loads on the bearing of a joint that lies at `at_m` and turns about `axis`. `across` are two
-    /// directions across the axis. `loads` act at rest, and `ramps` are the accelerations of each joint.
+    /// directions at right angles to the axis. `loads` act at rest, and `ramps` are the accelerations of each joint.
     pub(super) fn new<'a>(
         [at_m, axis]: [&Vector3<f64>; 2],
         across: &[Vector3<f64>; 2],

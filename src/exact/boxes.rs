@@ -71,8 +71,8 @@ pub(super) fn open_all_boxes<K: Sync, F: Send + Default>(
     go_through_boxes(budget, state, vec![root], open, learn, see)
 }
 
-/// Bounds the boxes in `first` and all boxes into which they are divided. The other parameters are those of
-/// [`open_all_boxes`].
+/// Bounds the boxes in `first` and all boxes into which they are divided. The other parameters have the same meaning
+/// as in [`open_all_boxes`].
 fn go_through_boxes<K: Sync, F: Send + Default>(
     budget: &Budget,
     state: &mut K,
@@ -189,8 +189,8 @@ impl Search<'_, '_> {
         here.halves(self.problem, level, box_bound)
     }
 
-    /// Whether a known design dominates the bound `box_bound` after it was made worse by the slack. Known are the
-    /// designs of the shared state and those in `findings`, which this task found.
+    /// Whether a known design dominates the bound `box_bound` after it was made worse by the slack. Known designs are
+    /// the designs of the shared state and the designs in `findings`, which this task found.
     pub(super) fn dominates(&self, box_bound: &BoxBound, findings: &Findings) -> bool {
         let slackened = box_bound.slackened(self.slack);
         self.state.incumbents.dominates(&slackened) || findings.dominates(&slackened)

@@ -448,8 +448,8 @@ impl Outboard {
         self.inertia.push(inertia);
     }
 
-    /// The rows of the joint `piece`: of the tilts of its bearing about the axes `across`, if it tilts, then of its
-    /// torsion. `twist` is the motion of everything outboard per radian of torsion.
+    /// The rows of the joint `piece`: first the rows of the tilts of its bearing about the axes `across`, if it tilts,
+    /// then the row of its torsion. `twist` is the motion of everything outboard per radian of torsion.
     fn joint_rows(
         &self,
         piece: usize,

@@ -1,4 +1,4 @@
-//! Better incumbents from those that the probes found, by a genetic algorithm.
+//! Finds better incumbents than the probes did, by a genetic algorithm that starts with their designs.
 //!
 //! The proof of a front is faster with better incumbents, because everything that the incumbents leave open has to be
 //! searched. Probes find some hundreds of designs one by one. The algorithm makes further designs from these. A child
@@ -71,9 +71,9 @@ impl Offspring {
     }
 }
 
-/// Evolves new designs from those in `first` and adds them to `state`. After each generation, `tell` receives the
-/// objectives of the designs from which the next generation is made, and the number of designs whose objectives were
-/// computed.
+/// Evolves new designs from the designs in `first` and adds them to `state`. After each generation, `tell` receives
+/// the objectives of the designs from which the next generation is made, and the number of designs whose objectives
+/// were computed.
 pub(super) fn evolve<'p>(
     budget: &Budget,
     problem: &Problem<'p>,

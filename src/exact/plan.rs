@@ -31,8 +31,8 @@ const MOST_GROWTH: f64 = 4.5;
 /// The last pass is planned to take at most this fraction of the time left. The rest is a margin for errors of the
 /// prediction.
 const LAST_PASS_SHARE: f64 = 0.75;
-/// A pass that should take at most this fraction of the time left counts as short and is made with the slack of the
-/// list.
+/// A pass that is expected to take at most this fraction of the time left counts as short and is made with the slack
+/// of the list.
 const SHORT_PASS_SHARE: f64 = 0.05;
 /// Greatest factor by which one pass divides the slack. A larger step would be predicted from times measured at a much
 /// larger slack. An additional pass in between takes only a small part of the time of the next one.

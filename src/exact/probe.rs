@@ -195,8 +195,8 @@ impl Probe<'_, '_> {
     }
 }
 
-/// A box that may contain a better design than the best so far. `merit` is that of its bound, and `level` the level
-/// along which it is halved.
+/// A box that may contain a better design than the best so far. `merit` is the merit of its bound, and `level` the
+/// level along which it is halved.
 struct Promising {
     merit: f64,
     design_box: DesignBox,

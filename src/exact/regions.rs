@@ -33,7 +33,7 @@ const WORTH_IT: f64 = 0.1;
 /// Width of a grid cell for the thinning of incumbents, as a fraction of the slack.
 const THINNING_CELL: f64 = 0.45;
 
-/// The options that may belong to a design of a region. The trial shapes and multipliers are those of the larger region
+/// The options that may belong to a design of a region. The trial shapes and multipliers belong to the larger region
 /// of which this region is a part, until its own are computed.
 #[derive(Clone)]
 pub(super) struct Subproblem<'p> {
@@ -131,8 +131,8 @@ impl<'p> Search<'_, 'p> {
             let [first, second] = halves.map(|below| Task::Region { below, subproblem: subproblem.clone() });
             return vec![second, first];
         }
-        // The survivors belong to the bound that covers the whole group. They do not tell how to divide the options
-        // below the one bound that is left, so its region is bounded anew.
+        // The options that are left belong to the bound that covers the whole group. They do not tell how to divide
+        // the options for the one bound that is left, so the region of this bound is bounded anew.
         if !was_single {
             return vec![Task::Region { below, subproblem }];
         }

@@ -154,8 +154,8 @@ pub(super) struct DualPoint {
 }
 
 impl Problem<'_> {
-    /// The drives of each level of a box that carry the least demand; `None` for a level of links. `before` has those
-    /// of the parent box, which are reused if they are the same.
+    /// The drives of each level of a box that carry the least demand; `None` for a level of links. `before` has the
+    /// drives of the parent box, which are reused if they are the same.
     fn drives_of_levels(
         &self,
         design_box: &[u32],
@@ -285,7 +285,7 @@ impl<'a> Rows<'a> {
     /// scale of the rows is taken from the interval from `low` to `high`. Returns the index of the first row.
     fn push_force(&mut self, judged: usize, row: &'a Row, [low, high]: [f64; 2], between: [f64; 2]) -> usize {
         let next = self.scale.len();
-        // The scale stays comparable to that of other rows even if the interval is narrow.
+        // The scale stays comparable to the scale of other rows even if the interval is narrow.
         let scale = (high - low).max(0.1 * low.abs().max(high.abs())).max(f64::MIN_POSITIVE);
         self.push(scale, between[0] - row.fixed);
         self.push(scale, row.fixed - between[1]);
@@ -303,8 +303,8 @@ impl<'a> Rows<'a> {
         self.modes.push(Mode { judged, start, shape, kinetic });
     }
 
-    /// The multipliers with which the search for better ones starts. `above` are those of the parent box. Rows that the
-    /// parent box did not have get equal multipliers.
+    /// The multipliers with which the search for better ones starts. `above` are the multipliers of the parent box.
+    /// Rows that the parent box did not have get equal multipliers.
     pub(super) fn starting_multipliers(&self, above: &[f64]) -> Vec<f64> {
         let mut multipliers = vec![0.0; self.scale.len()];
         let others: Vec<usize> = (0..=self.tips.len()).chain(self.first_mode..self.scale.len()).collect();

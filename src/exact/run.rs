@@ -204,7 +204,7 @@ impl<'p> Exact<'p> {
         self.listed(whole.as_ref(), found)
     }
 
-    /// The compiled space of all designs, or of those whose chosen links are all of one material.
+    /// The compiled space of all designs, or of the designs whose chosen links are all of one material.
     pub(super) fn space_of(&self, material_index: Option<usize>) -> Option<Problem<'p>> {
         let is_of_it =
             |option: &LinkOption| material_index.is_none_or(|index| option.material_index == index);
@@ -216,9 +216,9 @@ impl<'p> Exact<'p> {
         Problem::with_joints(self.space, self.joints(), takes, ties)
     }
 
-    /// Searches one part of the study: all designs, or those of one material. The search starts from the given state;
-    /// the flag tells whether no designs are known in it. `whole` is the compiled space of the part; `None` if it has
-    /// no design. If an earlier process has finished this part, its result is returned.
+    /// Searches one part of the study: all designs, or the designs of one material. The search starts from the given
+    /// state; the flag tells whether no designs are known in it. `whole` is the compiled space of the part; `None` if
+    /// it has no design. If an earlier process has finished this part, its result is returned.
     pub(super) fn search_part(
         &self,
         whole: Option<&Problem<'p>>,
@@ -269,7 +269,8 @@ impl<'p> Exact<'p> {
         // Tied kinds may stand for the same design.
         front.dedup_by_key(|c| c.number);
         ExactOutcome {
-            // The number is that of the study, even if the space was not compiled because a level has no usable option.
+            // This is the number of designs in the study, even if the space was not compiled because a level has no
+            // usable option.
             designs_total: self.space.designs_with(self.joints()).unwrap_or(u128::MAX),
             designs_evaluated,
             boxes,

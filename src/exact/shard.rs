@@ -31,8 +31,8 @@ const SUBTREES_BY_REGIONS: usize = 1;
 const LONGEST_NAME: usize = 256;
 
 impl<'p> Exact<'p> {
-    /// Searches the shard for the front of all designs, or for that of the designs of one material. `given` are earlier
-    /// findings of the same study, from any part of the space. They prune boxes, and the result includes them.
+    /// Searches the shard for the front of all designs, or for the front of the designs of one material. `given` are
+    /// earlier findings of the same study, from any part of the space. They prune boxes, and the result includes them.
     pub fn found(&self, material_index: Option<usize>, given: &[FoundInShard]) -> FoundInShard {
         let mut state = SearchState::toward(self.only);
         for FoundInShard { decided, undecided, .. } in given {

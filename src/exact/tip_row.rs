@@ -6,7 +6,7 @@ use super::parts::STIFFNESSES;
 use super::problem::{Part, Problem};
 
 /// The displacement of the tip in a judged case along a fixed direction, as a linear function of the numbers of the
-/// parts. The direction is that of the tip's displacement when it is least over the box.
+/// parts. It is the direction of the tip's least displacement over the box.
 pub(super) struct TipRow {
     /// Index of the case.
     pub case: usize,

@@ -17,7 +17,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 #[derive(Debug, Default)]
 struct Tridiagonal {
     diagonal: Vec<f64>,
-    /// The numbers next to the diagonal, one fewer than on it. None is zero.
+    /// The numbers next to the diagonal. There is one fewer than on the diagonal, and no number is zero.
     next: Vec<f64>,
 }
 

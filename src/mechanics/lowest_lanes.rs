@@ -36,8 +36,8 @@ pub(crate) trait Inner<V: Lanes, const N: usize> {
 /// A matrix for each of eight chains.
 pub(crate) type LaneMatrix<const N: usize> = [[Eight; N]; N];
 
-/// A condensed link in a pose for each of eight chains; the fields are those of [`BlockLink`]. Only the lower
-/// triangle of symmetric matrices is used.
+/// A condensed link in a pose, for each of eight chains. The fields have the same meaning as in [`BlockLink`]. Only
+/// the lower triangle of symmetric matrices is used.
 #[derive(Debug, Clone)]
 pub(crate) struct LaneLink<const N: usize> {
     root: [LaneMatrix<N>; 3],

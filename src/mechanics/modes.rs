@@ -288,9 +288,9 @@ impl PlaneEnergy {
         }
     }
 
-    /// Adds twice the kinetic energy at one Gauss point of a link: that of its translation or, if `rotation` is true,
-    /// of its rotation. `rate` is the velocity in the section frame `frame`, `density` the mass or inertia per length.
-    /// A rotation counts as motion in a plane if it is about the normal of the plane.
+    /// Adds twice the kinetic energy at one Gauss point of a link: the energy of its translation or, if `rotation` is
+    /// true, of its rotation. `rate` is the velocity in the section frame `frame`, `density` the mass or inertia per
+    /// length. A rotation counts as motion in a plane if it is about the normal of the plane.
     fn add_line(
         &mut self,
         frame: &nalgebra::Matrix3<f64>,

@@ -156,11 +156,11 @@ pub struct Stiffer {
     pub element: &'static str,
     /// Downward displacement of the load after the change \[m\].
     pub drop_m: f64,
-    /// This displacement divided by the one before the change.
+    /// This displacement, divided by the displacement before the change.
     pub drop_ratio: f64,
     /// Lowest frequency after the change \[Hz\].
     pub lowest_hz: f64,
-    /// Lowest frequency after the change, divided by the one before.
+    /// Lowest frequency after the change, divided by the lowest frequency before it.
     pub frequency_ratio: f64,
 }
 

@@ -51,8 +51,8 @@ impl<'a> Relaxation<'a> {
     }
 
     /// Lower bound on the mass of every design that deflects at most as far as `asked`, and whose lowest mode is at
-    /// least that of `asked`. `known` is a design (one option for each level) that meets these objectives and weighs at
-    /// most the mass in `asked`. `None` if a part of the known design cannot take its load.
+    /// least as high as the lowest mode of `asked`. `known` is a design (one option for each level) that meets these
+    /// objectives and weighs at most the mass in `asked`. `None` if a part of the known design cannot take its load.
     pub fn mass_lower_bound(&self, known: &[u32], asked: &Objectives) -> Option<MassBound> {
         let arm = self.problem.walk(known, |_, _| {}).ok()?;
         let mut search = Search {

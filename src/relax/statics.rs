@@ -156,7 +156,7 @@ impl CaseLoads {
     }
 
     /// Two inequalities that every design satisfies whose tip moves at most `limit_m` along `direction`. One is exact
-    /// where all loads are least, the other where all are greatest.
+    /// where all loads are least, the other is exact where all loads are greatest.
     pub(super) fn deflection_rows(
         &self,
         problem: &ArmProblem,
@@ -232,8 +232,8 @@ impl CaseLoads {
         }
     }
 
-    /// Inequalities that every design satisfies whose sized joints can take their static, peak and emergency torque
-    /// in this case. The heat of a motor is no sum over parts, so there is no row for it; this only weakens the
+    /// Inequalities that every design satisfies whose sized joints can take their static, peak and emergency torque in
+    /// this case. The heat of a motor is not a sum over the parts, so there is no row for it; this only weakens the
     /// bound.
     pub(super) fn torque_rows(&self, problem: &ArmProblem, parts: &Parts) -> Vec<Row> {
         let mut rows = Vec::new();

@@ -28,7 +28,7 @@ pub(crate) struct BearingLoads {
     pub stop_factor: f64,
 }
 
-/// A joint that accelerates while the others are at rest.
+/// A joint that accelerates while the other joints are at rest.
 pub(crate) struct Mover {
     /// Slot of the joint.
     pub slot: usize,
@@ -51,9 +51,9 @@ impl Lever {
         self.link_slot.map_or(self.lever_m[0], |slot| self.lever_m[options[slot] as usize])
     }
 
-    /// The lever of `joint`: the offset that the study states, or else half the width of the link next to the joint. It
-    /// is zero if the next piece is no tube. `piece` is the number of the joint in the chain, and `piece_slots` has the
-    /// slot of each piece.
+    /// The lever of `joint`: the offset that the study states, or else half the width of the link next to the joint.
+    /// It is zero if the next piece is not a tube. `piece` is the number of the joint in the chain, and `piece_slots`
+    /// has the slot of each piece.
     pub(crate) fn new(space: &DesignSpace, piece: usize, joint: &SpaceJoint, piece_slots: &[usize]) -> Self {
         let half_m =
             |vector_m: &Vector3<f64>, section: &Section| half_width_m(&joint.axis, vector_m, section);

@@ -125,7 +125,7 @@ pub struct DesignSpace {
     pub down: Vector3<f64>,
     /// Joints and links of the arm, from base to tip.
     pub pieces: Vec<SpacePiece>,
-    /// Every case of the study: those in which the arm is judged and those in which it is sized.
+    /// Every case of the study: the cases in which the arm is judged and the cases in which it is sized.
     pub cases: Vec<Case>,
     /// Indices of the cases over which the objectives are taken. Of these cases the worst one counts.
     pub judged_cases: Vec<usize>,

@@ -356,8 +356,8 @@ impl DesignSpace {
     }
 
     /// The layers of the motors that stand on the piece number `piece`. If `moves` is true, these are the motors that
-    /// move with the piece, otherwise those that stand where it begins. The layer of the motor of a sized prismatic
-    /// joint includes its screw or rack.
+    /// move with the piece, otherwise the motors that stand where it begins. The layer of the motor of a sized
+    /// prismatic joint includes its screw or rack.
     fn motors_on(&self, piece: usize, moves: bool) -> impl Iterator<Item = (usize, Layer<'_>)> {
         let is_joint = !matches!(self.pieces[piece], SpacePiece::Link(_) | SpacePiece::Choice(_));
         self.pieces.iter().enumerate().filter_map(move |(of, what)| {

@@ -25,8 +25,8 @@ use rayon::prelude::*;
 /// Number of link options that are condensed at a time, to limit memory.
 const AT_A_TIME: usize = 1024;
 
-/// Indices of the motions within the x-z plane (x, z, rotation about y) and of those across it (y, rotations about x
-/// and z).
+/// Indices of the motions within the x-z plane (first: x, z, rotation about y) and of the motions out of this plane
+/// (second: y, rotations about x and z).
 const PLANES: [[usize; 3]; 2] = [[0, 2, 4], [1, 3, 5]];
 /// Indices of all six motions: three displacements and three rotations.
 const ALL: [usize; 6] = [0, 1, 2, 3, 4, 5];

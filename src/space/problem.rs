@@ -122,7 +122,7 @@ impl<'c> ArmProblem<'c> {
                 Layer::Bodies(carried) => Slot::Offset { mass_kg: carried.mass_kg() },
                 Layer::Tilt(tilt) => Slot::Given { law: tilt.law(), mass_kg: 0.0 },
                 Layer::Guide(spring) => Slot::Given { law: spring.law(), mass_kg: 0.0 },
-                // the station has the weight and inertia of these; they do not count in the mass of a design
+                // the station has the weights and inertias of these layers, which do not count in the mass of a design
                 Layer::Mass(_) | Layer::Travelling(_) | Layer::Springs(_) => Slot::Offset { mass_kg: 0.0 },
             });
         }
@@ -341,7 +341,7 @@ impl<'c> ArmProblem<'c> {
         true
     }
 
-    /// Adds the next slot, `slot`, with this option to the arm `to`. Returns `false` if the arm breaks a limit with it.
+    /// Adds the next slot, `slot`, with an option, to the arm `to`. Returns `false` if the arm then breaks a limit.
     fn add(&self, slot: usize, option: u32, to: &mut Partial) -> bool {
         to.next_slot = slot + 1;
         to.options[slot] = option;
@@ -536,8 +536,9 @@ fn block_eigenvalue<const N: usize>(
     lowest_eigenvalue(&steps, trace_s2)
 }
 
-/// The steps in which the lowest mode of a block (motions that do not couple with the others) is computed, tip first.
-/// They are the payload and the first `slots` slots of the arm. Slots with neither compliance nor mass are left out.
+/// The steps in which the lowest mode of a block is computed, tip first: the payload and the first `slots` slots of
+/// the arm. A block is a set of motions that do not couple with others. Slots with neither compliance nor mass are
+/// left out.
 pub(crate) fn block_steps<'a, const N: usize>(
     block: &'a Block<N>,
     arm: &'a Partial,

@@ -54,7 +54,7 @@ impl StationState {
     }
 
     /// Torque on the joint that is to be added next \[N m\]: the torque of weight and load outboard, plus the torque
-    /// that acts on this joint in addition, such as that of a counterbalance.
+    /// that acts on this joint in addition, such as the torque of a counterbalance.
     pub(crate) fn torque_nm(&self, joint: &StationJoint) -> f64 {
         let of_passive: f64 = joint.turns.iter().map(|turned| turned.own_nm).sum();
         self.load_torque_nm(joint) + joint.own_nm + of_passive
