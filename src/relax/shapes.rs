@@ -251,7 +251,7 @@ impl LinkShape {
     }
 }
 
-/// The options of a link, with the effects of the study applied; empty if the layer is no link.
+/// The options of a link, with the effects of the study applied; empty if the layer is not a link.
 fn tubes(space: &DesignSpace, layer: &Layer) -> Vec<LinkPiece> {
     match layer {
         Layer::Piece(SpacePiece::Choice(choice)) => {

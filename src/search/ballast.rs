@@ -55,7 +55,7 @@ struct Weighed<'p, 'c> {
     arm: Partial,
     objectives: Objectives,
     /// Torque on every joint of the design \[N m\]; first index the slot, second the case. It is 0 for slots that are
-    /// no joints.
+    /// not joints.
     torques_nm: Vec<Vec<f64>>,
 }
 

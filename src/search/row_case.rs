@@ -69,7 +69,7 @@ pub(crate) struct RowCase {
     pub sizing: bool,
 }
 
-/// The hinges (elastic coordinates) of the inner slots `slots`, without those of the row's link.
+/// The hinges (elastic coordinates) of the inner slots `slots`, without the hinges of the row's link.
 pub(super) fn hinges(slots: &[Slot]) -> Vec<Hinge> {
     let mut tubes = slots.len();
     let mut hinges = Vec::new();
@@ -150,9 +150,10 @@ impl RowCase {
     }
 }
 
-/// Torque and inertia about each hinge that the inner pieces cause, in two lists: those per kilogram of the drive in
-/// each inner slot, and those of all pieces with a given mass. `slots` are the inner slots of the case, and `pieces`
-/// the same slots of the problem. `numbers` is the length of a list with an entry for the number of every hinge.
+/// Torque and inertia about each hinge that the inner pieces cause, in two lists: torque and inertia per kilogram of
+/// the drive in each inner slot, and torque and inertia due to all pieces with a given mass. `slots` are the inner
+/// slots of the case, and `pieces` the same slots of the problem. `numbers` is the length of a list with an entry for
+/// the number of every hinge.
 fn at_joints_of_pieces(
     slots: &[StationSlot],
     pieces: &[Slot],

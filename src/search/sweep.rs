@@ -299,7 +299,7 @@ impl<'p, P: FinishRows> Sweep<'p, P> {
         before(number - 1)..before(number)
     }
 
-    /// Number of designs visited or excluded so far, by this process and by those that it continues.
+    /// Number of designs visited or excluded so far, by this process and by earlier processes that it continues.
     pub fn visited(&self) -> u64 {
         self.visited.load(Ordering::Relaxed)
     }

@@ -24,10 +24,10 @@ use crate::catalog::gear::{Gear, GearMass};
 /// The load on an output bearing; also a lower or an upper bound of the load over several designs.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct BearingLoad {
-    /// Moment about an axis across the joint's axis \[N m\]. It is taken where the link attaches or, after
+    /// Moment about an axis at right angles to the joint's axis \[N m\]. It is taken where the link attaches or, after
     /// [`with_lever`](Self::with_lever), at the face of the joint's flange.
     pub moment_nm: f64,
-    /// Force across the axis of the joint (radial) \[N\].
+    /// Force at right angles to the axis of the joint (radial) \[N\].
     pub radial_n: f64,
     /// Force along the axis of the joint \[N\].
     pub axial_n: f64,
@@ -38,9 +38,9 @@ pub(super) struct BearingLoad {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct BearingDemand {
     pub at_rest: BearingLoad,
-    /// Load while one joint speeds up or slows down and the others are at rest.
+    /// Load while one joint speeds up or slows down and the other joints are at rest.
     pub running: BearingLoad,
-    /// Load while one joint stops in an emergency and the others are at rest.
+    /// Load while one joint stops in an emergency and the other joints are at rest.
     pub in_stop: BearingLoad,
 }
 

@@ -132,7 +132,7 @@ impl Drives {
         self.tree.options(node).iter().map(|&i| &self.options[i as usize])
     }
 
-    /// Least and greatest numbers of those drives below `node` that may meet a demand of at least `asked`. `None` if no
+    /// Least and greatest numbers of the drives below `node` that may meet a demand of at least `asked`. `None` if no
     /// drive can.
     pub(super) fn holding(&self, node: u32, asked: &Demand) -> Option<DriveRange> {
         if self.tree.options(node).len() > SMALL_SET {

@@ -186,9 +186,9 @@ impl StatedPhase {
     }
 }
 
-/// The phases of a stated duty. A phase at half the speed of the one after or before it is taken as the ramp between
-/// rest and that speed. Half is meant within 5 %, because speeds are printed with few digits. With a brake, phases at
-/// rest need no motor torque and are left out.
+/// The phases of a stated duty. A phase at half the speed of the phase after or before it is taken as the ramp between
+/// rest and that speed. A speed counts as half if it differs from half by less than 5 %, because speeds are printed
+/// with few digits. With a brake, phases at rest need no motor torque and are left out.
 pub(super) fn stated_phases(duty: &[AskedDutyPhase], has_brake: bool) -> Vec<StatedPhase> {
     let whole_s: f64 = duty.iter().map(|phase| phase.time_s).sum();
     let full_rad_s = |place: usize| duty[place % duty.len()].speed_rpm * PI / 30.0;

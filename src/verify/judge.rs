@@ -132,7 +132,7 @@ impl<'q> Judge<'q> {
     }
 
     /// Checks from the tip inward whether every drive meets the demand of everything outboard of it. Returns the parts
-    /// of the design: those in `picks`, and for each joint with the first-fit rule the lightest drive that passes.
+    /// of the design: the parts in `picks`, and for each joint with the first-fit rule the lightest drive that passes.
     /// `None` if a drive or a tube fails.
     fn with_drives(&self, picks: &[Pick], tubes: &[TubeRange]) -> Option<Vec<Pick>> {
         let pieces = self.question.pieces.iter().enumerate();

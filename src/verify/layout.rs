@@ -148,8 +148,8 @@ impl Layout {
         layout
     }
 
-    /// Adds the springs on which the arm stands, such as those of a base that tilts. They are inboard of the first
-    /// piece, although the list has them after the springs of that piece.
+    /// Adds the springs on which the arm stands, such as the springs of a base that tilts. They are inboard of the
+    /// first piece, although the list has them after the springs of that piece.
     fn add_base(&mut self, structure: &Structure) {
         let fixed = structure.base_frame.springs();
         let level = [Vector3::x(), Vector3::y()].map(|axis| (axis, structure.base_tilt_rad_per_nm));
@@ -336,11 +336,11 @@ impl Shape {
 pub(super) enum Coordinate {
     /// Angle of torsion of a joint.
     Joint(usize),
-    /// Tilt of a joint's bearing about one of the two axes across the joint's axis.
+    /// Tilt of a joint's bearing about one of two axes at right angles to the joint's axis.
     Tilt(usize, usize),
-    /// Displacement of everything outboard of a joint along one of the two axes across the joint's axis, or along the
-    /// joint's axis (index 2). The arm does not deform in this way: the motion is a virtual one, from which forces
-    /// follow.
+    /// Displacement of everything outboard of a joint along one of two axes at right angles to the joint's axis, or
+    /// along the joint's axis (index 2). The arm does not deform in this way: the motion is a virtual one, from which
+    /// forces follow.
     Shift(usize, usize),
     /// Deformation of a tube in one shape.
     Tube(usize, Shape),

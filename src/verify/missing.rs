@@ -117,8 +117,8 @@ impl Judge<'_> {
         drives.chain(tubes).try_fold(1u128, |product, options| product.checked_mul(options as u128))
     }
 
-    /// Judges designs by the full model. Returns those that pass all checks and limits and that no design of the front
-    /// dominates. Each design is given by its options, one for each level.
+    /// Judges designs by the full model. Returns the designs that pass all checks and limits and that no design of the
+    /// front dominates. Each design in `designs` is given by its options, one for each level.
     fn unbeaten(&self, designs: &[Vec<u32>], front: &FrontIndex) -> Vec<Judged> {
         let judged = designs.par_iter().filter_map(|options| self.judge(&self.picks(options)));
         judged.filter(|design| !front.beats(&design.objectives)).collect()

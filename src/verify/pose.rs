@@ -152,7 +152,7 @@ impl Carried {
 }
 
 impl<'a> Builder<'a> {
-    /// Collects the inputs of a case. `coordinates` are those over which its inertia matrices are made.
+    /// Collects the inputs of a case. Its inertia matrices will be made over `coordinates`.
     pub(super) fn new(
         question: &Question,
         structure: &Structure,

@@ -32,8 +32,8 @@ const EDGE_SHARE: f64 = 0.1;
 /// One way to divide a subproblem in two.
 pub(super) enum Branching {
     /// Divides the options of a part (joints are numbered before tubes) by a value: the sum of an option's numbers
-    /// times `per_number`. Options with a value up to `at` make one half, the others the second. Without `at` the
-    /// halves have equal numbers of options.
+    /// times `per_number`. Options with a value of at most `at` make the first half, the remaining options the second.
+    /// Without `at` the halves have equal numbers of options.
     Options {
         part: usize,
         per_number: Vec<f64>,
@@ -306,8 +306,9 @@ impl Subproblem {
     }
 }
 
-/// Divides `options` into those whose `value` is at most `at` and the others. If one of the two lists would be empty,
-/// the options are sorted by their value and divided into equal halves. `None` if there is only one option.
+/// Divides `options` into two lists: the options whose `value` is at most `at`, and the remaining ones. If one list
+/// would be empty, the options are sorted by their value and divided into equal halves. `None` if there is only one
+/// option.
 fn halved(options: &[u32], value: impl Fn(&u32) -> f64, at: Option<f64>) -> Option<[Vec<u32>; 2]> {
     let (mut low, mut high): (Vec<u32>, Vec<u32>) =
         options.iter().partition(|option| at.is_some_and(|at| value(option) <= at));

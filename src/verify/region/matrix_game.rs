@@ -28,7 +28,7 @@ const LARGEST_WEIGHT: f64 = 3.0;
 const SHORT_OF: f64 = 0.95;
 
 /// Weights of the columns, and fractions of the rows in a mixture (the dual solution). The fractions add up to one.
-/// So do the weights of those columns that are not conditions.
+/// The weights of the columns that are not conditions add up to one, too.
 pub(super) struct Minimax {
     pub weights: Vec<f64>,
     pub shares: Vec<f64>,

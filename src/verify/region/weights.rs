@@ -25,7 +25,7 @@ const WEIGHT_CONVERGENCE: f64 = 5e-4;
 const LARGEST_ROW: f64 = 10.0;
 /// Margin for rounding in sums whose terms are about one.
 pub(super) const ROUNDING: f64 = 1e-9;
-/// Number of weightings that are used to exclude options: those with the greatest least sums.
+/// Number of weightings that are used to exclude options: the weightings with the greatest least sums.
 const WEIGHTINGS_USED: usize = 12;
 /// Approximate number of nodes into which the tubes of a link are divided when options are excluded.
 const NODES_PER_LINK: usize = 128;
@@ -115,8 +115,8 @@ impl Rows<'_> {
         (Surrogate { weights, least, parts }, Member { numbers, drives })
     }
 
-    /// The weights with which the search of a subproblem starts: those with which its parent ended, or equal weights if
-    /// it has no parent.
+    /// The weights with which the search of a subproblem starts: the weights with which its parent ended, or equal
+    /// weights if it has no parent.
     fn inherited(&self, subproblem: &Subproblem) -> Vec<f64> {
         let mut weights = subproblem.weights.clone();
         weights.resize(self.first_mode, 0.0);
