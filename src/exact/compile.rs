@@ -164,8 +164,8 @@ impl<'c> Problem<'c> {
     }
 
     /// Compiles one layer of the chain, which belongs to the piece at `place`. The drives of a joint are taken out of
-    /// `joints`. `takes` and `ties` are those of [`new`](Self::new). `None` if a choice has no option, or if this
-    /// search cannot treat the layer.
+    /// `joints`. `takes` and `ties` have the same meaning as in [`new`](Self::new). `None` if a choice has no option,
+    /// or if this search cannot treat the layer.
     fn part(
         &mut self,
         (place, layer): (usize, Layer<'c>),

@@ -158,8 +158,8 @@ impl FromIterator<LocalUpperBound> for LocalUpperBounds {
     }
 }
 
-/// The staircase of the incumbents added so far: deflection \[m\] and mode \[Hz\] of those that are not dominated, in
-/// ascending order of both.
+/// The staircase of the incumbents added so far: deflection \[m\] and mode \[Hz\] of the incumbents that are not
+/// dominated, in ascending order of both.
 struct Stairs {
     steps: Vec<[f64; 2]>,
     limits: LocalUpperBound,

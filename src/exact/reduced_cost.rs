@@ -170,7 +170,7 @@ impl LaneWork for DrivesCost<'_> {
 }
 
 /// Computes whether every tube of a box is excluded: whether, at some dual point (set of multipliers), the least price
-/// of a tube in the box is above the allowed one. A price that is not a number excludes nothing.
+/// of a tube in the box is above the allowed price. A price that is not a number excludes nothing.
 struct LinksCost<'a> {
     links: &'a LinkBox,
     prices: &'a [EightPrices],

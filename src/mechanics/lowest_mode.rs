@@ -20,7 +20,7 @@ struct MassProduct<'a> {
     linked: Vec<LinkedCoordinates>,
 }
 
-/// An elastic element, and the inertia of the bodies between it and the next one.
+/// An elastic element, and the inertia of the bodies between it and the next element.
 struct Stage<'a> {
     element: &'a ElasticElement,
     bodies: Matrix6<f64>,

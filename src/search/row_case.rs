@@ -78,7 +78,7 @@ pub(super) fn hinges(slots: &[Slot]) -> Vec<Hinge> {
             Slot::Given { .. } | Slot::Sized(_) | Slot::Bearing { .. } => {
                 hinges.push(Hinge { number: slot, slot, end: None });
             }
-            // the first slot may be the link of the row, which is no hinge
+            // the first slot may be the link of the row, which is not a hinge
             Slot::Link { .. } if slot > 0 => {
                 hinges.extend((0..6).map(|end| Hinge { number: tubes + end, slot, end: Some(end) }));
                 tubes += 6;

@@ -1,9 +1,9 @@
 //! The sweep: it evaluates every design, in parallel.
 //!
 //! `Visit` walks the tree of designs in tasks. A design that another one clearly dominates is dropped at once
-//! (`Archive`). The others are compared exactly from time to time. Memory therefore grows with the front and with the
-//! tables of the problem (for arms some kilobytes per option and case), not with the number of designs. The result
-//! does not depend on the order of visits or on the number of threads.
+//! (`Archive`). The remaining designs are compared exactly from time to time. Memory therefore grows with the front
+//! and with the tables of the problem (for arms some kilobytes per option and case), not with the number of designs.
+//! The result does not depend on the order of visits or on the number of threads.
 
 use super::finish::FinishRows;
 use super::resume::Done;
@@ -224,7 +224,7 @@ impl Pool {
         clear_dominated(&mut all);
         // tasks end in any order; sorting makes the result independent of it
         all.sort_unstable_by_key(|c| c.number);
-        // a design is here twice if an earlier process found it in a task that it did not complete
+        // a design is here twice if an earlier process found it in a task and stopped before the end of this task
         all.dedup_by_key(|c| c.number);
         all
     }

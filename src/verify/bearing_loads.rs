@@ -78,7 +78,7 @@ fn probes_of(joint: usize) -> Components<Coordinate> {
     ]
 }
 
-/// The five components of the load on the bearing of `joint` that the weights outboard of it make, each as a linear
+/// The five components of the load on the bearing of `joint` that the weights outboard of it cause, each as a linear
 /// function of these weights.
 fn at_rest(builder: &Builder, joint: usize) -> Components<Linear> {
     let placed = &builder.layout.joints[joint];
@@ -107,8 +107,8 @@ impl PosedBearing {
     }
 }
 
-/// Raises the largest moment, radial force and axial force to those of one load. The load is given by its forces and
-/// moments along the three axes, as intervals.
+/// Raises the largest moment, radial force and axial force in `largest` to the values of one load, where these are
+/// larger. The load is given by its forces and moments along the three axes, as intervals.
 fn take(largest: &mut [Span; 3], [u_n, v_n, axial_n, u_nm, v_nm]: &Components<Span>) {
     let norm = |a: &Span, b: &Span| Span {
         least: libm::hypot(a.least_size(), b.least_size()),

@@ -184,8 +184,8 @@ impl Rows<'_> {
         })
     }
 
-    /// Indices of the rows of torque intervals. These rows come in pairs of opposite sign, so the sum of the weights,
-    /// which is one, does not include theirs.
+    /// Indices of the rows of torque intervals. These rows come in pairs of opposite sign, so the weights of these
+    /// rows are not counted in the sum of the weights, which is one.
     fn conditions(&self) -> Range<usize> {
         self.first_interval..self.first_mode
     }
