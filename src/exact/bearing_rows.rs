@@ -133,9 +133,9 @@ impl BearingRows {
     }
 
     /// Least and greatest moment, radial and axial force on the output bearing over the box: at rest, while a joint
-    /// accelerates, and in an emergency stop. `stop_factor` is the acceleration in a stop divided by that in a ramp.
-    /// The moment of the radial force about the bearing (force times the distance along the axis to the link) is left
-    /// out; the caller adds it.
+    /// accelerates, and in an emergency stop. `stop_factor` is the acceleration in a stop divided by the acceleration
+    /// in a ramp. The moment of the radial force about the bearing (force times the distance along the axis to the
+    /// link) is left out; the caller adds it.
     pub(super) fn loads(&self, numbers: &Numbers, stop_factor: f64) -> [BearingDemand; 2] {
         let at_rest = self.at_rest.each_ref().map(|sum| sum.between_weights(numbers.weights_n));
         let rest = squared_lengths(&at_rest);

@@ -52,9 +52,9 @@ impl Problem<'_> {
         Some(())
     }
 
-    /// Reduces the drives of a joint to those that may carry the least demand, and writes the intervals over them to
-    /// `work`. `node` is the node of the joint's tree and is replaced by a smaller one. `None` if no drive may carry
-    /// the demand.
+    /// Reduces the drives of a joint to the drives that may carry the least demand, and writes the intervals over them
+    /// to `work`. `node` is the node of the joint's tree and is replaced by a smaller one. `None` if no drive may
+    /// carry the demand.
     fn fill_drives(
         &self,
         piece: usize,
@@ -110,9 +110,9 @@ impl Problem<'_> {
         Some(())
     }
 
-    /// Reduces the options of a link to those that may carry the least stress, and writes the intervals over them to
-    /// `work`. `node` is the node of the link's tree and is replaced by a smaller one. `None` if no option may carry
-    /// the stress.
+    /// Reduces the options of a link to the options that may carry the least stress, and writes the intervals over
+    /// them to `work`. `node` is the node of the link's tree and is replaced by a smaller one. `None` if no option may
+    /// carry the stress.
     fn fill_links(
         &self,
         piece: usize,
@@ -205,8 +205,9 @@ impl Problem<'_> {
     }
 }
 
-/// The box around those drives below `node` that may carry the demand `asked`. The function goes at most `depth` steps
-/// down the tree. Drives that it excludes in these steps do not widen the box. `None` if no drive may carry the demand.
+/// The box around the drives below `node` that may carry the demand `asked`. The function goes at most `depth` steps
+/// down the tree. Drives that it excludes in these steps do not widen the box. `None` if no drive may carry the
+/// demand.
 fn feasible_drives(tree: &Tree<DriveBox>, node: u32, asked: &LeastDemand, depth: usize) -> Option<DriveBox> {
     let drives = &tree.node(node).bounds;
     if !drives.may_hold(asked) {

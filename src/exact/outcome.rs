@@ -41,7 +41,8 @@ pub struct ExactOutcome {
     pub gap: Option<f64>,
     /// The designs found that no other design dominates.
     pub front: Vec<Candidate>,
-    /// Whether the front lists all ties, that is, every design that differs from another only in drives of equal mass
-    /// and curve. `false` if there are too many; then one design of each set of ties is listed.
+    /// Whether the front lists all ties, that is, every design that differs from another only in drives of equal mass,
+    /// torsion curve and bearing stiffness. `false` if there are too many; then one design of each set of ties is
+    /// listed.
     pub ties_listed: bool,
 }

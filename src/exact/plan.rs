@@ -85,9 +85,9 @@ impl Plan {
         Some(step_to(least_slack_within(done, LAST_PASS_SHARE * left_s).max(finest), last.slack).max(finest))
     }
 
-    /// The next slack of the list after the slack `last`. Up to `most_passed_over` slacks are skipped, but a skip never
-    /// leads to the pass without slack; that one comes only after all others. `None` if `last` is the last slack of the
-    /// list.
+    /// The next slack of the list after the slack `last`. Up to `most_passed_over` slacks are skipped, but a skip
+    /// never leads to the pass without slack; this pass comes only after all other passes. `None` if `last` is the
+    /// last slack of the list.
     fn listed(&self, last: f64) -> Option<f64> {
         let finer = self.slacks.iter().copied().filter(|slack| *slack < last);
         let mut ahead = finer.take(1 + self.most_passed_over);

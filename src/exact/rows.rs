@@ -66,7 +66,7 @@ pub(super) struct Rows<'a> {
     pub fixed: Vec<f64>,
     /// For each judged case, the row (inequality) on the displacement of the tip.
     pub tips: Vec<TipRow>,
-    /// The gears that are not rigid, first those of the first judged case, then those of the second, and so on.
+    /// The gears that are not rigid, listed by judged case: the gears of the first judged case come first.
     pub gears: Vec<Gear>,
     /// The generalized forces to which rows set a least and a greatest value. Each has two rows.
     pub forces: Vec<Force<'a>>,

@@ -142,9 +142,9 @@ impl<'p> Exact<'p> {
         Self { regions_from: designs, regions_to: designs.min(SMALL_REGION), ..self }
     }
 
-    /// Sets the greatest number of designs up to which every tie is listed. Ties are designs that differ only in drives
-    /// of equal mass and torsion curve. The default is 20,000. If there are more, one design of each set of ties is
-    /// listed.
+    /// Sets the greatest number of designs up to which every tie is listed. Ties are designs that differ only in
+    /// drives of equal mass, torsion curve and bearing stiffness. The default is 20,000. If there are more, one design
+    /// of each set of ties is listed.
     #[must_use]
     pub fn with_ties_up_to(self, designs: usize) -> Self {
         Self { most_with_ties: designs, ..self }

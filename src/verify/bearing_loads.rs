@@ -91,7 +91,8 @@ fn at_rest(builder: &Builder, joint: usize) -> Components<Linear> {
 
 impl PosedBearing {
     /// Raises `largest` to the loads on this bearing in this case. `loads` and `inertias` are the intervals of the
-    /// weights and inertias of the parts. `stop_factor` is the acceleration in a stop divided by that in a ramp.
+    /// weights and inertias of the parts. `stop_factor` is the acceleration in a stop divided by the acceleration in a
+    /// ramp.
     pub(super) fn load(&self, loads: &[Span], inertias: &[Span], stop_factor: f64, largest: &mut Largest) {
         let rest = self.rest.each_ref().map(|component| component.over(loads));
         let [at_rest, running, in_stop] = &mut largest.0;

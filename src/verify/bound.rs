@@ -199,7 +199,8 @@ impl Skeleton {
             .then_some(ideal)
     }
 
-    /// The greatest stiffness of each coordinate over the members, in a pose. The order is that of `coordinates`.
+    /// The greatest stiffness of each coordinate over the members, in a pose. The order is the same as in
+    /// `coordinates`.
     pub(super) fn stiffnesses(&self, pose: &Pose, members: &Members) -> Vec<f64> {
         let loads = &members.loads[pose.water];
         let stiffness = |coordinate: &Coordinate| match *coordinate {

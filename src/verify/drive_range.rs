@@ -21,7 +21,8 @@ pub(super) struct DriveRange {
     pub stiff: Windup,
     /// A torsion curve that is nowhere stiffer than the curve of any of the drives.
     pub soft: Windup,
-    /// Tilt of the output bearing per moment across the axis, effects included \[rad/(N m)\]; 0 is rigid.
+    /// Tilt of the output bearing \[rad/(N m)\] per moment about an axis at right angles to the joint's axis, effects
+    /// included; 0 is rigid.
     pub tilt_rad_per_nm: Span,
     /// Greatest slope with which any of the drives vibrates \[N m/rad\], where the study lets modes use one slope
     /// at every torque. Infinite if the slope of some drive depends on the torque.

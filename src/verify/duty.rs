@@ -27,7 +27,7 @@ pub(super) struct Duty {
     /// the two is zero: Eq 8 (see docs/sizing.md) can be read in either way, and the study states which one it takes.
     linear_per_inertia: f64,
     linear_per_static: f64,
-    /// Torque of linear acceleration in an emergency stop, divided by that in a ramp.
+    /// Torque of linear acceleration in an emergency stop, divided by the torque of linear acceleration in a ramp.
     pub stop_factor: f64,
     mean: MeanTorque,
     /// Duration of an emergency stop \[s\].

@@ -113,7 +113,8 @@ impl MotorHeat {
         }
     }
 
-    /// Whether each number is at most that of `other`, so that this motor passes whenever the other one does.
+    /// Whether each number is at most the same number of `other`, so that this motor passes whenever the other one
+    /// does.
     pub(super) fn covers(&self, other: &Self) -> bool {
         self.driving <= other.driving
             && self.driven <= other.driven

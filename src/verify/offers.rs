@@ -33,7 +33,8 @@ pub(super) struct Offer {
     pub bearing: Option<Bearing>,
     /// Torque-to-twist law of the joint with this gear, effects included.
     pub law: JointLaw,
-    /// Tilt of the output bearing per moment across the axis, effects included \[rad/(N m)\].
+    /// Tilt of the output bearing \[rad/(N m)\] per moment about an axis at right angles to the joint's axis, effects
+    /// included.
     pub tilt_rad_per_nm: f64,
     pub ratings: Ratings,
 }
@@ -47,8 +48,8 @@ pub(super) enum JointOffers {
 /// The drives of the catalogs that a joint may have.
 pub(super) struct CatalogOffers {
     pub duty: Duty,
-    /// Whether the search may choose any drive that meets the demand. Otherwise the joint takes the lightest one
-    /// that does.
+    /// Whether the search may choose any drive that meets the demand. Otherwise the joint takes the lightest drive
+    /// that meets it.
     pub is_choice: bool,
     /// The drives, lightest first. Drives of equal mass are ordered by the names of gear and motor.
     pub offers: Vec<Offer>,

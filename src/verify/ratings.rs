@@ -1,7 +1,7 @@
 //! The loads that a drive can bear, computed from its catalog rows (Eqs 7-12; docs/sizing.md, "The checks").
 //!
 //! Speed and duty cycle of a joint are fixed, so every check of a drive compares one torque with one number. The
-//! torques are those of [`Quantity`]. Each check is an entry of [`CHECKS`], which says which quantity it limits and
+//! torques are listed in [`Quantity`]. Each check is an entry of [`CHECKS`], which says which quantity it limits and
 //! to what value. A further check is one more entry. A further torque is one more quantity, and [`Duty::demand`]
 //! computes its value.
 //!

@@ -1,9 +1,9 @@
 //! Weighted sums of a subproblem's rows (surrogate constraints).
 //!
-//! With non-negative weights, a weighted sum of the rows is not positive for any member below the upper bound. The
-//! least value of this sum over all members is found part by part. If it is positive, no member lies below the
-//! upper bound. Otherwise the distance of this least value from zero tells which options are too expensive for any
-//! member (reduced costs).
+//! With non-negative weights, a weighted sum of the rows is at most zero for every member below the upper bound. The
+//! least value of this sum over all members is found part by part. If it is positive, no member lies below the upper
+//! bound. Otherwise the distance of this least value from zero tells which options are too expensive for any member
+//! (reduced costs).
 
 use super::matrix_game::{Minimax, solve};
 use super::price::{Prices, affordable, cheapest};
@@ -38,8 +38,8 @@ struct Surrogate {
     parts: Vec<f64>,
 }
 
-/// The cheapest member under a weighting, as the numbers of its parts. It need not be a design, because each gear
-/// may have the twist of another torque than the masses cause.
+/// The cheapest member under a weighting, as the numbers of its parts. It need not be a design, because the twist of a
+/// gear may belong to a torque other than the one that the masses cause.
 pub(super) struct Member {
     pub numbers: Vec<f64>,
     /// Index of the drive of each joint.
