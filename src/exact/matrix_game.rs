@@ -27,8 +27,8 @@ pub(super) struct Game {
 /// Solves a matrix game: finds the weights of the columns that make the weighted sum of the worst row as large as
 /// possible. `rows` has the numbers of all rows one after the other, `width` numbers for each row.
 ///
-/// The simplex method solves the linear program of the other player, who mixes the rows: `max Σ z` with `Σ_j (a_ji +
-/// c) z_j <= 1` for every column `i`, and `z >= 0`. The dual values of this program are the weights.
+/// The simplex method solves the linear program of the other player, who mixes the rows: `max Σ z` with
+/// `Σ_j (a_ji + c) z_j <= 1` for every column `i`, and `z >= 0`. The dual values of this program are the weights.
 ///
 /// The columns in the range `balanced` are conditions on the mixture: `Σ_j a_ji z_j <= 0`. They come in pairs of
 /// opposite sign, so the sum must be zero. If such a pair were two ordinary columns, equal weights on both would

@@ -18,9 +18,9 @@
 //! The lightest mixture is a linear program, which Clarabel solves (`program`). The result is the Lagrangian bound
 //! at the solver's multipliers. It is valid for any multipliers, so it does not depend on the solver's tolerance.
 //!
-//! A known design meets the requirements. Options that cannot belong to a design which meets them too and is no
-//! heavier are dropped. This narrows the ranges of the loads and tightens the bound, and is repeated until nothing
-//! changes. Every step is proved in `docs/relaxation.md`.
+//! A known design meets the requirements. An option is dropped if it cannot belong to any design that also meets the
+//! requirements and is no heavier than the known design. This narrows the ranges of the loads and tightens the bound,
+//! and is repeated until nothing changes. Every step is proved in `docs/relaxation.md`.
 
 pub(crate) mod drives;
 pub(crate) mod parts;

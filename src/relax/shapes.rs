@@ -2,9 +2,9 @@
 //!
 //! `λ₁ = min_x xᵀK x / xᵀM x`. So a design whose `λ₁` is at least `ω²` satisfies `ω² xᵀM x - xᵀK x ≤ 0` for every
 //! shape `x` of strain coordinates (joint angles and the polynomials of [`beam`](crate::mechanics::beam)). `M` is
-//! linear in the masses of the pieces and `K` in their stiffnesses. For a fixed `x` the left side is therefore a
-//! sum with one number for each piece. The shapes that matter are the modes of mixtures whose lowest mode is below
-//! the required one. They are found one after the other.
+//! linear in the masses of the pieces and `K` in their stiffnesses. For a fixed `x` the left side is therefore a sum
+//! with one number for each piece. The shapes that matter are the modes of mixtures whose lowest mode is below the
+//! required lowest mode. They are found one after the other.
 
 use super::parts::Parts;
 use super::row::Row;

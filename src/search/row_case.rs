@@ -55,7 +55,7 @@ pub(crate) struct RowCase {
     /// For each block of the eigenvalue problem, the range of `spread_entries` that belongs to it.
     pub spread_of: [Range<usize>; 2],
     /// For each block of the eigenvalue problem, the number of inner slots that take part in its modes: all from the
-    /// row level to the last compliant one. Slots inboard of that one stand still in every mode.
+    /// row level to the last compliant one. Slots inboard of that slot stand still in every mode.
     pub ends: [usize; 2],
     /// Whether at least one option of the row's link is elastic in this case. If none is, the link is rigid (or the row
     /// level is not a link).

@@ -160,7 +160,7 @@ impl RowChunk<'_, '_> {
         let slots = &self.problem.slots()[self.row.first..];
         let mut largest_s2 = V::zero();
         let mut indices = [0; LANES];
-        // the row level is either a link or a drive, and the other inner slots are no links with options
+        // the row level is either a link or a drive, and none of the other inner slots is a link with options
         match self.row.chunks.get(self.chunk) {
             Some(chunk) => self.start_with_link::<V>(chunk, begun, arms),
             None => self.start::<V>(begun, arms),

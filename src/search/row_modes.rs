@@ -25,8 +25,8 @@ use crate::space::levels::Keep;
 use crate::space::station::{Block, BlockSlot, Modal};
 use std::f64::consts::TAU;
 
-/// Eight complete arms whose lowest modes are to be found, or at least compared with a bar. A bar is the lowest mode
-/// that a design needs for not being dominated.
+/// Eight complete arms whose lowest modes are to be found, or at least compared with a bar. A design whose lowest mode
+/// is below its bar is dominated.
 #[derive(Clone, Copy)]
 pub(crate) struct Question<'a, 'c> {
     at: RowChunk<'a, 'c>,

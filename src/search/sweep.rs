@@ -19,8 +19,9 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// When candidates are compared exactly, one is dropped only if another one is better by more than this fraction in
-/// every objective. The full model decides between closer candidates later, because the fast model has rounding errors.
+/// When candidates are compared exactly, a candidate is dropped only if another candidate is better by more than this
+/// fraction in every objective. The full model decides between closer candidates later, because the fast model has
+/// rounding errors.
 pub const SLACK: f64 = 1e-7;
 /// Number of added candidates after which the dominated candidates are removed.
 const BUFFER: usize = 1 << 15;

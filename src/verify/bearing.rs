@@ -4,9 +4,9 @@
 //!   limits the deflection.
 //! - *static safety*: `P₀ = F_r + 2 (M + R F_r) / d_p + 0.44 F_a` is at most `C₀ / 3` at rest (for high precision) and
 //!   at most `C₀ / 2` in a stop (because of shocks).
-//! - *life*: `10⁶ / (60 n) · (C / (f_w P_c))^(10/3)` is at least the hours that the study asks for, with `P_c = X (F_r
-//!   + 2 (M + R F_r) / d_p) + Y F_a`. The loads are taken of the arm at rest: accelerations are not counted in the
-//!   life.
+//! - *life*: `10⁶ / (60 n) · (C / (f_w P_c))^(10/3)` is at least the hours that the study asks for, with
+//!   `P_c = X (F_r + 2 (M + R F_r) / d_p) + Y F_a`. The loads are those of the arm at rest: the life does not count
+//!   accelerations.
 //!
 //! `M`, `F_r` and `F_a` are the moment, the radial force and the axial force at the face of the flange, `R` is the
 //! distance from there to the centre of the bearing, and `d_p` is its pitch diameter. `C₀` and `C` are the static and

@@ -165,8 +165,8 @@ fn half_width_m(piece: &LinkPiece, direction: &Vector3<f64>) -> f64 {
 }
 
 /// The position of a tube in the space in which the tree puts similar tubes together: logarithms of its mass, both
-/// bending stiffnesses and its torsional stiffness. Those of mass and torsional stiffness are multiplied by a factor
-/// (1.5 and 0.3).
+/// bending stiffnesses and its torsional stiffness. The logarithms of mass and torsional stiffness are multiplied by
+/// the factors 1.5 and 0.3.
 fn keys(tube: &TubeNumbers) -> Vec<f64> {
     let [bending_y, bending_z, _, torsion, _] = tube.stiffnesses.map(libm::log);
     vec![1.5 * libm::log(tube.mass_kg), bending_y, bending_z, 0.3 * torsion]
