@@ -401,7 +401,7 @@ impl Walk {
         }
     }
 
-    /// Adds an elastic element. If the arm is walked as it hangs, the deflection of the element then moves the frame
+    /// Adds an elastic element. If the walk applies deflections, the deflection of the element then moves the frame
     /// that the walk has reached.
     pub(super) fn elastic(&mut self, element: ElasticElement) {
         if let Some(motion) = self.deflections.motion_of_next(&element.twists) {

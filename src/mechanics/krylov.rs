@@ -1,10 +1,10 @@
 //! The largest eigenvalue of a large symmetric matrix by Lanczos' method, from products of the matrix with vectors.
 //!
 //! Each step multiplies the matrix by one more vector, orthogonal to all before it. In these vectors the matrix is
-//! tridiagonal, and the largest eigenvalue of this small matrix approaches that of the whole from below. Its error is
-//! at most the residual of its eigenvector, and about the square of the residual over the distance to the next
-//! eigenvalue. The start vector has a part in every coordinate, so no group of coordinates is missed that does not
-//! couple with the others.
+//! tridiagonal, and the largest eigenvalue of this small matrix approaches the largest eigenvalue of the whole matrix
+//! from below. Its error is at most the residual of its eigenvector, and about the square of the residual over the
+//! distance to the next eigenvalue. The start vector has a part in every coordinate. A group of coordinates that does
+//! not couple with the others is therefore not missed.
 
 use nalgebra::DVector;
 

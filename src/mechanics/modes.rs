@@ -52,8 +52,8 @@ impl Posed<'_> {
     /// has an example.
     pub fn modes(&self, statics: &Statics, count: usize) -> Vec<Mode> {
         let modes = self.solve_modes(statics);
-        // the lowest frequency comes from the function that computes it alone, so that its last digits are those of a
-        // front; no other mode may then be lower
+        // the lowest frequency comes from the function that computes it alone, so that its last digits are the same as
+        // in a front; no other mode may then be lower
         let lowest_hz = self.lowest_frequency_hz(statics);
         let frequency = |k: usize, hz: f64| if k == 0 { lowest_hz } else { hz.max(lowest_hz) };
         modes

@@ -48,8 +48,8 @@ impl CoupledArm {
         cubic_roots(self.characteristic_cubic()).map(|lambda| lambda.sqrt() / TAU)
     }
 
-    /// Coefficients of det(K - λ M), lowest power first. Each is a sum of determinants of K in which some columns
-    /// are replaced by those of -M.
+    /// Coefficients of det(K - λ M), lowest power first. Each is a sum of determinants of K in which some columns are
+    /// replaced by the columns of -M.
     pub fn characteristic_cubic(&self) -> [f64; 4] {
         let mut coefficients = [0.0; 4];
         for choice in 0..8u32 {

@@ -109,7 +109,7 @@ pub(crate) fn at_centre(load: &JointLoad, bearing: &Bearing) -> BearingLoad {
 fn half_width_m(axis: &Vector3<f64>, vector_m: &Vector3<f64>, section: &Section) -> f64 {
     let along = section_frame(vector_m).tr_mul(axis);
     let (width_m, height_m) = section.outer_m();
-    // exact for a box with one side across the axis, and for a round tube at right angles to the axis
+    // exact for a box with one side at right angles to the axis, and for a round tube at right angles to the axis
     libm::hypot(width_m / 2.0 * along.y, height_m / 2.0 * along.z)
 }
 

@@ -151,7 +151,7 @@ impl<'c> ArmProblem<'c> {
         })
     }
 
-    /// Mass of those parts at the joints of a design that are neither drive nor bearing \[kg\]. `None` if the design
+    /// Mass of the parts at the joints of a design that are neither drive nor bearing \[kg\]. `None` if the design
     /// breaks a limit.
     pub fn extras_mass_kg(&self, options: &[u32]) -> Option<f64> {
         let joints = self.space().pieces.iter().zip(self.parts(options)?);
