@@ -23,7 +23,7 @@ pub(super) fn thinned<T>(all: Vec<T>, step: f64, objectives: impl Fn(&T) -> &Obj
     }
     let points: Vec<[f64; 3]> = cells.keys().map(|cell| cell.map(|i| i as f64)).collect();
     let mut kept = vec![false; points.len()];
-    // The cells are finite numbers, so the front exists.
+    // The cells are finite numbers, so there is no error.
     exact_front(&points).unwrap_or_default().into_iter().for_each(|i| kept[i] = true);
     cells.into_values().zip(kept).filter_map(|((_, one), kept)| kept.then_some(one)).collect()
 }

@@ -64,7 +64,7 @@ pub enum Strain {
 pub(crate) struct LineInertia {
     /// Mass per length for motion along the link \[kg/m\].
     pub along_kg_per_m: f64,
-    /// Mass per length for motion across the link \[kg/m\]. It includes the added mass of water.
+    /// Mass per length for motion at right angles to the link \[kg/m\]. It includes the added mass of water.
     pub across_kg_per_m: f64,
     /// Rotary inertia per length about the axis of the link \[kg m\].
     pub polar_kg_m: f64,

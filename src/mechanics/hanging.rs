@@ -70,7 +70,7 @@ mod tests {
     use crate::input::Document;
     use nalgebra::Rotation3;
 
-    /// The prepared arm of the text of an arm file.
+    /// The chain of the arm that an arm file with this text describes.
     fn chain(text: &str) -> Chain {
         let document = Document::parse("arm.json", text).expect("JSON");
         let arm = read_arm_document(document, &Catalogs::default()).expect("a sound arm");

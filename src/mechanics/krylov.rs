@@ -164,7 +164,7 @@ mod tests {
 
     #[test]
     fn few_products_are_enough_for_many_coordinates() {
-        // as of a beam: frequencies with the squares of whole numbers, in two planes
+        // as for a beam: the frequencies grow with the squares of whole numbers, in two planes
         let values: Vec<f64> = (0..240).map(|i| 1.0 / ((i / 2 + 1) as f64).powi(4)).collect();
         let (value, products) = found(&with_eigenvalues(&values));
         assert!((value - 1.0).abs() < 1e-13, "{value}");

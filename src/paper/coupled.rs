@@ -90,7 +90,8 @@ fn mass_matrix(arm: &PaperArm, l: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(m11, m12, m13, m12, m22, m23, m13, m23, m33)
 }
 
-/// Moment of inertia of a tube about its centre, across its axis: m L²/12 + ρ I L \[kg m²\].
+/// Moment of inertia of a tube about an axis through its centre, at right angles to its own axis: m L²/12 + ρ I L \[kg
+/// m²\].
 fn tube_inertia_kgm2(arm: &PaperArm, link: usize) -> f64 {
     let length_m = arm.lengths_m[link];
     arm.link_kg(link) * length_m * length_m / 12.0

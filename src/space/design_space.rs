@@ -131,7 +131,7 @@ pub struct DesignSpace {
     pub judged_cases: Vec<usize>,
     /// Indices of the cases in which joints are sized and stress is checked.
     pub sizing_cases: Vec<usize>,
-    /// The motion that the tip must be able to do. The drives are sized for it.
+    /// The motion that the tip must be able to make. The drives are sized for it.
     pub motion: MotionRequirement,
     /// Model of the links: rigid, or with bending alone, or with all deformations.
     pub links: LinkModel,

@@ -166,7 +166,7 @@ impl Slot<'_> {
         }
     }
 
-    /// The motion that a sized joint must be able to do; `None` for other slots.
+    /// The motion that a sized joint must be able to make; `None` for other slots.
     pub(crate) fn motion(&self) -> Option<&JointMotion> {
         match self {
             Slot::Sized(sized) => Some(sized.table.motion()),

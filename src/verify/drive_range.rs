@@ -1,4 +1,4 @@
-//! The least and the most of each number over a set of drives.
+//! The least and the greatest value of each number over a set of drives.
 //!
 //! A set of drives is bounded by two torsion curves, a stiff and a soft one. First the slopes of each member are made
 //! monotonic: *lifted* (each slope is raised to at least the slope before it) for the stiff bound, *lowered* (each
