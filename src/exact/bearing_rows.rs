@@ -1,10 +1,11 @@
 //! Loads on the output bearing of a joint, as intervals over the members of a box.
 //!
-//! A bearing transmits the wrench of everything outboard: of gravity and load, and of the ramp or the stop of one joint
-//! while the others are at rest ([`bearing_loads`](crate::space::bearing_loads)). Every component of such a wrench is
-//! linear in the weights and the inertias of the parts, so its range over a box is an interval. A load (moment, radial
-//! or axial force) is the length of a vector of components. The least load takes each component at its least magnitude,
-//! the greatest load each at its greatest. For a box of one design both equal the load of this design.
+//! A bearing transmits the wrench of everything outboard: the wrench of gravity and load, and the wrench of the ramp
+//! or the stop of one joint while the other joints are at rest ([`bearing_loads`](crate::space::bearing_loads)). Every
+//! component of such a wrench is linear in the weights and the inertias of the parts, so its range over a box is an
+//! interval. A load (moment, radial or axial force) is the length of a vector of components. The least load takes each
+//! component at its least magnitude, the greatest load takes each component at its greatest. For a box of one design
+//! both loads equal the load of this design.
 
 use super::parts::INERTIAS;
 use crate::mechanics::{Twist, Wrench, linear, rotation_twist, stack};
@@ -14,8 +15,8 @@ use nalgebra::{Matrix6, Vector3};
 /// A component of a wrench is set to zero if its magnitude is below this fraction of the greatest magnitude that a
 /// component of this wrench could have. Such a component is due to rounding.
 const RELATIVE_ROUNDING: f64 = 1e-13;
-/// Number of components of a load: moments about the two axes across the joint axis, forces along these two axes, and
-/// the force along the joint axis.
+/// Number of components of a load: the moments about two axes at right angles to the joint axis, the forces along
+/// these two axes, and the force along the joint axis.
 const COMPONENTS: usize = 5;
 /// Indices of the components that make up the moment, the radial force and the axial force. Each of these three is the
 /// length of its components as a vector.
@@ -53,8 +54,8 @@ pub(super) struct Numbers<'a> {
     pub heavy: &'a [[f64; INERTIAS]],
 }
 
-/// The load at rest of everything outboard of a joint: the wrench of what the study gives, and the wrench of each piece
-/// that has a weight of its own.
+/// The load at rest of everything outboard of a joint. It consists of the wrench of the loads and bodies that the
+/// study gives, and of the wrench of each piece that has a weight of its own.
 pub(super) struct Loads<'a> {
     /// Wrench of payload, tip force and the bodies that the study gives, about the world's origin.
     pub fixed: Wrench,
@@ -78,8 +79,8 @@ pub(super) struct Ramp<'a> {
 struct Frame([Twist; COMPONENTS]);
 
 impl Frame {
-    /// The frame of a joint at the point `at_m` with the given `axis`. `first` and `second` are two directions across
-    /// that axis.
+    /// The frame of a joint at the point `at_m` with the given `axis`. `first` and `second` are two directions at
+    /// right angles to the axis.
     fn new(at_m: &Vector3<f64>, axis: &Vector3<f64>, [first, second]: &[Vector3<f64>; 2]) -> Self {
         let along = |direction: &Vector3<f64>| stack(direction, &Vector3::zeros());
         let about = |direction: &Vector3<f64>| rotation_twist(direction, at_m);
@@ -113,7 +114,7 @@ impl Frame {
 
 impl BearingRows {
     /// Prepares the loads on the bearing of a joint that lies at `at_m` and turns about `axis`. `across` are two
-    /// directions across the axis. `loads` act at rest, and `ramps` are the accelerations of each joint.
+    /// directions at right angles to the axis. `loads` act at rest, and `ramps` are the accelerations of each joint.
     pub(super) fn new<'a>(
         [at_m, axis]: [&Vector3<f64>; 2],
         across: &[Vector3<f64>; 2],
@@ -132,9 +133,9 @@ impl BearingRows {
     }
 
     /// Least and greatest moment, radial and axial force on the output bearing over the box: at rest, while a joint
-    /// accelerates, and in an emergency stop. `stop_factor` is the acceleration in a stop divided by that in a ramp.
-    /// The moment of the radial force about the bearing (force times the distance along the axis to the link) is left
-    /// out; the caller adds it.
+    /// accelerates, and in an emergency stop. `stop_factor` is the acceleration in a stop divided by the acceleration
+    /// in a ramp. The moment of the radial force about the bearing (force times the distance along the axis to the
+    /// link) is left out; the caller adds it.
     pub(super) fn loads(&self, numbers: &Numbers, stop_factor: f64) -> [BearingDemand; 2] {
         let at_rest = self.at_rest.each_ref().map(|sum| sum.between_weights(numbers.weights_n));
         let rest = squared_lengths(&at_rest);
@@ -183,8 +184,8 @@ impl BearingRows {
 /// (`None`), it is the constant contribution of payload, tip force and the bodies that the study gives.
 type Share = (Option<usize>, [f64; COMPONENTS]);
 
-/// For the load components with the indices `places`: the contribution of the given bodies first, and then that of each
-/// weight or each inertia in `sums`.
+/// The contributions to the load components with the indices `places`. The contribution of the given bodies comes
+/// first, and then one contribution for each weight or inertia in `sums`.
 fn shares(sums: &Components, places: &[usize]) -> Vec<Share> {
     let mut shares: Vec<Share> = vec![(None, [0.0; COMPONENTS])];
     for &place in places {
@@ -261,7 +262,7 @@ fn squared_lengths(components: &[[f64; 2]; COMPONENTS]) -> [Squares; 2] {
     squares.map(|of| [of[MOMENT[0]] + of[MOMENT[1]], of[RADIAL[0]] + of[RADIAL[1]], of[AXIAL[0]]])
 }
 
-/// Replaces the least and the greatest loads in `load` by those in `other` where the latter are larger.
+/// Replaces each of the least and greatest loads in `load` by the corresponding one in `other` if that is larger.
 fn widen(load: &mut [Squares; 2], other: [Squares; 2]) {
     for (load, other) in load.iter_mut().flatten().zip(other.iter().flatten()) {
         *load = load.max(*other);
@@ -320,15 +321,16 @@ mod tests {
         std::array::from_fn(|k| all[k / 3][k % 3])
     }
 
-    /// Whether each number of a demand lies between those of two other demands, up to a relative tolerance.
+    /// Whether each number of `demand` lies between the corresponding numbers of the two demands in `ends`, up to a
+    /// relative tolerance.
     fn is_between(demand: &BearingDemand, ends: &[BearingDemand; 2], tolerance: f64) -> bool {
         let [low, high] = ends.each_ref().map(numbers);
         let slack = |x: f64| tolerance * (1.0 + x);
         numbers(demand).iter().enumerate().all(|(k, x)| low[k] - slack(*x) <= *x && *x <= high[k] + slack(*x))
     }
 
-    /// The loads on every joint of a design whose drive is sized, tip first, as the walk over its arm computes them.
-    /// `None` if the walk ends at a part that cannot carry its load.
+    /// The loads on every joint of a design whose drive is sized, tip first, as they are computed while its arm is
+    /// built up from the tip. `None` if some part cannot carry its load.
     fn walked(problem: &ArmProblem, options: &[u32]) -> Option<Vec<BearingDemand>> {
         let mut loads = Vec::new();
         let see = |slot: usize, outboard: &Partial| {

@@ -20,15 +20,16 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// The refinement of the trial shapes (motions that give an upper bound of the lowest mode) stops when a step lowers
-/// the bound by less than this fraction.
+/// the bound by less than this fraction of its value.
 const SHAPE_CONVERGENCE: f64 = 1e-10;
-/// Accelerations of the base \[m/s²\] whose inertia forces deform the arm into the first trial shapes: one vertical,
-/// and one sideways with a little forward.
+/// Accelerations of the base \[m/s²\], one vertical and one sideways with a little forward. The first trial shapes are
+/// the deformations of the arm by the inertia forces of these accelerations.
 pub(super) const START_SHAPES: [[f64; 3]; 2] = [[0.0, 0.0, 1.0], [0.3, 1.0, 0.0]];
 /// Greatest number of refinement steps of the trial shapes on a box of one design.
 const MOST_STEPS: usize = 30;
 
-/// Fraction of the frequency of a bound below which a better trial shape is assumed not to lower it.
+/// A better trial shape is assumed to lower the upper bound of the lowest mode at most to this fraction of its value.
+/// The number is an estimate. It decides whether a better shape is computed, and no proof rests on it.
 const LOWEST_BY_SHAPE: f64 = 0.4;
 
 /// A box of designs: the number of one node of each level's tree, tip first.
@@ -44,11 +45,11 @@ pub(super) struct BoxBound {
 }
 
 impl BoxBound {
-    /// The bound of a box of which nothing is known yet: no mass, no deflection and an infinite frequency.
+    /// The bound of a box of which nothing is known yet: zero mass, zero deflection and an infinite frequency.
     pub(super) const OPEN: Self = Self { mass_kg: 0.0, tip_m: 0.0, hz: f64::INFINITY };
 
-    /// The bound that a better trial shape might have. It is assumed to lower the frequency to no less than a fraction of
-    /// it. If the box would not be pruned even then, no better shape is computed.
+    /// This bound with the lowest frequency that a better trial shape is assumed to reach ([`LOWEST_BY_SHAPE`]). If
+    /// even this bound would not prune the box, no better shape is computed.
     pub(super) fn with_better_shape(&self) -> Self {
         Self { hz: LOWEST_BY_SHAPE * self.hz, ..*self }
     }
@@ -197,8 +198,8 @@ impl<'c> Problem<'c> {
             let before = box_bound.hz;
             for (judged, case) in self.judged_cases().enumerate() {
                 for start in 0..START_SHAPES.len() {
-                    // The second shape is kept orthogonal to the first. Without that both would converge to the same
-                    // mode. The bound would then miss a lower mode of the arm in the other plane.
+                    // The second shape is kept orthogonal to the first. Otherwise both would converge to the same
+                    // mode, and the bound would miss a lower mode of the arm in the other plane.
                     let (others, rest) = shapes[judged * START_SHAPES.len()..].split_at_mut(start);
                     let shape = &mut rest[0];
                     let ideal = Ideal { stiffness: &work.stiff_in[case], inertia: &work.light };

@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// Greatest number of boxes that one task bounds. After that, the task returns the boxes that are still open.
 const BOXES_PER_TASK: usize = 32;
 
-/// A box that waits to be bounded, with the trial shapes and the bound of the box from which it was halved.
+/// A box that waits to be bounded, with the trial shapes and the bound of its parent, the box of which it is a half.
 pub(super) struct OpenBox {
     pub design_box: DesignBox,
     pub shapes: Arc<Vec<Shape>>,
@@ -55,10 +55,10 @@ impl OpenBox {
     }
 }
 
-/// Bounds the box of all designs, then the boxes into which it is divided, and so on. `open` bounds one box and returns
-/// the boxes into which it is divided. At the end of each round of tasks, `learn` adds the designs found to `state`,
-/// and then `see` is shown `state` and the boxes that are still open. Returns the boxes that are open when the search
-/// is stopped.
+/// Bounds the box of all designs, then the boxes into which it is divided, and so on. `open` bounds one box and
+/// returns the boxes into which it is divided. At the end of each round of tasks, `learn` adds the designs found to
+/// `state`. Then `see` is called with `state` and the boxes that are still open. Returns the boxes that are open when
+/// the search is stopped.
 pub(super) fn open_all_boxes<K: Sync, F: Send + Default>(
     budget: &Budget,
     problem: &Problem,
@@ -71,8 +71,8 @@ pub(super) fn open_all_boxes<K: Sync, F: Send + Default>(
     go_through_boxes(budget, state, vec![root], open, learn, see)
 }
 
-/// Bounds the boxes in `first` and all boxes into which they are divided. The other parameters are those of
-/// [`open_all_boxes`].
+/// Bounds the boxes in `first` and all boxes into which they are divided. The other parameters have the same meaning
+/// as in [`open_all_boxes`].
 fn go_through_boxes<K: Sync, F: Send + Default>(
     budget: &Budget,
     state: &mut K,
@@ -87,9 +87,9 @@ fn go_through_boxes<K: Sync, F: Send + Default>(
     in_rounds(state, first, || budget.stopped(), task, learn, see)
 }
 
-/// Bounds the box `first` and then boxes into which it is divided, depth first, until [`BOXES_PER_TASK`] boxes are bounded.
-/// `open` bounds one box and returns the boxes into which it is divided. Returns the boxes that are still open and the
-/// designs found.
+/// Bounds the box `first` and then the boxes into which it is divided, depth first. It stops after [`BOXES_PER_TASK`]
+/// boxes. `open` bounds one box and returns the boxes into which it is divided. Returns the boxes that are still open
+/// and the designs found.
 pub(super) fn open_boxes<F: Default>(
     budget: &Budget,
     first: OpenBox,
@@ -106,9 +106,9 @@ pub(super) fn open_boxes<F: Default>(
     Done { tasks: stack, findings }
 }
 
-/// One pass with the slack `slack` over the boxes `first` and all boxes into which they are divided. `keep` is shown
-/// the state and the open boxes after each round. Returns the bounds of the boxes that are still open when the search
-/// is stopped.
+/// One pass with the slack `slack` over the boxes `first` and all boxes into which they are divided. `keep` is called
+/// after each round with the state and the open boxes. Returns the bounds of the boxes that are still open when the
+/// search is stopped; there are none if the pass is complete.
 pub(super) fn pass_by_boxes(
     budget: &Budget,
     problem: &Problem,
@@ -189,8 +189,8 @@ impl Search<'_, '_> {
         here.halves(self.problem, level, box_bound)
     }
 
-    /// Whether a known design dominates the bound `box_bound` after it was made worse by the slack. Known are the
-    /// designs of the shared state and those in `findings`, which this task found.
+    /// Whether a known design dominates the bound `box_bound` after it was made worse by the slack. Known designs are
+    /// the designs of the shared state and the designs in `findings`, which this task found.
     pub(super) fn dominates(&self, box_bound: &BoxBound, findings: &Findings) -> bool {
         let slackened = box_bound.slackened(self.slack);
         self.state.incumbents.dominates(&slackened) || findings.dominates(&slackened)

@@ -95,8 +95,8 @@ impl Problem<'_> {
         softened
     }
 
-    /// Computes `work.tip_growth`: for each piece, the fraction by which the least tip deflection would grow if the
-    /// piece had not its greatest stiffnesses but the geometric mean of its least and greatest ones.
+    /// Computes `work.tip_growth`: for each piece, the fraction by which the least tip deflection would grow if each
+    /// stiffness of the piece were the geometric mean of its least and greatest values instead of its greatest value.
     fn weigh_tip(&self, work: &mut BoxWork) {
         work.tip_growth.clear();
         work.tip_growth.resize(self.parts.len(), 0.0);

@@ -22,8 +22,8 @@ const DRIVE: [(usize, f64); 2] = [(3, 1.0), (0, 4.0)];
 const TUBE: [(usize, f64); 2] = [(0, 2.0), (1, 1.0)];
 /// A division whose expected benefit is below this is not made, because the benefit is due to rounding.
 const LEAST_BENEFIT: f64 = 1e-9;
-/// A force is known well enough if the width of its interval is less than this fraction of its greatest magnitude. Then
-/// it is not branched on.
+/// A force whose interval is narrower than this fraction of its greatest magnitude is known well enough. It is not
+/// branched on.
 const KNOWN_FORCE_WIDTH: f64 = 0.1;
 /// Least distance of the value at which a region is divided from either end of the interval, as a fraction of the
 /// interval's width.
@@ -43,7 +43,7 @@ pub(super) struct Branching {
     at: f64,
 }
 
-/// The quantity by which a region is divided.
+/// The quantity by which a region is divided into two.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum BranchOn {
     /// The options of a level, by one coordinate of their keys.

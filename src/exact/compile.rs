@@ -89,8 +89,8 @@ impl<'c> Joints<'c> {
 }
 
 impl JointNeeds {
-    /// What a compiled pose needs to know about `joint`, whose drives are in `slot`. `reach_m` is the distance of the
-    /// tip from the joint's axis \[m\]; the angular acceleration follows from it and the tip's acceleration.
+    /// The data of `joint` that a compiled pose needs. `slot` has its drives. `reach_m` is the distance of the tip
+    /// from the joint's axis \[m\]; the angular acceleration follows from it and the tip's acceleration.
     fn of(space: &DesignSpace, joint: &SpaceJoint, reach_m: f64, slot: &Slot) -> Self {
         let motion = joint.motion(&space.motion, reach_m);
         let of_gear = Self { acceleration_rad_s2: motion.acceleration_rad_s2, ..Self::default() };
@@ -118,7 +118,7 @@ impl<'c> Problem<'c> {
         Self::with_joints(space, &TabulatedJoints::new(space, catalogs), takes, ties)
     }
 
-    /// As [`new`](Self::new), of joints that are tabulated already.
+    /// Does the same as [`new`](Self::new), for joints whose drives are tabulated already.
     pub(super) fn with_joints(
         space: &'c DesignSpace,
         tabulated: &TabulatedJoints<'c>,
@@ -142,7 +142,7 @@ impl<'c> Problem<'c> {
             force_bounds: Arc::default(),
         };
         for (place, layer) in space.layers() {
-            // The tilts of a gear's bearing are coordinates of its joint.
+            // The tilts of a gear's bearing are coordinates of its joint, so they make no part of their own.
             if let Layer::Bearing(_) = layer {
                 continue;
             }
@@ -164,8 +164,8 @@ impl<'c> Problem<'c> {
     }
 
     /// Compiles one layer of the chain, which belongs to the piece at `place`. The drives of a joint are taken out of
-    /// `joints`. `takes` and `ties` are those of [`new`](Self::new). `None` if a choice has no option, or if this
-    /// search cannot treat the layer.
+    /// `joints`. `takes` and `ties` have the same meaning as in [`new`](Self::new). `None` if a choice has no option,
+    /// or if this search cannot treat the layer.
     fn part(
         &mut self,
         (place, layer): (usize, Layer<'c>),
@@ -196,8 +196,8 @@ impl<'c> Problem<'c> {
         })
     }
 
-    /// Adds the compiled part of the joint at `place`, with its play and with what its bearing and its drive need to
-    /// know about the link outboard.
+    /// Adds the compiled part of the joint at `place`, with its play. The lever of its bearing and the space for its
+    /// drive, which depend on the link outboard, are added too.
     fn push_joint(&mut self, part: Part<'c>, joint: &SpaceJoint, joints: &Joints<'c>, place: usize) {
         self.levers.push(joints.levers[place].as_ref().map(|lever| self.lever(lever)));
         self.rooms.push(joints.rooms[place].as_ref().map(|room| self.room_at(room)));
@@ -324,8 +324,8 @@ impl<'c> Problem<'c> {
         Rays::new(motion, static_nm, inertia_kgm2)
     }
 
-    /// Adds the inertia matrices of every judged case to the problem. An arbitrary arm of the space shows which
-    /// coordinates deflect elastically.
+    /// Adds the inertia matrices of every judged case to the problem. The ideal arm of the box of all designs shows
+    /// which coordinates deflect elastically. No matrices are added if no design meets the constraints.
     pub(super) fn with_inertias(mut self) -> Self {
         let mut work = BoxWork::default();
         let filled = self.fill(&mut self.root(), &mut work);

@@ -26,7 +26,7 @@ use crate::space::effects::{Carried, Carrier, Layer};
 use crate::space::station::{Walk, bodies_at, payload_in, weight_wrench};
 use nalgebra::{DMatrix, Matrix3, Matrix6, Rotation3, SMatrix, Vector3};
 
-/// What a compiled pose needs to know about a joint of the chain in addition to its axis.
+/// The data of a joint, in addition to its axis, that a compiled pose needs.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct JointNeeds {
     /// Whether the output bearing of the joint tilts with at least one of the drives that may be chosen.
@@ -129,8 +129,8 @@ impl Pose {
         self.leave_out_unstrained();
     }
 
-    /// Removes the rows of coordinates that no load strains, such as those across the vertical plane of a planar arm.
-    /// Torsions of joints stay, because the demand on joints is needed in any case.
+    /// Removes the rows of coordinates that no load strains. In a planar arm these are the coordinates that deflect
+    /// out of the vertical plane. Torsions of joints stay, because the demand on joints is needed in any case.
     fn leave_out_unstrained(&mut self) {
         let scale = self.rows.iter().map(Row::largest).fold(0.0, f64::max);
         let is_torsion: Vec<bool> = self.rows.iter().map(|row| self.is_torsion(row)).collect();
@@ -153,7 +153,7 @@ impl Pose {
         let loads = Loads { fixed: outboard.fixed, per_n: &outboard.per_n };
         let ramps = joints.iter().filter_map(|(moving, needs)| {
             let PosedPiece::Joint { twist, .. } = &self.pieces[*moving] else { return None };
-            // A joint outboard of the bearing moves only what is outboard of itself.
+            // A joint outboard of the bearing accelerates only the parts that are outboard of that joint.
             let (fixed, inertia) = match outboard.fixed_inertia_of.get(*moving) {
                 Some(fixed) => (*fixed, &outboard.inertia[..*moving]),
                 None => (outboard.fixed_inertia, &outboard.inertia[..]),
@@ -448,8 +448,8 @@ impl Outboard {
         self.inertia.push(inertia);
     }
 
-    /// The rows of the joint `piece`: of the tilts of its bearing about the axes `across`, if it tilts, then of its
-    /// torsion. `twist` is the motion of everything outboard per radian of torsion.
+    /// The rows of the joint `piece`: first the rows of the tilts of its bearing about the axes `across`, if it tilts,
+    /// then the row of its torsion. `twist` is the motion of everything outboard per radian of torsion.
     fn joint_rows(
         &self,
         piece: usize,

@@ -1,8 +1,8 @@
 //! A cover of the space by boxes. It is refined by halving the boxes with the greatest gap first.
 //!
 //! The boxes contain every design that no design found dominates, and each has a bound. The bounds therefore tell how
-//! near the designs found come to every design of the space ([`gap`](super::gap)). The gap of the cover is that of its
-//! worst box.
+//! near the designs found come to every design of the space ([`gap`](super::gap)). The gap of the cover is the gap of
+//! its worst box.
 
 use super::bound::{BoxBound, Verdict};
 use super::box_work::BoxWork;
@@ -37,7 +37,8 @@ impl Cover {
             OpenBox { design_box: problem.root(), shapes: Arc::new(shapes), box_bound: BoxBound::OPEN };
         let mut cover = Vec::from_iter(Piece::bounded(problem, root, found));
         while cover.len() < boxes && !budget.stopped() {
-            // The boxes with the greatest gap stand last. A box of one design cannot be halved and stands first.
+            // The boxes with the greatest gap stand last. A box of one design cannot be halved, so such boxes stand
+            // first.
             cover.sort_by(|a, b| a.level.is_some().cmp(&b.level.is_some()).then(a.gap.total_cmp(&b.gap)));
             let divisible = cover.iter().filter(|piece| piece.level.is_some()).count();
             if divisible == 0 {

@@ -17,8 +17,8 @@ use std::collections::BTreeSet;
 /// Relative amount by which the known design's objectives are made worse before designs below them are looked for. With
 /// this margin, rounding excludes no part of the known design itself.
 const OBJECTIVE_MARGIN: f64 = 1e-6;
-/// Greatest number of subproblems that are branched. A subproblem of at most [`SMALL_SPACE`] designs is not branched, because
-/// that is not worth the time.
+/// Greatest number of subproblems that are branched. A subproblem of at most [`SMALL_SPACE`] designs is not branched,
+/// because that is not worth the time.
 const MOST_BRANCHED: usize = 50;
 const SMALL_SPACE: f64 = 1e6;
 

@@ -223,8 +223,8 @@ pub(super) struct FeasibleDrives {
 }
 
 impl FeasibleDrives {
-    /// The drives below a node that carry the least demand `asked`. The groups are copied from `before`, those of the
-    /// parent box, if these were made of the same tree, node and demand.
+    /// The drives below a node that carry the least demand `asked`. `before` has the drives of the parent box. Their
+    /// groups are reused if they were made of the same tree, node and demand.
     pub(super) fn new(
         tree: &Arc<Tree<DriveBox>>,
         node: u32,

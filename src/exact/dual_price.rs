@@ -67,8 +67,7 @@ pub(super) struct DualPrice {
     /// Price per unit of each compliance of a tube. For a joint, the entry [`TILT`] is the price of its bearing's
     /// compliance.
     pub compliance: [f64; STIFFNESSES],
-    /// Amount by which each unit of a stiffness lowers the weighted sum. The stiffnesses are those of a tube or of a
-    /// joint's bearing.
+    /// Amount by which each unit of a stiffness (of a tube, or of a joint's bearing) lowers the weighted sum.
     pub stiffness: [f64; STIFFNESSES],
     /// Prices of a joint, one for each judged case.
     pub joint: Vec<JointPrice>,
@@ -225,7 +224,7 @@ impl JointPrice {
     }
 
     /// Price and state of a rigid joint. A box without a curve has a rigid member, but may have other members whose
-    /// curves are not known. The price is a lower bound for those too.
+    /// curves are not known. The price is a lower bound for these members too.
     fn rigid(&self) -> (f64, JointState) {
         let [low, high] = self.torques_nm.map(|t| self.torque * t);
         // Other members of the box may twist by any angle. If some twist lowers the price, no finite lower bound

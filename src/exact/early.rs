@@ -55,15 +55,15 @@ impl<'l> Early<'l> {
         });
     }
 
-    /// Adds the designs of the dives to `state`, the state of a search that was stopped. Returns the gap that the cover
-    /// proves for all designs in it (relative), `None` if it proves nothing.
+    /// Adds the designs of the dives to `state`, the state of a search that was stopped. Returns the gap that the
+    /// cover proves for all designs of `state` together (relative). `None` if it proves no gap.
     pub(super) fn into_state(self, state: &mut SearchState) -> Option<f64> {
         state.learn(self.findings);
         gap(&self.cover, &state.front())
     }
 
-    /// The gap that the cover proves with the designs of the dives and the designs in `found` (relative). `None` if
-    /// nothing is proved.
+    /// The gap that the cover proves with the designs of the dives and the designs in `found` (relative). `None` if it
+    /// proves no gap.
     fn gap(&self, found: &[Objectives]) -> Option<f64> {
         let dived = self.findings.kept.iter().map(|c| c.objectives);
         gap(&self.cover, &found.iter().copied().chain(dived).collect::<Vec<_>>())

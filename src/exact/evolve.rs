@@ -1,9 +1,9 @@
-//! Better incumbents from those that the probes found, by a genetic algorithm.
+//! Finds better incumbents than the probes did, by a genetic algorithm that starts with their designs.
 //!
 //! The proof of a front is faster with better incumbents, because everything that the incumbents leave open has to be
-//! searched. Probes find some hundreds of designs one by one. The algorithm makes others from them. A child takes some
-//! parts from a parent of similar mass, or options close to its first parent's, and is kept if no design seen before
-//! dominates it. Of designs that differ by little, one is kept for each cell of a grid
+//! searched. Probes find some hundreds of designs one by one. The algorithm makes further designs from these. A child
+//! takes some parts from a parent of similar mass, or options close to its first parent's, and is kept if no design
+//! seen before dominates it. Of designs that differ by little, one is kept for each cell of a grid
 //! ([`thinned`](super::grid::thinned)), so that they do not crowd out the others.
 //!
 //! The result proves nothing. Its designs are evaluated and listed like all others.
@@ -34,7 +34,7 @@ const MOST_TIME: f64 = 0.25;
 const MOST_CHILDREN: f64 = 8192.0;
 /// Width of a cell of the grid that thins out similar designs, in logarithms of the objectives.
 const CELL_WIDTH: f64 = 0.02;
-/// The designs are ordered by mass. The second parent is at most this many places away from the first.
+/// Greatest distance between the two parents of a child, in places of the list of designs by mass.
 const MATING_DISTANCE: u64 = 12;
 
 /// A design with trial shapes that bound its modes. The shapes were computed for this design or for a similar one.
@@ -48,10 +48,10 @@ pub(super) struct Individual {
 enum Offspring {
     /// The child has the same parts as its first parent.
     Unchanged,
-    /// A design that was found before dominates the child, or a part of the child cannot carry its load, or even the
+    /// A design that was found before dominates the child, a part of the child cannot carry its load, or even the
     /// bound of the child breaks a limit.
     Dominated,
-    /// The objectives of the child are known, and it breaks a constraint.
+    /// The child breaks a constraint, or rounding leaves open whether a part of it carries its load.
     Infeasible,
     /// The child meets every constraint, and no design that was found before dominates it.
     Feasible(Individual),
@@ -71,9 +71,9 @@ impl Offspring {
     }
 }
 
-/// Evolves new designs from those in `first` and adds them to `state`. After each generation, `tell` receives the
-/// objectives of the designs from which the next generation is made, and the number of designs whose objectives were
-/// computed.
+/// Evolves new designs from the designs in `first` and adds them to `state`. After each generation, `tell` receives
+/// the objectives of the designs from which the next generation is made, and the number of designs whose objectives
+/// were computed.
 pub(super) fn evolve<'p>(
     budget: &Budget,
     problem: &Problem<'p>,
@@ -118,7 +118,7 @@ fn by_mass(members: Vec<Individual>) -> Vec<Individual> {
     kept
 }
 
-/// What is needed to make one child.
+/// The inputs for making one child.
 struct Recombination<'a, 'p> {
     budget: &'a Budget<'p>,
     problem: &'a Problem<'p>,

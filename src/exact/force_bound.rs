@@ -22,13 +22,13 @@ pub(super) struct ForceBound {
 }
 
 impl ForceBound {
-    /// Tightens the interval `force` of another generalized force, which the same weights cause. `by` is the row of the
-    /// force that this bound restricts: its value as a linear function of the weights. `of` is the row of the other
-    /// force. `weights` are the intervals of the weights \[N\].
+    /// Tightens the interval `force` of another generalized force, which the same weights cause. `by` is the row of
+    /// the force that this bound restricts, and `of` is the row of the other force. A row gives a force as a linear
+    /// function of the weights. `weights` are the intervals of the weights \[N\].
     ///
-    /// For any number `a`, the other force equals `a` times the restricted force plus a remainder that is linear in the
-    /// weights. The interval of this sum bounds the other force. The bound is piecewise linear in `a`, and best where
-    /// some weight drops out of the remainder, so these values of `a` are tried.
+    /// For any number `a`, the other force equals `a` times the restricted force plus a remainder that is linear in
+    /// the weights. The interval of this sum bounds the other force. The bound is piecewise linear in `a`. It is best
+    /// at some value of `a` for which a weight drops out of the remainder, so all these values are tried.
     pub(super) fn tighten(&self, of: &Row, by: &Row, weights: &[[f64; 2]], force: &mut [f64; 2]) {
         for (weight, per_n) in by.per_n.iter().enumerate().filter(|(_, c)| **c != 0.0) {
             let a = of.per_n.get(weight).copied().unwrap_or(0.0) / per_n;

@@ -5,15 +5,17 @@ use crate::pareto::objectives::Objectives;
 use rayon::prelude::*;
 
 /// The gap of a search: the least `ε` such that for every open box some design in `found` is worse than the bound of
-/// the box by at most the factor `1 + ε` in each of mass, deflection and mode. Then the same is true for every design
-/// that was missed. `None` if the bound of a box tells nothing, or if no design was found.
+/// the box by at most the factor `1 + ε` in each of mass, deflection and mode. For every design that was missed, some
+/// design in `found` is then worse by at most this factor, too. `None` if some box has no bound yet, or if no design
+/// was found.
 pub(super) fn gap(open: &[BoxBound], found: &[Objectives]) -> Option<f64> {
     let worst = open.par_iter().map(|bound| gap_of(bound, found)).reduce(|| 0.0, f64::max);
     worst.is_finite().then_some(worst)
 }
 
-/// The gap that one open box leaves (relative): the least `ε` such that some design in `found` is worse than `bound` by
-/// at most the factor `1 + ε` in each objective. It is infinite if the bound tells nothing, or if no design was found.
+/// The gap that one open box leaves (relative): the least `ε` such that some design in `found` is worse than `bound`
+/// by at most the factor `1 + ε` in each objective. It is infinite if the box has no bound yet, or if no design was
+/// found.
 pub(super) fn gap_of(bound: &BoxBound, found: &[Objectives]) -> f64 {
     let factor = |o: &Objectives| {
         (o.mass_kg / bound.mass_kg).max(o.tip_deflection_m / bound.tip_m).max(bound.hz / o.lowest_mode_hz)

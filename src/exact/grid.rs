@@ -4,9 +4,10 @@ use crate::pareto::front::exact_front;
 use crate::pareto::objectives::Objectives;
 use std::collections::BTreeMap;
 
-/// Thins designs to the best one of each cell of a logarithmic grid of width `step` over their `objectives`. A cell is
-/// dropped if another cell with a design dominates it. For every design that is dropped, a design is kept that is worse
-/// by at most one `step` in the logarithm of each objective. With `step <= 0` all designs are kept.
+/// Thins designs to the best one of each cell of a logarithmic grid of width `step` over their `objectives`. The best
+/// design of a cell has the least sum of the logarithms of mass, deflection and reciprocal mode. A cell is dropped if
+/// another cell with a design dominates it. For every design that is dropped, a design is kept that is worse by at
+/// most one `step` in the logarithm of each objective. With `step <= 0` all designs are kept.
 pub(super) fn thinned<T>(all: Vec<T>, step: f64, objectives: impl Fn(&T) -> &Objectives) -> Vec<T> {
     if step <= 0.0 {
         return all;
@@ -22,7 +23,7 @@ pub(super) fn thinned<T>(all: Vec<T>, step: f64, objectives: impl Fn(&T) -> &Obj
     }
     let points: Vec<[f64; 3]> = cells.keys().map(|cell| cell.map(|i| i as f64)).collect();
     let mut kept = vec![false; points.len()];
-    // The cells are finite numbers, so the front exists.
+    // The cells are finite numbers, so there is no error.
     exact_front(&points).unwrap_or_default().into_iter().for_each(|i| kept[i] = true);
     cells.into_values().zip(kept).filter_map(|((_, one), kept)| kept.then_some(one)).collect()
 }

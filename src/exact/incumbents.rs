@@ -65,7 +65,7 @@ impl Incumbents {
                     && by.tip_deflection_m <= o.tip_deflection_m
                     && by.lowest_mode_hz >= o.lowest_mode_hz
             };
-            // Only designs that others do not dominate are kept in the lists, so that they stay short.
+            // Dominated designs are removed from the lists, so that the lists stay short.
             if !list.iter().any(|o| is_beaten(o, found)) {
                 list.retain(|o| !is_beaten(found, o));
                 list.push(*found);

@@ -14,7 +14,7 @@ use crate::space::slot::SizedJoint;
 
 /// Relative margin for rounding of a sum of a few dozen terms.
 pub(super) const ROUNDING: f64 = 1e-12;
-/// Greatest number of steps down a tree of drives in which drives that cannot carry a demand are searched for.
+/// Greatest depth to which a tree of drives is searched for drives that cannot carry a demand.
 const MOST_TREE_STEPS: usize = 6;
 
 impl Problem<'_> {
@@ -52,9 +52,9 @@ impl Problem<'_> {
         Some(())
     }
 
-    /// Reduces the drives of a joint to those that may carry the least demand, and writes the intervals over them to
-    /// `work`. `node` is the node of the joint's tree and is replaced by a smaller one. `None` if no drive may carry
-    /// the demand.
+    /// Reduces the drives of a joint to the drives that may carry the least demand, and writes the intervals over them
+    /// to `work`. `node` is the node of the joint's tree and is replaced by a smaller one. `None` if no drive may
+    /// carry the demand.
     fn fill_drives(
         &self,
         piece: usize,
@@ -80,8 +80,8 @@ impl Problem<'_> {
     }
 
     /// Writes the intervals of a joint that takes the lightest drive which carries its demand (first fit). They extend
-    /// over all drives from the first fit of the least demand to that of the greatest. `None` if no drive carries the
-    /// least demand.
+    /// over all drives from the first fit of the least demand to the first fit of the greatest demand. `None` if no
+    /// drive carries the least demand.
     fn fill_first_fit(
         &self,
         piece: usize,
@@ -110,9 +110,9 @@ impl Problem<'_> {
         Some(())
     }
 
-    /// Reduces the options of a link to those that may carry the least stress, and writes the intervals over them to
-    /// `work`. `node` is the node of the link's tree and is replaced by a smaller one. `None` if no option may carry
-    /// the stress.
+    /// Reduces the options of a link to the options that may carry the least stress, and writes the intervals over
+    /// them to `work`. `node` is the node of the link's tree and is replaced by a smaller one. `None` if no option may
+    /// carry the stress.
     fn fill_links(
         &self,
         piece: usize,
@@ -155,8 +155,8 @@ impl Problem<'_> {
         (rounded(static_nm), rounded(inertia_kgm2))
     }
 
-    /// The least and the greatest loads on the output bearing of a joint, over all cases; zero if this bearing is not
-    /// checked.
+    /// The least and the greatest loads on the output bearing of a joint, over the sizing cases; zero if this bearing
+    /// is not checked.
     pub(super) fn bearing_loads(&self, piece: usize, work: &BoxWork) -> [BearingDemand; 2] {
         let Some(lever) = self.levers[piece] else { return [BearingDemand::default(); 2] };
         let cases = self.poses.iter().zip(&work.weights);
@@ -185,9 +185,9 @@ impl Problem<'_> {
         }
     }
 
-    /// The least loads on each end section of a tube in each case: axial force \[N\], moments about y and z and torsion
-    /// \[N m\]. They are multiplied by the peak factor and by `safety`, the safety factor, so that they can be compared
-    /// with the strength.
+    /// The least loads on each end section of a tube in each case: axial force \[N\], moments about y and z and
+    /// torsion \[N m\]. They are multiplied by `safety`, the safety factor, and in sizing cases also by the peak
+    /// factor, so that they can be compared with the strength.
     fn least_loads(&self, piece: usize, safety: f64, work: &BoxWork) -> Vec<[f64; 4]> {
         let cases = self.poses.iter().zip(&work.weights);
         cases
@@ -205,8 +205,9 @@ impl Problem<'_> {
     }
 }
 
-/// The box around those drives below `node` that may carry the demand `asked`. The function goes at most `depth` steps
-/// down the tree. Drives that it excludes in these steps do not widen the box. `None` if no drive may carry the demand.
+/// The box around the drives below `node` that may carry the demand `asked`. The function goes at most `depth` steps
+/// down the tree. Drives that it excludes in these steps do not widen the box. `None` if no drive may carry the
+/// demand.
 fn feasible_drives(tree: &Tree<DriveBox>, node: u32, asked: &LeastDemand, depth: usize) -> Option<DriveBox> {
     let drives = &tree.node(node).bounds;
     if !drives.may_hold(asked) {

@@ -31,8 +31,8 @@ impl JointPlay {
         self.friction_rad > 0.0
     }
 
-    /// The least and the greatest twist that play adds to that of the gear \[rad\]. The torque lies between `low` and
-    /// `high` \[N m\], and the compliance of the gear's spring between `stiff` and `soft` \[rad/(N m)\].
+    /// The least and the greatest twist that play adds to the twist of the gear \[rad\]. The torque lies between `low`
+    /// and `high` \[N m\], and the compliance of the gear's spring between `stiff` and `soft` \[rad/(N m)\].
     pub(super) fn twist(&self, [stiff, soft]: [f64; 2], [low, high]: [f64; 2]) -> [f64; 2] {
         let lost = |torque_nm: f64| self.lost_motion.map_or(0.0, |lost| lost.angle_rad(torque_nm));
         let held_back = |torque_nm: f64, compliance: f64| {

@@ -169,7 +169,8 @@ impl Begun {
         std::mem::take(&mut self.state)
     }
 
-    /// The slack of the pass that was begun, and the boxes that were open in it; `None` between two passes.
+    /// The slack of the pass that was begun, and the boxes that were open in it. `None` between two passes, or if a
+    /// saved box does not exist in `problem`.
     pub(super) fn open_pass(&mut self, problem: &Problem) -> Option<(f64, Vec<OpenBox>)> {
         let OpenPass { slack, shapes, boxes } = self.open.take()?;
         let shapes: Vec<Arc<Vec<Shape>>> = shapes.into_iter().map(Arc::new).collect();

@@ -21,9 +21,10 @@ impl Problem<'_> {
         }
     }
 
-    /// Evaluates a box of one design, adds the design to `findings` and returns its objectives. Its mass and deflection
-    /// are taken from `box_bound`, and its lowest mode is computed anew. `None` if the box has several designs, if the
-    /// design breaks a constraint, or if rounding leaves open whether it meets one.
+    /// Evaluates a box of one design, adds the design to `findings` and returns its objectives. Its mass and
+    /// deflection are taken from `box_bound`, and its lowest mode is computed anew. `None` if the box has several
+    /// designs or if the design breaks a constraint. `None` also if rounding leaves open whether a part carries its
+    /// load; the design is then added to the undecided designs of `findings`.
     pub(super) fn judge(
         &self,
         design_box: &[u32],

@@ -20,8 +20,8 @@ pub(super) enum Ties {
     Separate,
 }
 
-/// The drives of a joint, grouped by kind. Drives and kinds are in ascending order. The number of a kind is that of its
-/// first drive.
+/// The drives of a joint, grouped by kind. Drives and kinds are in ascending order. The number of the first drive of a
+/// kind is also the number of the kind.
 pub(super) struct Kinds(Vec<Vec<u32>>);
 
 impl Kinds {

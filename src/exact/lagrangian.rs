@@ -1,9 +1,9 @@
 //! The Lagrangian bound of a box, part by part, and the multipliers that improve it.
 //!
 //! For multipliers `y ≥ 0`, the weighted sum of the rows ([`rows`](super::rows)) is a sum of one number for each part,
-//! the price of the part. The least sum over all members of the box is therefore the sum of the least prices, which are
-//! found level by level. This least sum is the value of the dual function at `y`. If it exceeds the weighted limits of
-//! a local upper bound, no member lies below that bound.
+//! the price of the part. The least sum over all members of the box is therefore the sum of the least prices, which
+//! are found level by level; the parts that have them make a *relaxed design*. This least sum is the value of the dual
+//! function at `y`. If it exceeds the weighted limits of a local upper bound, no member lies below that bound.
 //!
 //! The next multipliers are the solution of a matrix game against the relaxed designs found so far (Kelley's
 //! cutting-plane method). If no multipliers refute the bound, the modes of the mixed arm give new rows. The mixed arm
@@ -26,7 +26,8 @@ const STEPS: usize = 3;
 /// Stiffnesses and line inertias of each piece of an arm.
 type Arm = (Vec<[f64; STIFFNESSES]>, Vec<[f64; INERTIAS]>);
 
-/// The numbers of a joint that is to be added to a relaxed design. `curve` is `None` for a rigid joint.
+/// The numbers of a joint that is to be added to a relaxed design (the cheapest parts under some multipliers). `curve`
+/// is `None` for a rigid joint.
 struct AddedJoint<'a> {
     piece: usize,
     mass_kg: f64,

@@ -128,8 +128,8 @@ impl LocalUpperBounds {
         Some([self, Self(high)])
     }
 
-    /// Takes away what the designs `found` dominate. A bound with such a design below it is replaced by the bounds of
-    /// what the design leaves open.
+    /// Removes the objectives that the designs `found` dominate from the region of the group. A bound with such
+    /// designs below it is replaced by the local upper bounds of the region that these designs leave undominated.
     pub(super) fn cut_by(&mut self, found: &[Objectives]) {
         let mut cut = Vec::new();
         self.0.retain(|upper| {
@@ -140,7 +140,8 @@ impl LocalUpperBounds {
             cut.extend(Self::new(&mut inside, *upper).0);
             false
         });
-        // Neighbours that overlapped leave parts of which one covers another.
+        // The regions below neighbouring bounds overlap, so one new bound may cover another. Covered bounds are left
+        // out.
         for (at, upper) in cut.iter().enumerate() {
             let is_covered = |by: &LocalUpperBound| by.covers(upper);
             let elsewhere = || cut[at + 1..].iter().any(is_covered);
@@ -157,8 +158,8 @@ impl FromIterator<LocalUpperBound> for LocalUpperBounds {
     }
 }
 
-/// The staircase of the incumbents added so far: deflection \[m\] and mode \[Hz\] of those that are not dominated, in
-/// ascending order of both.
+/// The staircase of the incumbents added so far: deflection \[m\] and mode \[Hz\] of the incumbents that are not
+/// dominated, in ascending order of both.
 struct Stairs {
     steps: Vec<[f64; 2]>,
     limits: LocalUpperBound,

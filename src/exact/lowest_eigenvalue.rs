@@ -101,7 +101,7 @@ impl CaseInertia {
     }
 }
 
-/// Adds the matrices of an arm's line inertias to the inertia matrix of what the study gives.
+/// Adds the matrices of an arm's line inertias to the inertia matrix of the payload and the given bodies.
 struct Inertia<'a> {
     m: &'a mut [f64],
     forms: &'a [(usize, usize, Vec<f64>)],

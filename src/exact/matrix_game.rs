@@ -1,5 +1,5 @@
-//! A matrix game, solved by the simplex method: the weights of columns under which the least weighted row is as large
-//! as possible.
+//! A matrix game, solved by the simplex method. The solution is the weights of the columns under which the least
+//! weighted sum of a row is as large as possible.
 
 use crate::mechanics::lanes::{LANES, LaneWork, Lanes, in_lanes, subtract_multiple};
 use std::ops::Range;
@@ -17,18 +17,18 @@ const BALANCE_TOLERANCE: f64 = 1e-6;
 pub(super) struct Game {
     /// Weights of the columns. None is negative, and they sum to one.
     pub weights: Vec<f64>,
-    /// Weights of the rows in the mixture that makes the greatest weighted sum of a column as small as possible. They
-    /// sum to one.
+    /// Weights of the rows in a mixture. They make the greatest weighted sum of a column as small as possible, and
+    /// they sum to one.
     pub mix: Vec<f64>,
     /// Value of the game: the weighted sum of the numbers of a row, for the row in which it is least.
     pub value: f64,
 }
 
-/// Solves a matrix game: finds weights of the columns that make the weighted sum of the worst row as large as possible.
-/// `rows` has the numbers of all rows one after the other, `width` numbers for each row.
+/// Solves a matrix game: finds the weights of the columns that make the weighted sum of the worst row as large as
+/// possible. `rows` has the numbers of all rows one after the other, `width` numbers for each row.
 ///
-/// The simplex method solves the linear program of the other player: `max Σ z` with `Σ_j (a_ji + c) z_j <= 1` for every
-/// column `i`, and `z >= 0`. The dual values of this program are the weights.
+/// The simplex method solves the linear program of the other player, who mixes the rows: `max Σ z` with
+/// `Σ_j (a_ji + c) z_j <= 1` for every column `i`, and `z >= 0`. The dual values of this program are the weights.
 ///
 /// The columns in the range `balanced` are conditions on the mixture: `Σ_j a_ji z_j <= 0`. They come in pairs of
 /// opposite sign, so the sum must be zero. If such a pair were two ordinary columns, equal weights on both would
@@ -64,7 +64,8 @@ pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game 
         if cost > -ROUNDING {
             break;
         }
-        // Of several variables with this cost, the one with the lowest number enters, whatever its column is.
+        // Of several variables with this cost, the one with the lowest number enters, wherever its column stands in
+        // the tableau.
         let equals = (0..count).filter(|&j| objective[j] == cost);
         let Some(enter) = equals.min_by_key(|&j| others[j]) else { break };
         let ratio = |i: usize| {

@@ -3,7 +3,7 @@
 use crate::search::sweep::Candidate;
 use serde::{Deserialize, Serialize};
 
-/// What was found in the boxes of one shard, before designs with tied drives are listed.
+/// The findings of one shard, before designs with tied drives are listed.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct FoundInShard {
     /// The subtrees of the space that were searched. A subtree is named by the halves that lead to it from the box of
@@ -15,7 +15,7 @@ pub struct FoundInShard {
     pub boxes: u64,
     /// Number of boxes or regions that were still open when the search was stopped.
     pub boxes_open: u64,
-    /// The gap that was proved for the designs of the subtrees; `None` if nothing is known.
+    /// The gap that was proved for the designs of the subtrees (relative); `None` if no gap was proved.
     pub gap: Option<f64>,
     /// The designs found that no other of them dominates.
     pub decided: Vec<Candidate>,
@@ -41,7 +41,8 @@ pub struct ExactOutcome {
     pub gap: Option<f64>,
     /// The designs found that no other design dominates.
     pub front: Vec<Candidate>,
-    /// Whether the front lists all ties, that is, every design that differs from another only in drives of equal mass
-    /// and curve. `false` if there are too many; then one design of each set of ties is listed.
+    /// Whether the front lists all ties, that is, every design that differs from another only in drives of equal mass,
+    /// torsion curve and bearing stiffness. `false` if there are too many; then one design of each set of ties is
+    /// listed.
     pub ties_listed: bool,
 }

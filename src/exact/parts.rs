@@ -199,17 +199,16 @@ impl Rays {
     }
 }
 
-/// Fraction by which the motor heat of a least demand is lowered and that of a greatest demand is raised to cover
-/// rounding. A margin on the loads alone would not be enough, because the motor's own inertia can cause most of the
-/// heat.
+/// Fraction by which the motor heat is lowered in a least demand and raised in a greatest demand, to cover rounding. A
+/// margin on the loads alone would not be enough, because the motor's own inertia can cause most of the heat.
 pub(super) const HEAT_ROUNDING: f64 = 1e-12;
 
 /// The least demand that the members of a box put on a joint.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct LeastDemand {
     pub demand: JointDemand,
-    /// For each ray (fixed proportion of static torque and inertia), the greatest multiple of its demand that lies
-    /// below this demand.
+    /// For each ray (a fixed proportion of static torque and inertia), the greatest multiple of the ray's demand that
+    /// lies below `demand`.
     multiples: [f64; RAYS],
 }
 
@@ -263,8 +262,8 @@ pub(super) struct DriveBox {
     /// Least and greatest tilt of the output bearing per moment \[rad/(N m)\], including the tilt that an effect adds
     /// in series. 0 if no drive of the joint has a bearing that tilts.
     pub tilt_rad_per_nm: [f64; 2],
-    /// For a box that is one kind of several drives: the limits of its drives, without each drive whose limits are all
-    /// reached by another drive of the kind. The kind carries a demand if one of the listed drives does. `None` if one
+    /// The limits of the drives, for a box that is one kind of several drives. A drive is left out if another drive of
+    /// the kind reaches all its limits. The kind carries a demand if one of the listed drives does. `None` if one
     /// drive reaches the limits of all others, and for any other box.
     pub each: Option<Arc<[DriveLimits]>>,
 }
@@ -282,7 +281,7 @@ impl DriveBox {
         };
         let each: Vec<DriveLimits> =
             drives.iter().enumerate().filter(|d| !covered(*d)).map(|(_, d)| d.limits).collect();
-        // If one drive carries whatever the others carry, its limits are those of the box, and no list is needed.
+        // If one drive reaches the limits of all others, its limits are the limits of the box, and no list is needed.
         Some(Self { each: (each.len() > 1).then(|| Arc::from(each)), ..kind })
     }
 

@@ -5,9 +5,9 @@
 //! design some design found is worse by at most `ε`. The time of a pass grows as a power of the reciprocal of its
 //! slack, `t ∝ ε^-g`. The exponent `g` is measured on the last two completed passes.
 //!
-//! Without a time limit the slacks are those of a fixed list and do not depend on the machine. With a time limit they
-//! are taken from the same list as long as a pass is short compared with the time left, and if the gap that was asked
-//! for can be proved in time. Otherwise the last pass gets the least slack for which there should be time.
+//! Without a time limit the slacks come from a fixed list and do not depend on the machine. With a time limit they
+//! come from the same list as long as a pass is short compared with the time left, and if the gap that was asked for
+//! can be proved in time. Otherwise the last pass gets the least slack for which there should be time.
 
 use serde::{Deserialize, Serialize};
 
@@ -31,8 +31,8 @@ const MOST_GROWTH: f64 = 4.5;
 /// The last pass is planned to take at most this fraction of the time left. The rest is a margin for errors of the
 /// prediction.
 const LAST_PASS_SHARE: f64 = 0.75;
-/// A pass that should take at most this fraction of the time left counts as short and is made with the slack of the
-/// list.
+/// A pass that is expected to take at most this fraction of the time left counts as short and is made with the slack
+/// of the list.
 const SHORT_PASS_SHARE: f64 = 0.05;
 /// Greatest factor by which one pass divides the slack. A larger step would be predicted from times measured at a much
 /// larger slack. An additional pass in between takes only a small part of the time of the next one.
@@ -85,9 +85,9 @@ impl Plan {
         Some(step_to(least_slack_within(done, LAST_PASS_SHARE * left_s).max(finest), last.slack).max(finest))
     }
 
-    /// The next slack of the list after the slack `last`. Up to `most_passed_over` slacks are skipped, but a skip never
-    /// leads to the pass without slack; that one comes only after all others. `None` if `last` is the last slack of the
-    /// list.
+    /// The next slack of the list after the slack `last`. Up to `most_passed_over` slacks are skipped, but a skip
+    /// never leads to the pass without slack; this pass comes only after all other passes. `None` if `last` is the
+    /// last slack of the list.
     fn listed(&self, last: f64) -> Option<f64> {
         let finer = self.slacks.iter().copied().filter(|slack| *slack < last);
         let mut ahead = finer.take(1 + self.most_passed_over);

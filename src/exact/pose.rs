@@ -84,7 +84,7 @@ pub(super) struct Pose {
 pub(super) enum PosedPiece {
     /// A joint. `twist` is the motion of everything outboard per radian (metre for a prismatic joint), and `at_m` the
     /// place of its mass. `across` has the motions of everything outboard per radian of tilt of the output bearing
-    /// about the two axes across the joint axis; `None` if no option tilts.
+    /// about two axes at right angles to the joint axis; `None` if no option tilts.
     Joint { twist: Twist, at_m: Vector3<f64>, across: Option<[Twist; 2]> },
     /// A rigid body, with its inertia about the world's origin.
     Body(Matrix6<f64>),
@@ -157,8 +157,8 @@ pub(super) struct Row {
     /// Index of the strain coordinate within its piece. For a joint 0 is the torsion; 1 and 2 are the tilts of the
     /// bearing.
     pub coordinate: usize,
-    /// Part of the generalized force that does not depend on the weight of any part, such as that of the payload \[N or
-    /// N m\].
+    /// Part of the generalized force that does not depend on the weight of any part, for example the force due to the
+    /// payload \[N or N m\].
     pub fixed: f64,
     /// For each piece from the tip to `piece` itself, the generalized force per newton of the piece's weight.
     pub per_n: Vec<f64>,
@@ -220,8 +220,8 @@ impl Pose {
         ways.iter().enumerate().all(|(i, a)| ways[..i].iter().all(|b| agree(a, b)))
     }
 
-    /// The rows that matter for the tests of signs: those of joint torsions, and those of coordinates that move the
-    /// tip.
+    /// The rows that matter for the tests of signs: the rows of joint torsions, and the rows of coordinates that move
+    /// the tip.
     fn relevant_rows(&self) -> impl Iterator<Item = &Row> {
         self.rows.iter().filter(|row| self.is_torsion(row) || row.tip_m.norm() > 0.0)
     }

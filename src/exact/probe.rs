@@ -1,8 +1,8 @@
 //! The search for the first incumbents by quick descents (probes).
 //!
 //! A probe minimizes one weighted sum of the logarithms of mass, deflection and mode. It follows the half with the
-//! better bound of every box down to one design, and then optimizes one level at a time with the others fixed. Its
-//! result proves nothing, but a search with good incumbents prunes early.
+//! better bound of every box down to one design, and then optimizes one level at a time with the other levels fixed.
+//! Its result proves nothing, but a search with good incumbents prunes early.
 
 use super::bound::{BoxBound, DesignBox, Verdict};
 use super::box_work::BoxWork;
@@ -195,8 +195,8 @@ impl Probe<'_, '_> {
     }
 }
 
-/// A box that may contain a better design than the best so far. `merit` is that of its bound, and `level` the level
-/// along which it is halved.
+/// A box that may contain a better design than the best so far. `merit` is the merit of its bound, and `level` the
+/// level along which it is halved.
 struct Promising {
     merit: f64,
     design_box: DesignBox,

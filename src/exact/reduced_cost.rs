@@ -14,8 +14,8 @@ use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, in_lanes};
 
 /// Approximate number of tree nodes by which the remaining options of a level are described.
 const NODES_PER_LEVEL: usize = 256;
-/// Number of dual points (sets of multipliers) that are used to exclude options. Those are taken whose least weighted
-/// sum comes nearest to the sum that the local upper bound allows.
+/// Number of dual points (sets of multipliers) that are used to exclude options. The points are taken whose least
+/// weighted sum comes nearest to the sum that the local upper bound allows.
 const DUAL_POINTS_USED: usize = 32;
 
 /// The dual prices of a level at one dual point, and the greatest price at which an option of the level may still
@@ -124,8 +124,8 @@ impl EightPrices {
     }
 }
 
-/// Computes whether every drive of a box is excluded: whether, at some dual point (set of multipliers), the least price
-/// of a drive in the box is above the allowed one. A price that is not a number excludes nothing.
+/// Computes whether every drive of a box is excluded: whether, at some dual point (set of multipliers), the least
+/// price of a drive in the box is above the allowed price. A price that is not a number excludes nothing.
 struct DrivesCost<'a> {
     drives: &'a DriveBox,
     gears: &'a [JointPrice],
@@ -170,7 +170,7 @@ impl LaneWork for DrivesCost<'_> {
 }
 
 /// Computes whether every tube of a box is excluded: whether, at some dual point (set of multipliers), the least price
-/// of a tube in the box is above the allowed one. A price that is not a number excludes nothing.
+/// of a tube in the box is above the allowed price. A price that is not a number excludes nothing.
 struct LinksCost<'a> {
     links: &'a LinkBox,
     prices: &'a [EightPrices],

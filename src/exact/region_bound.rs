@@ -33,7 +33,7 @@ pub(super) struct Survivors {
     pub candidates: Vec<DesignBox>,
 }
 
-/// What the multipliers tried so far prove about a box.
+/// The dual points and relaxed designs of the multipliers tried so far for a box.
 #[derive(Default)]
 struct Proofs {
     points: Vec<DualPoint>,
@@ -52,9 +52,9 @@ impl Proofs {
 }
 
 impl Problem<'_> {
-    /// Tests whether a box has designs below the local upper bounds of a group. The intervals of the box are in `work`,
-    /// and the multipliers of the parent box are in `warm_start`. Bounds below which the box is proved to have no design
-    /// are removed from `below`. `None` if none is left; otherwise the options and designs that remain possible.
+    /// Tests whether a box has designs below the local upper bounds of a group. `work` has the intervals of the box,
+    /// and `warm_start` the multipliers of the parent box. Bounds below which the box is proved to have no design are
+    /// removed from `below`. `None` if none is left; otherwise the options and designs that remain possible.
     pub(super) fn bound_below(
         &self,
         design_box: &[u32],
@@ -86,8 +86,9 @@ impl Problem<'_> {
 }
 
 impl Rows<'_> {
-    /// Looks for multipliers that prove a box to have no design below the local upper bound `upper`. `None` if there are
-    /// some; otherwise the game between the rows and the relaxed designs at which the attempt ended.
+    /// Looks for multipliers that prove a box to have no design below the local upper bound `upper`. `None` if such
+    /// multipliers are found. Otherwise the result is the game between the rows and the relaxed designs with which the
+    /// attempt ended.
     fn refute(
         &mut self,
         design_box: &[u32],
@@ -133,9 +134,10 @@ impl Rows<'_> {
         }
     }
 
-    /// Removes the local upper bounds from a group below which a box is proved to have no design. Every set of multipliers
-    /// is tried on all of them. Then new ones are looked for, for the bound that is nearest to a refutation, until that
-    /// fails: a search of the halves of the group, with fewer options, is the better way for those that are left.
+    /// Removes from a group the local upper bounds below which a box is proved to have no design. Every set of
+    /// multipliers found so far is tried on all bounds. Then new multipliers are sought for the bound that is nearest
+    /// to a refutation, until they refute none. The bounds that are left are better searched in two halves of the
+    /// group, with fewer options.
     fn refute_one_by_one(&mut self, design_box: &[u32], below: &mut LocalUpperBounds, proofs: &mut Proofs) {
         let mut open: Vec<(f64, LocalUpperBound)> = Vec::new();
         let first: Vec<Plane> = proofs.points.iter().map(|point| self.plane(point)).collect();
@@ -160,7 +162,7 @@ impl Rows<'_> {
                 *nearest = nearest.max(plane.above(upper));
                 *nearest <= ROUNDING
             });
-            // The point was made for one of the bounds and refutes none.
+            // The new multipliers refute no bound, not even the one for which they were made.
             if open.len() == before {
                 break;
             }
@@ -168,7 +170,7 @@ impl Rows<'_> {
         *below = open.into_iter().map(|(_, upper)| upper).collect();
     }
 
-    /// What a dual point says about any local upper bound.
+    /// The dual point as a plane in the space of objectives, which is quick to test on any local upper bound.
     fn plane(&self, point: &DualPoint) -> Plane {
         let weights: Vec<f64> =
             point.multipliers.iter().zip(&self.scale).map(|(w, scale)| w / scale).collect();
@@ -186,15 +188,16 @@ impl Rows<'_> {
     }
 }
 
-/// A half space of objectives in which a box has no design.
+/// A dual point (set of multipliers), written as an inequality in the numbers of a local upper bound. If
+/// [`above`](Self::above) is positive for a bound, the box has no design below that bound.
 struct Plane {
     /// The least weighted sum of the rows.
     least: f64,
     /// Weights of the mass and of the deflection of a local upper bound.
     mass: f64,
     tip: f64,
-    /// Weight of the difference between `lambda` and the eigenvalue of a local upper bound, with the lightest and with the
-    /// heaviest parts of the box.
+    /// Weight of the difference between `lambda` and the eigenvalue of a local upper bound, once with the lightest and
+    /// once with the heaviest parts of the box.
     moves: [f64; 2],
     lambda: f64,
 }
@@ -202,7 +205,7 @@ struct Plane {
 impl Plane {
     /// By how much the least weighted sum of the rows exceeds the sum that the local upper bound `upper` allows.
     fn above(&self, upper: &LocalUpperBound) -> f64 {
-        // A limit may be infinite, and its weight zero.
+        // A limit may be infinite. Its product with a weight of zero would be NaN.
         let term = |weight: f64, limit: f64| if weight > 0.0 { weight * limit } else { 0.0 };
         let below = self.lambda - upper.lambda();
         let moves = self.moves[usize::from(below > 0.0)];

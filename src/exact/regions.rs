@@ -33,7 +33,7 @@ const WORTH_IT: f64 = 0.1;
 /// Width of a grid cell for the thinning of incumbents, as a fraction of the slack.
 const THINNING_CELL: f64 = 0.45;
 
-/// The options that may belong to a design of a region. The trial shapes and multipliers are those of the larger region
+/// The options that may belong to a design of a region. The trial shapes and multipliers belong to the larger region
 /// of which this region is a part, until its own are computed.
 #[derive(Clone)]
 pub(super) struct Subproblem<'p> {
@@ -104,8 +104,8 @@ pub(super) fn pass_by_regions<'p>(
 }
 
 impl<'p> Search<'_, 'p> {
-    /// Searches the region below a group of local upper bounds. If it has at most `regions_to` designs, it is searched box
-    /// by box. Returns the tasks that remain.
+    /// Searches the region below a group of local upper bounds. If it has at most `regions_to` designs, it is searched
+    /// box by box. Returns the tasks that remain.
     fn region(
         &self,
         mut below: LocalUpperBounds,
@@ -131,7 +131,8 @@ impl<'p> Search<'_, 'p> {
             let [first, second] = halves.map(|below| Task::Region { below, subproblem: subproblem.clone() });
             return vec![second, first];
         }
-        // What was learned about a group does not tell how to divide the options below its last bound.
+        // The options that are left belong to the bound that covers the whole group. They do not tell how to divide
+        // the options for the one bound that is left, so the region of this bound is bounded anew.
         if !was_single {
             return vec![Task::Region { below, subproblem }];
         }
@@ -142,8 +143,8 @@ impl<'p> Search<'_, 'p> {
         vec![second, first]
     }
 
-    /// Excludes options of a subproblem and local upper bounds as long as that is worth the time, and evaluates promising
-    /// designs. Returns what remains. `None` if the region is empty.
+    /// Excludes options of a subproblem, and local upper bounds, as long as that is worth the time. Then evaluates
+    /// promising designs. Returns the remaining options. `None` if the region is empty.
     fn reduce(
         &self,
         subproblem: &mut Subproblem<'p>,
@@ -224,7 +225,8 @@ impl<'p> Subproblem<'p> {
 
     /// Bounds a subproblem below a group of local upper bounds and removes the bounds that are refuted. Returns the
     /// survivors, and whether the subproblem was restricted to them. It is restricted if enough designs were excluded.
-    /// `is_beaten` tells whether a known design dominates every design with a given bound. `None` if the region is empty.
+    /// `is_beaten` tells whether a known design dominates every design with a given bound. `None` if the region is
+    /// empty.
     pub(super) fn reduce(
         &mut self,
         below: &mut LocalUpperBounds,

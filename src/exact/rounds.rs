@@ -2,8 +2,8 @@
 //!
 //! A search prunes boxes by the designs that it has found. If each new design were told to all workers at once, the
 //! boxes that they prune would depend on the moment at which it was found. Therefore tasks are done in rounds. Each
-//! task knows the designs that were known when its round began and those that it finds itself. When all tasks of a
-//! round are done, their findings are learned in the order of the tasks.
+//! task knows the designs that were known when its round began and the designs that it finds itself. When all tasks of
+//! a round are done, their findings are learned in the order of the tasks.
 
 use rayon::prelude::*;
 

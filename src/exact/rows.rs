@@ -8,8 +8,8 @@
 //!   own, and the deflections of tubes and bearings. A product of the force `F` and the compliance `c` of a tube or a
 //!   bearing is replaced by `F₀ c + c₀ (F - F₀)`, where `F₀` and `c₀` are the least of the box (McCormick). The error
 //!   is at most the product of the widths of the two intervals.
-//! - *torque of a gear*: its own torque less the torque that the weights outboard make. The difference is zero, and
-//!   nothing is lost.
+//! - *torque of a gear*: the torque at which its curve is evaluated, less the torque that the weights outboard make.
+//!   For a member the difference is zero, so this row is exact.
 //! - *mode*: `λ xᵀMx - xᵀKx` for a trial shape `x`. It is not positive for a member whose eigenvalues are at least `λ`.
 //!   The error is about the square of the shape's error.
 //!
@@ -66,7 +66,7 @@ pub(super) struct Rows<'a> {
     pub fixed: Vec<f64>,
     /// For each judged case, the row (inequality) on the displacement of the tip.
     pub tips: Vec<TipRow>,
-    /// The gears that are not rigid, first those of the first judged case, then those of the second, and so on.
+    /// The gears that are not rigid, listed by judged case: the gears of the first judged case come first.
     pub gears: Vec<Gear>,
     /// The generalized forces to which rows set a least and a greatest value. Each has two rows.
     pub forces: Vec<Force<'a>>,
@@ -154,8 +154,8 @@ pub(super) struct DualPoint {
 }
 
 impl Problem<'_> {
-    /// The drives of each level of a box that carry the least demand; `None` for a level of links. `before` has those
-    /// of the parent box, which are reused if they are the same.
+    /// The drives of each level of a box that carry the least demand; `None` for a level of links. `before` has the
+    /// drives of the parent box, which are reused if they are the same.
     fn drives_of_levels(
         &self,
         design_box: &[u32],
@@ -285,7 +285,7 @@ impl<'a> Rows<'a> {
     /// scale of the rows is taken from the interval from `low` to `high`. Returns the index of the first row.
     fn push_force(&mut self, judged: usize, row: &'a Row, [low, high]: [f64; 2], between: [f64; 2]) -> usize {
         let next = self.scale.len();
-        // The scale stays comparable to that of other rows even if the interval is narrow.
+        // The scale stays comparable to the scale of other rows even if the interval is narrow.
         let scale = (high - low).max(0.1 * low.abs().max(high.abs())).max(f64::MIN_POSITIVE);
         self.push(scale, between[0] - row.fixed);
         self.push(scale, row.fixed - between[1]);
@@ -303,8 +303,8 @@ impl<'a> Rows<'a> {
         self.modes.push(Mode { judged, start, shape, kinetic });
     }
 
-    /// The multipliers with which the search for better ones starts. `above` are those of the parent box. Rows that the
-    /// parent box did not have get equal multipliers.
+    /// The multipliers with which the search for better ones starts. `above` are the multipliers of the parent box.
+    /// Rows that the parent box did not have get equal multipliers.
     pub(super) fn starting_multipliers(&self, above: &[f64]) -> Vec<f64> {
         let mut multipliers = vec![0.0; self.scale.len()];
         let others: Vec<usize> = (0..=self.tips.len()).chain(self.first_mode..self.scale.len()).collect();
@@ -345,7 +345,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Makes the mode rows for another eigenvalue `lambda` \[1/s²\], with their values for the relaxed designs `members`.
+    /// Makes the mode rows for another eigenvalue `lambda` \[1/s²\], and updates their values for the relaxed designs
+    /// `members`.
     pub(super) fn set_lambda(&mut self, lambda: f64, members: &mut [RelaxedDesign]) {
         let more = lambda - self.lambda;
         for (m, mode) in self.modes.iter().enumerate() {
@@ -370,8 +371,8 @@ impl<'a> Rows<'a> {
         objectives.chain(torques).chain(modes).zip(&self.scale).map(|(row, scale)| row / scale)
     }
 
-    /// The upper limit that each scaled row has for every member below the local upper bound `upper`, with the mode rows
-    /// as they are made now.
+    /// The upper limit that each scaled row has for every member below the local upper bound `upper`. The mode rows
+    /// are taken for the present eigenvalue.
     pub(super) fn row_limits_now<'b>(&'b self, upper: &'b LocalUpperBound) -> impl Iterator<Item = f64> + 'b {
         self.row_limits(self.lambda, upper)
     }

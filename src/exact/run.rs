@@ -43,8 +43,8 @@ const PROBES_PER_SQUARED_DECADE: f64 = 0.12;
 /// Number of probes per squared decade of designs if the genetic algorithm ([`evolve`]) follows. It is a third of
 /// [`PROBES_PER_SQUARED_DECADE`].
 const PROBES_TO_EVOLVE: f64 = 0.04;
-/// Default of the greatest number of designs that are listed with all their ties. A tie is a design that differs from
-/// another only in drives of equal mass, torsion curve and bearing stiffness.
+/// Greatest number of designs up to which all ties are listed, unless the caller sets another number. A tie is a
+/// design that differs from another only in drives of equal mass, torsion curve and bearing stiffness.
 const MOST_WITH_TIES: usize = 20_000;
 
 /// A search for the exact front. Other threads can watch and stop it.
@@ -142,9 +142,9 @@ impl<'p> Exact<'p> {
         Self { regions_from: designs, regions_to: designs.min(SMALL_REGION), ..self }
     }
 
-    /// Sets the greatest number of designs up to which every tie is listed. Ties are designs that differ only in drives
-    /// of equal mass and torsion curve. The default is 20,000. If there are more, one design of each set of ties is
-    /// listed.
+    /// Sets the greatest number of designs up to which every tie is listed. Ties are designs that differ only in
+    /// drives of equal mass, torsion curve and bearing stiffness. The default is 20,000. If there are more, one design
+    /// of each set of ties is listed.
     #[must_use]
     pub fn with_ties_up_to(self, designs: usize) -> Self {
         Self { most_with_ties: designs, ..self }
@@ -204,7 +204,7 @@ impl<'p> Exact<'p> {
         self.listed(whole.as_ref(), found)
     }
 
-    /// The compiled space of all designs, or of those whose chosen links are all of one material.
+    /// The compiled space of all designs, or of the designs whose chosen links are all of one material.
     pub(super) fn space_of(&self, material_index: Option<usize>) -> Option<Problem<'p>> {
         let is_of_it =
             |option: &LinkOption| material_index.is_none_or(|index| option.material_index == index);
@@ -216,9 +216,9 @@ impl<'p> Exact<'p> {
         Problem::with_joints(self.space, self.joints(), takes, ties)
     }
 
-    /// Searches one part of the study (all designs, or those of one material) and starts with a state. If an earlier
-    /// process has finished this part, its result is returned. `whole` is the compiled space of the part; `None` if it
-    /// has no design. The flag tells whether no designs are known at the start.
+    /// Searches one part of the study: all designs, or the designs of one material. The search starts from the given
+    /// state; the flag tells whether no designs are known in it. `whole` is the compiled space of the part; `None` if
+    /// it has no design. If an earlier process has finished this part, its result is returned.
     pub(super) fn search_part(
         &self,
         whole: Option<&Problem<'p>>,
@@ -269,7 +269,8 @@ impl<'p> Exact<'p> {
         // Tied kinds may stand for the same design.
         front.dedup_by_key(|c| c.number);
         ExactOutcome {
-            // The number is that of the study, even if the space was not compiled because a level has no usable option.
+            // This is the number of designs in the study, even if the space was not compiled because a level has no
+            // usable option.
             designs_total: self.space.designs_with(self.joints()).unwrap_or(u128::MAX),
             designs_evaluated,
             boxes,

@@ -102,7 +102,7 @@ impl SearchState {
     /// The objectives of the designs found so far that no other dominates.
     pub(super) fn front(&self) -> Vec<Objectives> {
         let points: Vec<[f64; 3]> = self.kept.iter().map(|c| c.objectives.minimized()).collect();
-        // Objectives are numbers, so the front exists.
+        // No objective is NaN, so there is no error.
         exact_front(&points).unwrap_or_default().into_iter().map(|i| self.kept[i].objectives).collect()
     }
 

@@ -42,7 +42,7 @@ pub(super) struct Ideal<'a> {
 impl Shape {
     /// A shape of a low mode of an ideal arm, found by `steps` steps of inverse iteration. The first shape is the
     /// deformation under an acceleration of the base along `direction`. The shape is kept orthogonal to the shapes in
-    /// `others`, so that it becomes another mode than these.
+    /// `others`, so that it becomes a mode that differs from these.
     pub(super) fn start(
         pose: &Pose,
         ideal: &Ideal,
@@ -123,7 +123,7 @@ impl Shape {
     }
 
     /// Makes this shape orthogonal to the shapes in `others` with respect to the stiffness matrix `K`, so that it
-    /// converges to another mode than these.
+    /// converges to a mode that differs from these.
     fn clear_of(&mut self, pose: &Pose, ideal: &Ideal, others: &[Self]) {
         for other in others {
             let (mut common, mut own) = (0.0, 0.0);

@@ -31,8 +31,8 @@ const SUBTREES_BY_REGIONS: usize = 1;
 const LONGEST_NAME: usize = 256;
 
 impl<'p> Exact<'p> {
-    /// Searches the shard for the front of all designs, or for that of the designs of one material. `given` are earlier
-    /// findings of the same study, from any part of the space. They prune boxes, and the result includes them.
+    /// Searches the shard for the front of all designs, or for the front of the designs of one material. `given` are
+    /// earlier findings of the same study, from any part of the space. They prune boxes, and the result includes them.
     pub fn found(&self, material_index: Option<usize>, given: &[FoundInShard]) -> FoundInShard {
         let mut state = SearchState::toward(self.only);
         for FoundInShard { decided, undecided, .. } in given {
@@ -79,7 +79,7 @@ impl<'p> Exact<'p> {
 
 impl Problem<'_> {
     /// Disjoint boxes that together contain every design, each with its name and sorted by name. There are at most
-    /// `most` of them.
+    /// `most` of them. The largest box is halved first.
     fn divided(&self, most: usize) -> Vec<(String, DesignBox)> {
         let size = |design_box: &DesignBox| self.members(design_box).to_bits();
         let root = self.root();

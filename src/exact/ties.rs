@@ -19,8 +19,8 @@ impl Problem<'_> {
         for (candidate, lists) in &with_ties {
             let mut chosen: Vec<Vec<u32>> = vec![Vec::new()];
             for list in lists {
-                // To list all ties of some designs and not of others would be arbitrary. So either all are listed or
-                // one for each design.
+                // The choice must not be arbitrary: either all ties of all designs are listed, or one design of each
+                // set of ties.
                 let choices = if lists_all { &list[..] } else { &list[..1] };
                 let longer = |start: Vec<u32>| choices.iter().map(move |o| [&start[..], &[*o]].concat());
                 chosen = chosen.into_iter().flat_map(longer).collect();

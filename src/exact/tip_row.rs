@@ -6,7 +6,7 @@ use super::parts::STIFFNESSES;
 use super::problem::{Part, Problem};
 
 /// The displacement of the tip in a judged case along a fixed direction, as a linear function of the numbers of the
-/// parts. The direction is that of the tip's displacement when it is least over the box.
+/// parts. It is the direction of the tip's least displacement over the box.
 pub(super) struct TipRow {
     /// Index of the case.
     pub case: usize,
@@ -25,7 +25,7 @@ pub(super) struct TipRow {
 
 impl TipRow {
     /// The row of the tip's displacement in a judged case, and the part of this displacement that no choice changes
-    /// \[m\]. `judged` is the index among the judged cases and `case` that among all cases.
+    /// \[m\]. `judged` is the index of the case among the judged cases, and `case` its index among all cases.
     pub(super) fn new(problem: &Problem, judged: usize, case: usize, work: &BoxWork) -> (Self, f64) {
         let pose = &problem.poses[case];
         let pieces = problem.parts.len();

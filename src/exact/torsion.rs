@@ -155,14 +155,15 @@ fn join(
     })
 }
 
-/// The softest curve whose slope does not fall with torque and is nowhere below that of `w`. If several such curves are
-/// combined by the greatest slopes and the least break points, the result is nowhere softer than any of them.
+/// The softest curve whose slope does not fall with torque and is nowhere below the slope of `w`. If several such
+/// curves are combined by the greatest slopes and the least break points, the result is nowhere softer than any of
+/// them.
 fn rising(w: &Windup) -> Windup {
     let k2 = w.k1_nm_per_rad.max(w.k2_nm_per_rad);
     Windup { k2_nm_per_rad: k2, k3_nm_per_rad: k2.max(w.k3_nm_per_rad), ..*w }
 }
 
-/// The stiffest curve whose slope does not fall with torque and is nowhere above that of `w`.
+/// The stiffest curve whose slope does not fall with torque and is nowhere above the slope of `w`.
 fn rising_below(w: &Windup) -> Windup {
     let k2 = w.k2_nm_per_rad.min(w.k3_nm_per_rad);
     Windup { k1_nm_per_rad: k2.min(w.k1_nm_per_rad), k2_nm_per_rad: k2, ..*w }

@@ -1,7 +1,7 @@
 //! A binary tree over the options of one level. Each node is a box: its bounds enclose the numbers of all options below
 //! it.
 //!
-//! A tree may also be built over some nodes of a base tree: those whose options may still belong to a design of a
+//! A tree may also be built over some nodes of a base tree: the nodes whose options may still belong to a design of a
 //! region. Such a tree shares the nodes of the base tree and does not copy them.
 
 use std::collections::{BTreeSet, BinaryHeap, HashMap};

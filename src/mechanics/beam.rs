@@ -64,7 +64,7 @@ pub enum Strain {
 pub(crate) struct LineInertia {
     /// Mass per length for motion along the link \[kg/m\].
     pub along_kg_per_m: f64,
-    /// Mass per length for motion across the link \[kg/m\]. It includes the added mass of water.
+    /// Mass per length for motion at right angles to the link \[kg/m\]. It includes the added mass of water.
     pub across_kg_per_m: f64,
     /// Rotary inertia per length about the axis of the link \[kg m\].
     pub polar_kg_m: f64,
@@ -385,7 +385,7 @@ fn coordinates(beam: &Beam, length_m: f64, model: LinkModel) -> Vec<(Strain, usi
 }
 
 /// Mass and rotary inertia per length of a link, including its harness and the added mass of the water around it. In
-/// the link model `bending`, rotary inertia about axes across the link is zero.
+/// the link model `bending`, the rotary inertia about axes at right angles to the link is zero.
 fn line_inertia(link: &LinkPiece, structure: &Structure, model: LinkModel) -> LineInertia {
     let Some(beam) = link.beam else {
         return LineInertia {
@@ -407,8 +407,8 @@ pub(crate) fn tube_inertia(beam: &Beam, model: LinkModel) -> LineInertia {
     let section = beam.section.properties(beam.material.poisson);
     let density = beam.material.density_kg_m3;
     let mass = density * section.area_m2;
-    // Euler-Bernoulli theory neglects rotary inertia about axes across the beam; that about the axis of the beam
-    // stays
+    // Euler-Bernoulli theory neglects the rotary inertia about axes at right angles to the beam; the rotary inertia
+    // about the axis of the beam stays
     let across = if model == LinkModel::Bending { 0.0 } else { density };
     LineInertia {
         along_kg_per_m: mass,

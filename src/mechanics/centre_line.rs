@@ -114,8 +114,8 @@ impl Walk {
         Station { piece: piece.to_string(), at_m, moved_m: displacement_at(&self.motion, &at_m), axis }
     }
 
-    /// Adds the motion that an elastic element causes to the motion so far; nothing for `None`. The item is the element
-    /// and the values of its strain coordinates.
+    /// Adds the motion that an elastic element causes to the motion so far. `element` is the element and the values of
+    /// its strain coordinates; `None` adds nothing.
     fn deflects(&mut self, element: Option<(&ElasticElement, &Vec<f64>)>) {
         if let Some((element, q)) = element {
             self.motion += element.twists.iter().zip(q).map(|(twist, q)| twist * *q).sum::<Twist>();

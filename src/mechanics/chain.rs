@@ -73,14 +73,15 @@ pub(super) enum Prepared {
 /// How the strain coordinates of an element (its deflections) follow from the generalized forces on them.
 #[derive(Debug, Clone)]
 pub enum Compliance {
-    /// In proportion to the force; one compliance for each coordinate.
+    /// The deflection is proportional to the force. There is one compliance for each coordinate.
     Linear(Vec<f64>),
-    /// By the joint law of a revolute joint, which has one coordinate: its angle of torsion.
+    /// The joint law of a revolute joint gives the deflection. There is one coordinate: the angle of torsion.
     Joint(JointLaw),
-    /// Along the travel of a prismatic joint, in proportion to the force. The x axis of `frame`, the frame of its
-    /// guide, points along the travel.
+    /// The deflection is along the travel of a prismatic joint, and is proportional to the force. The x axis of
+    /// `frame`, the frame of the joint's guide, points along the travel.
     Slide { m_per_n: f64, frame: Matrix3<f64> },
-    /// As the feet of a base that can lift off. It has two coordinates: rotation about world x and about world y.
+    /// The deflection is the tilt of a base whose feet can lift off. There are two coordinates: the rotations about
+    /// world x and about world y.
     Lift(BaseLift),
 }
 
@@ -108,7 +109,7 @@ pub struct ElasticElement {
     pub twists: Vec<Twist>,
     /// How the strain coordinates (the deflections of the element) follow from the generalized forces on them.
     pub compliance: Compliance,
-    /// Torque on the coordinate of a joint that comes neither from weight nor from the load, such as that of a
+    /// Torque on the coordinate of a joint that comes neither from weight nor from the load, such as the torque of a
     /// counterbalance \[N m\]; 0 for other elements.
     pub torque_nm: f64,
     /// The distributed mass of the element, if it is a link with mass along it.
@@ -226,7 +227,7 @@ impl Chain {
         self.pose_with(pose_rad, payload, tip_force_n, Deflections::default())
     }
 
-    /// The same, with the deflections `deflections` of the elements.
+    /// Does the same as [`pose_rad`](Self::pose_rad), for an arm whose elements have deflected by `deflections`.
     pub(crate) fn pose_with(
         &self,
         pose_rad: &[f64],
@@ -248,8 +249,8 @@ impl Chain {
         }
     }
 
-    /// Walks from base to tip and collects the elements and bodies. `springs` are the forces of the springs, which are
-    /// inserted on the way, and `deflections` those of the elements.
+    /// Walks from base to tip and collects the elements and bodies. On the way it inserts the forces of the springs,
+    /// `springs`, and moves the arm by the deflections of its elements, `deflections`.
     fn walk(&self, pose_rad: &[f64], springs: Vec<EndLoad>, deflections: Deflections) -> Walk {
         let mut walk = Walk {
             items: Vec::new(),
@@ -313,8 +314,8 @@ impl Chain {
         &self.linkages
     }
 
-    /// The prepared beam of the piece with this index, for the displacement inside a link. `None` if the piece is no
-    /// link, or a link without a beam.
+    /// The prepared beam of the piece with this index, for the displacement inside a link. `None` if the piece is not
+    /// a link, or is a link without a beam.
     pub(crate) fn beam(&self, piece: usize) -> Option<&PreparedBeam> {
         match &self.pieces[piece] {
             Prepared::Link(_, beam) => beam.as_ref(),
@@ -387,8 +388,8 @@ impl Walk {
         self.point_mass(link.point_mass_kg, self.at_m + vector / 2.0);
         let end_m = self.at_m + vector;
         let element = beam.map(|beam| self.beam_element(piece, link, beam, &end_m));
-        // bodies on a tube are part of its beam, where each moves with a point of the axis; here only those on a
-        // rigid offset are added
+        // bodies on a tube are part of its beam, where each moves with a point of the axis; only bodies on a rigid
+        // offset are added here
         if link.beam.is_none() {
             self.bodies(&link.bodies);
             self.load(Side::Moving(piece));
@@ -400,7 +401,7 @@ impl Walk {
         }
     }
 
-    /// Adds an elastic element. If the arm is walked as it hangs, the deflection of the element then moves the frame
+    /// Adds an elastic element. If the walk applies deflections, the deflection of the element then moves the frame
     /// that the walk has reached.
     pub(super) fn elastic(&mut self, element: ElasticElement) {
         if let Some(motion) = self.deflections.motion_of_next(&element.twists) {
@@ -465,8 +466,8 @@ impl Walk {
         self.tilt((Owner::Piece(index), format!("{}.bearing", joint.name)), springs);
     }
 
-    /// Adds rotational springs about axes through the position that the walk has reached. Each is an axis in the world
-    /// and the compliance about it \[rad/(N m)\]; those without compliance are left out.
+    /// Adds rotational springs about axes through the position that the walk has reached. Each spring is given by an
+    /// axis in the world and the compliance about this axis \[rad/(N m)\]. Springs without compliance are left out.
     fn tilt(&mut self, named: (Owner, String), springs: impl IntoIterator<Item = (Vector3<f64>, f64)>) {
         let present = springs.into_iter().filter(|(_, compliance)| *compliance > 0.0);
         let (axes, compliances): (Vec<Vector3<f64>>, Vec<f64>) = present.unzip();
@@ -490,7 +491,8 @@ impl Walk {
         });
     }
 
-    /// Adds the feet of a base that can lift off, which tilt about world x and y; nothing for `None`.
+    /// Adds the element of a base whose feet can lift off. It tilts about the x and y axes of the world. `None` adds
+    /// nothing.
     fn lift(&mut self, lift: Option<BaseLift>) {
         let Some(lift) = lift else { return };
         let name = base_lift::KIND.name.into();
@@ -546,8 +548,8 @@ pub(crate) fn wrench_of(load: &EndLoad) -> Wrench {
     force_wrench(&load.force_n, &load.at_m) + stack(&Vector3::zeros(), &load.moment_nm)
 }
 
-/// The distributed mass and weight of a link in the world, computed from those in its section frame. `root_m` is the
-/// root of the link \[m\], `frame` its section frame and `down` the direction of gravity.
+/// The distributed mass and weight of a link in the world, computed from its mass and weight in its section frame.
+/// `root_m` is the root of the link \[m\], `frame` its section frame and `down` the direction of gravity.
 fn own_mass(
     piece: usize,
     beam: &PreparedBeam,

@@ -128,7 +128,7 @@ pub(crate) struct PlacedLink {
     pub end: Matrix6<f64>,
     /// End coordinates caused by the weight of the bodies on the link.
     pub end_under_bodies: Vector6<f64>,
-    /// End coordinates caused by a weight less buoyancy of 1 N per metre of the link \[1/(N/m)\].
+    /// End coordinates caused by a weight, with buoyancy subtracted, of 1 N per metre of the link \[1/(N/m)\].
     pub end_per_weight: Vector6<f64>,
     /// Sum of `1/λ` over the inner modes with root and end held \[s²\].
     pub inner_trace_s2: f64,

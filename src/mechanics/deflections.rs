@@ -1,4 +1,5 @@
-//! Deflections of an arm's elements as finite motions, with which a chain is walked from base to tip.
+//! Deflections of an arm's elements as finite motions. They move the arm into the pose in which it hangs under its
+//! weight and load.
 
 use super::{Twist, angular, displacement_at};
 use nalgebra::{Rotation3, Vector3};
@@ -6,19 +7,21 @@ use nalgebra::{Rotation3, Vector3};
 /// The deflections that a walk from base to tip applies to the arm.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Deflections {
-    /// The strain coordinates of all elements, base to tip, those of passive joints with what their linkages add.
+    /// The strain coordinates of all elements, base to tip. The coordinate of a passive joint includes the rotation
+    /// that its linkage adds.
     strains: Vec<f64>,
     /// Number of strain coordinates that have been applied.
     next: usize,
 }
 
 impl Deflections {
-    /// The deflections with these strain coordinates, of which none has been applied.
+    /// The deflections with these strain coordinates, none of which has been applied yet.
     pub(super) fn of(strains: Vec<f64>) -> Self {
         Self { strains, next: 0 }
     }
 
-    /// The motion of everything outboard of the next element, whose twists are `twists`; `None` in the undeflected pose.
+    /// The motion of everything outboard of the next element, whose twists are `twists`; `None` in the undeflected
+    /// pose.
     pub(super) fn motion_of_next(&mut self, twists: &[Twist]) -> Option<Twist> {
         if self.strains.is_empty() {
             return None;
@@ -29,15 +32,15 @@ impl Deflections {
     }
 }
 
-/// Moves a frame at `at_m` with the attitude `rotation` by the screw motion of the twist `motion` (Murray, Li and Sastry,
-/// A Mathematical Introduction to Robotic Manipulation, eq. 2.36).
+/// Moves a frame at `at_m` with the attitude `rotation` by the screw motion of the twist `motion` (Murray, Li and
+/// Sastry, A Mathematical Introduction to Robotic Manipulation, eq. 2.36).
 pub(super) fn screw(motion: &Twist, at_m: &mut Vector3<f64>, rotation: &mut Rotation3<f64>) {
     let turn = angular(motion);
     let angle_rad = turn.norm();
     let by_m = displacement_at(motion, at_m);
     *at_m += match angle_rad > 0.0 {
         true => {
-            // the velocity at the frame turns with it: its integral over the motion
+            // the velocity of the frame's origin turns with the motion, so it is integrated over the motion
             let cross = turn.cross_matrix() / angle_rad;
             let (sin, cos) = (libm::sin(angle_rad), libm::cos(angle_rad));
             by_m + cross * by_m * ((1.0 - cos) / angle_rad) + cross * cross * by_m * (1.0 - sin / angle_rad)

@@ -1,14 +1,14 @@
 //! The arm as it hangs: statics about the deflected pose, with large displacements.
 //!
 //! [`Posed::statics`] is linear about the undeflected pose. In truth each element turns everything outboard of it by a
-//! finite angle, and the loads then act with the levers of the deflected pose. Both change the displacement by terms of
-//! the order of `δ²/L`, with `δ` the displacement and `L` the reach: 0.03 mm if a reach of 1 m deflects by 5 mm, which is
-//! more than a laser tracker's error.
+//! finite angle, and the loads then act with the levers of the deflected pose. Both change the displacement by terms
+//! of the order of `δ²/L`, with `δ` the displacement and `L` the reach. If a reach of 1 m deflects by 5 mm, this is
+//! 0.03 mm, which is more than a laser tracker's error.
 //!
-//! The arm is walked from base to tip, and each element moves everything outboard by the screw motion (exponential) of
-//! its deflection. Statics in this pose give new deflections, until the tip rests. For a link this is exact in the
-//! rotation of its end. It shortens a cantilever with a load at its end by `δ²/L` times 0.75, where the exact factor is
-//! 0.6 (elastica to second order).
+//! The arm is built up from base to tip, and each element moves everything outboard by the screw motion (exponential)
+//! of its deflection. Statics in this pose give new deflections, until the tip rests. The rotation of a link's end is
+//! then exact. Its displacement is not: a cantilever with a load at its end shortens by `0.75 δ²/L`, where the
+//! elastica gives `0.6 δ²/L` to second order.
 
 use super::chain::{Chain, Posed};
 use super::deflections::Deflections;
@@ -17,22 +17,23 @@ use nalgebra::{DVector, Vector3};
 
 /// Largest number of times that the statics are repeated in the pose of the last deflections.
 const MOST_ROUNDS: usize = 20;
-/// The tip rests if it moves by less than this from one round to the next \[m\].
+/// The tip counts as at rest if it moves by less than this from one round to the next \[m\].
 const RESTS_M: f64 = 1e-9;
-/// Of a displacement below this size the terms of second order are below 1e-8 m, and left out \[m\].
+/// If the tip is displaced by less than this, the linear statics are used \[m\]. The terms of second order are then
+/// below 1e-8 m for a reach of 1 m.
 const SMALL_M: f64 = 1e-4;
 
 impl Chain {
-    /// Position of the tip of the arm as it hangs in the pose `pose_rad` \[rad, m\] under gravity, with a payload, in the
-    /// world \[m\].
+    /// Position of the tip of the arm as it hangs in the pose `pose_rad` \[rad, m\] under gravity, with a payload, in
+    /// the world \[m\].
     pub(crate) fn hanging_tip_m(&self, pose_rad: &[f64], payload: &Payload) -> Vector3<f64> {
         hanging_tip_m(|deflections| self.pose_with(pose_rad, payload, Vector3::zeros(), deflections))
     }
 }
 
-/// Position of the tip of an arm as it hangs, in the world \[m\]. `posed` puts the arm into its pose, with its loads and
-/// with the deflections that it is given. If the deflections do not settle, because the arm would buckle or turn over,
-/// the position is that of the linear statics.
+/// Position of the tip of an arm as it hangs, in the world \[m\]. `posed` puts the arm into its pose, with its loads
+/// and with the deflections that it is given. If the deflections do not settle, because the arm would buckle or turn
+/// over, the result is the position by linear statics.
 pub(crate) fn hanging_tip_m<'a>(posed: impl Fn(Deflections) -> Posed<'a>) -> Vector3<f64> {
     let straight = posed(Deflections::default());
     let statics = straight.statics();
@@ -69,7 +70,7 @@ mod tests {
     use crate::input::Document;
     use nalgebra::Rotation3;
 
-    /// The prepared arm of the text of an arm file.
+    /// The chain of the arm that an arm file with this text describes.
     fn chain(text: &str) -> Chain {
         let document = Document::parse("arm.json", text).expect("JSON");
         let arm = read_arm_document(document, &Catalogs::default()).expect("a sound arm");
@@ -99,8 +100,8 @@ mod tests {
         }
     }
 
-    /// Joints about three axes with bearings that tilt, on a base that tilts: the tip is where the energy of springs and
-    /// weight is smallest, found by Newton's method on the energy alone.
+    /// The tip of an arm with joints about three axes is where the energy of springs and weight is smallest. That
+    /// place is found by gradient steps on the energy alone.
     #[test]
     fn an_arm_hangs_where_its_energy_is_smallest() {
         let chain = chain(
@@ -137,7 +138,8 @@ mod tests {
         };
         let mut q = Vector3::zeros();
         for _ in 0..200 {
-            // the springs are far stiffer than the weight, so that their stiffness alone leads down
+            // the springs are far stiffer than gravity's part of the energy, so a step uses the stiffness of the
+            // springs alone
             q -= slope(&q).component_div(&Vector3::from(stiffness));
         }
         let tip_m = chain.hanging_tip_m(&pose_rad, &payload(8.0));
@@ -149,8 +151,9 @@ mod tests {
         assert!((linear_m - tip_m).norm() > 1e-4, "the linear displacement is far from it");
     }
 
-    /// Sinking and shortening of a cantilever of unit length under a load at its end with `P L²/(E I)` = `load`: the elastica,
-    /// integrated along the beam with the levers of the last shape until the shape rests.
+    /// Sinking and shortening of a cantilever of unit length (elastica) under a load at its end with `P L²/(E I)` =
+    /// `load`. The curvature is integrated along the beam with the levers of the last shape, until the shape no longer
+    /// changes.
     fn elastica(load: f64) -> [f64; 2] {
         const PARTS: usize = 2000;
         let step = 1.0 / PARTS as f64;

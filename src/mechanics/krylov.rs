@@ -1,23 +1,23 @@
 //! The largest eigenvalue of a large symmetric matrix by Lanczos' method, from products of the matrix with vectors.
 //!
 //! Each step multiplies the matrix by one more vector, orthogonal to all before it. In these vectors the matrix is
-//! tridiagonal, and the largest eigenvalue of this small matrix approaches that of the whole from below. Its error is
-//! at most the residual of its eigenvector, and about the square of the residual over the distance to the next
-//! eigenvalue. The start vector has a part in every coordinate, so no group of coordinates is missed that does not
-//! couple with the others.
+//! tridiagonal, and the largest eigenvalue of this small matrix approaches the largest eigenvalue of the whole matrix
+//! from below. Its error is at most the residual of its eigenvector, and about the square of the residual over the
+//! distance to the next eigenvalue. The start vector has a part in every coordinate. A group of coordinates that does
+//! not couple with the others is therefore not missed.
 
 use nalgebra::DVector;
 
 /// Largest residual of an accepted eigenvector, relative to the eigenvalue.
 const RESIDUAL: f64 = 1e-12;
-/// The golden ratio less 1. Its multiples are spread evenly over the fractions.
+/// The golden ratio less 1. The fractional parts of its multiples are spread evenly between 0 and 1.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// The matrix in the vectors of Lanczos' method: symmetric and tridiagonal.
 #[derive(Debug, Default)]
 struct Tridiagonal {
     diagonal: Vec<f64>,
-    /// The numbers next to the diagonal, one fewer than on it. None is zero.
+    /// The numbers next to the diagonal. There is one fewer than on the diagonal, and no number is zero.
     next: Vec<f64>,
 }
 
@@ -53,7 +53,8 @@ fn start(size: usize) -> DVector<f64> {
     DVector::from_fn(size, |i, _| number(i)).normalize()
 }
 
-/// Makes `vector` orthogonal to all vectors of `basis`. The second pass removes what rounding leaves in the first.
+/// Makes `vector` orthogonal to all vectors of `basis`, in two passes. The second pass removes what rounding leaves in
+/// the first.
 fn remove_parts(vector: &mut DVector<f64>, basis: &[DVector<f64>]) {
     for other in basis.iter().chain(basis) {
         let part = other.dot(vector);
@@ -91,8 +92,8 @@ impl Tridiagonal {
         })
     }
 
-    /// Size of the last number of the unit eigenvector of the eigenvalue `value`. The numbers are computed from the
-    /// last to the first, because in this direction they grow and rounding does not.
+    /// Magnitude of the last component of the unit eigenvector for the eigenvalue `value`. The components are computed
+    /// from the last to the first, because in this direction they grow and rounding errors do not.
     fn last_part(&self, value: f64) -> f64 {
         let (mut after, mut here, mut squares) = (0.0, 1.0, 1.0);
         for (i, next) in self.next.iter().enumerate().rev() {
@@ -163,7 +164,7 @@ mod tests {
 
     #[test]
     fn few_products_are_enough_for_many_coordinates() {
-        // as of a beam: frequencies with the squares of whole numbers, in two planes
+        // as for a beam: the frequencies grow with the squares of whole numbers, in two planes
         let values: Vec<f64> = (0..240).map(|i| 1.0 / ((i / 2 + 1) as f64).powi(4)).collect();
         let (value, products) = found(&with_eigenvalues(&values));
         assert!((value - 1.0).abs() < 1e-13, "{value}");

@@ -194,8 +194,8 @@ impl Lanes for Portable {
 
 #[cfg(target_arch = "x86_64")]
 mod x86 {
-    //! Registers of x86-64. [`super::in_lanes`] runs a kernel on these types only after it has found their instruction set
-    //! on the machine. Every intrinsic here belongs to that set.
+    //! Registers of x86-64. [`super::in_lanes`] runs a kernel on these types only after it has found their instruction
+    //! set on the machine. Every intrinsic here belongs to that set.
 
     use super::{Add, Div, Eight, LANES, LaneWork, Lanes, Mul, Sub};
     use std::arch::x86_64::*;
@@ -244,8 +244,8 @@ mod x86 {
     register_operator!(Mul, mul, _mm512_mul_pd, _mm256_mul_pd);
     register_operator!(Div, div, _mm512_div_pd, _mm256_div_pd);
 
-    // SAFETY, for every block below: it runs only where its instruction set was found. Loads and stores need no alignment
-    // and stay within the array.
+    // SAFETY, for every block below: it runs only where its instruction set was found. Loads and stores need no
+    // alignment and stay within the array.
     impl Lanes for Wide {
         #[inline(always)]
         fn splat(x: f64) -> Self {

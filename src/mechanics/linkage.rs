@@ -36,8 +36,8 @@ pub(super) struct LinkedCoordinates {
 }
 
 impl LinkedCoordinates {
-    /// The product `T q`: the strain coordinates `shape`, with the rotations of the passive joints added that follow
-    /// from those of the driving joints.
+    /// The product `T q`: the strain coordinates `shape`, to which the rotations of the passive joints are added.
+    /// These rotations follow from the rotations of the driving joints.
     pub(super) fn turned_along(linked: &[Self], shape: &DVector<f64>) -> DVector<f64> {
         let mut out = shape.clone();
         for of in linked {
@@ -46,8 +46,8 @@ impl LinkedCoordinates {
         out
     }
 
-    /// The product `Tᵀ f`: the generalized forces `forces`, with those on the passive joints added to the driving
-    /// joints.
+    /// The product `Tᵀ f`: the generalized forces `forces`, to which the effect of the linkages is added. The force on
+    /// each passive joint, times the factor of its linkage, is added to the force on its driving joint.
     pub(super) fn transferred(linked: &[Self], forces: &DVector<f64>) -> DVector<f64> {
         let mut out = forces.clone();
         for of in linked {
@@ -58,7 +58,8 @@ impl LinkedCoordinates {
 }
 
 impl ElasticElement {
-    /// Whether the element is the torsion spring of the revolute joint `name`. A base has a name that joints may have.
+    /// Whether the element is the torsion spring of the revolute joint `name`. To compare the name is not enough,
+    /// because the element of a base may have the same name as a joint.
     fn is_joint(&self, name: &str) -> bool {
         matches!(self.compliance, Compliance::Joint(_)) && self.name == name
     }
@@ -103,8 +104,8 @@ impl Posed<'_> {
         twists
     }
 
-    /// The strain coordinates `shape`, with the rotations of the passive joints added that follow from the rotations of
-    /// the driving joints.
+    /// The strain coordinates `shape`, to which the rotations of the passive joints are added. These rotations follow
+    /// from the rotations of the driving joints.
     pub(crate) fn with_passive(&self, shape: &DVector<f64>) -> DVector<f64> {
         LinkedCoordinates::turned_along(&self.linked_coordinates(), shape)
     }

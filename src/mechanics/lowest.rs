@@ -153,7 +153,7 @@ fn careful_root<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> f64 {
     };
     let mut beyond = 0.0;
     for _ in 0..MOST_PASSES {
-        // ratio of the polynomial at `far` to that at `near`
+        // ratio of the polynomial at `far` to the polynomial at `near`
         let ratio = far.1 / near.1 * (far.0 / near.0).powi(near.2);
         let secant = near.0 - (far.0 - near.0) / (ratio - 1.0);
         let next = if secant > beyond && secant < near.0 { secant } else { 0.5 * (beyond + near.0) };

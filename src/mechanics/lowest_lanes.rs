@@ -36,8 +36,8 @@ pub(crate) trait Inner<V: Lanes, const N: usize> {
 /// A matrix for each of eight chains.
 pub(crate) type LaneMatrix<const N: usize> = [[Eight; N]; N];
 
-/// A condensed link in a pose for each of eight chains; the fields are those of [`BlockLink`]. Only the lower
-/// triangle of symmetric matrices is used.
+/// A condensed link in a pose, for each of eight chains. The fields have the same meaning as in [`BlockLink`]. Only
+/// the lower triangle of symmetric matrices is used.
 #[derive(Debug, Clone)]
 pub(crate) struct LaneLink<const N: usize> {
     root: [LaneMatrix<N>; 3],
@@ -367,9 +367,9 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
 
 /// Lowest eigenvalue of every wanted lane, by the secant method on the product of all pivots times `x = 1/λ`.
 ///
-/// The product of the pivots is `Π (1 - x_i / x)`, so this function is `(x - x_1) Π (1 - x_i / x)` over the other
-/// modes. It is a straight line if the other modes are far away, and it has no poles however near they are. A guess
-/// beyond the second mode is moved back.
+/// The product of the pivots is `Π (1 - x_i / x)`, so this function is `(x - x_1) Π (1 - x_i / x)`, where the product
+/// `Π` is over all modes except the first. It is a straight line if the other modes are far away. However near they
+/// are, it has no poles. A guess beyond the second mode is moved back.
 #[inline(always)]
 pub(crate) fn roots<V: Lanes, const N: usize>(
     outboard: &Outboard<N>,

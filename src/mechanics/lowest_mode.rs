@@ -20,7 +20,7 @@ struct MassProduct<'a> {
     linked: Vec<LinkedCoordinates>,
 }
 
-/// An elastic element, and the inertia of the bodies between it and the next one.
+/// An elastic element, and the inertia of the bodies between it and the next element.
 struct Stage<'a> {
     element: &'a ElasticElement,
     bodies: Matrix6<f64>,
@@ -88,8 +88,8 @@ impl<'a> MassProduct<'a> {
         self.stages.iter().map(passed).collect()
     }
 
-    /// Adds the momentum of everything outboard to `momenta`, the momentum of each strain coordinate. `wrenches` are
-    /// those of each stage.
+    /// Adds the momentum of everything outboard to `momenta`, the momentum of each strain coordinate. `wrenches` has
+    /// two entries for each stage: the momentum of its link and the momentum of its bodies.
     fn inward(&self, wrenches: &[[Wrench; 2]], momenta: &mut DVector<f64>) {
         let mut outboard = Wrench::zeros();
         let mut end = momenta.len();

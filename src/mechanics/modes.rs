@@ -52,7 +52,8 @@ impl Posed<'_> {
     /// has an example.
     pub fn modes(&self, statics: &Statics, count: usize) -> Vec<Mode> {
         let modes = self.solve_modes(statics);
-        // the lowest frequency has the same last digits here and where it is computed alone, as for a front
+        // the lowest frequency comes from the function that computes it alone, so that its last digits are the same as
+        // in a front; no other mode may then be lower
         let lowest_hz = self.lowest_frequency_hz(statics);
         let frequency = |k: usize, hz: f64| if k == 0 { lowest_hz } else { hz.max(lowest_hz) };
         modes
@@ -287,9 +288,9 @@ impl PlaneEnergy {
         }
     }
 
-    /// Adds twice the kinetic energy of one Gauss point of a link, of its translation or (if `rotation`) of its
-    /// rotation. `rate` is the velocity in the section frame `frame`, `density` the mass or inertia per length. A
-    /// rotation counts as motion in a plane if it is about the normal of the plane.
+    /// Adds twice the kinetic energy at one Gauss point of a link: the energy of its translation or, if `rotation` is
+    /// true, of its rotation. `rate` is the velocity in the section frame `frame`, `density` the mass or inertia per
+    /// length. A rotation counts as motion in a plane if it is about the normal of the plane.
     fn add_line(
         &mut self,
         frame: &nalgebra::Matrix3<f64>,

@@ -81,7 +81,8 @@ impl Walk {
 }
 
 /// The springs of a guide as an elastic element. `frame` has the axes of the guide and `springs_m` is the point of the
-/// springs, in the world; `index` is the place of the joint in the chain. Axes about which the guide is rigid are left out.
+/// springs, both in the world. `index` is the place of the joint in the chain. Axes about which the guide is rigid are
+/// left out.
 fn guide(
     index: usize,
     joint: &PrismaticPiece,

@@ -98,7 +98,8 @@ impl Panels {
         Self::of_slices(&columns, a.nrows())
     }
 
-    /// The same for a matrix A that is given by its columns, each with `terms` entries.
+    /// Stores a matrix A, given by its columns with `terms` entries each, so that its transpose can be the left factor
+    /// of a product AᵀB.
     pub(crate) fn of_slices(columns: &[&[f64]], terms: usize) -> Self {
         let rows = columns.len();
         let mut eights = vec![[0.0; LANES]; rows.div_ceil(LANES) * terms];

@@ -40,15 +40,15 @@ pub struct Statics {
     pub base_wrench: Wrench,
 }
 
-/// Force and moment that everything outboard puts on a joint, split into components across and along its axis. All
-/// are magnitudes.
+/// Force and moment that everything outboard puts on a joint, split into components along the joint's axis and at
+/// right angles to it. All are magnitudes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointLoad {
-    /// Moment across the axis, at the position of the joint \[N m\].
+    /// Moment about an axis at right angles to the joint's axis, taken at the position of the joint \[N m\].
     pub moment_nm: f64,
-    /// Force across the axis \[N\].
+    /// Force at right angles to the joint's axis \[N\].
     pub radial_n: f64,
-    /// Force along the axis \[N\].
+    /// Force along the joint's axis \[N\].
     pub axial_n: f64,
 }
 

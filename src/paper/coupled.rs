@@ -1,8 +1,8 @@
 //! The paper's coupled masses and springs (Eqs 16 to 18), written separately from the general mechanics.
 //!
 //! The unknowns are the absolute angles ψ of three rigid links. The matrices follow from Lagrange's equations. Here
-//! m_i and I_i are a tube's mass and moment of inertia about its centre, m_w is the mass of the wrist and m_p that
-//! of the load.
+//! m_i and I_i are a tube's mass and moment of inertia about its centre, m_w is the mass of the wrist and m_p is the
+//! mass of the load.
 //!
 //! ```text
 //! M11 = I1 + m1 l1²/4 + (m3 + m2 + m_w + m_p) l1²     K = | K2+K3  -K3     0  |
@@ -48,8 +48,8 @@ impl CoupledArm {
         cubic_roots(self.characteristic_cubic()).map(|lambda| lambda.sqrt() / TAU)
     }
 
-    /// Coefficients of det(K - λ M), lowest power first. Each is a sum of determinants of K in which some columns
-    /// are replaced by those of -M.
+    /// Coefficients of det(K - λ M), lowest power first. Each is a sum of determinants of K in which some columns are
+    /// replaced by the columns of -M.
     pub fn characteristic_cubic(&self) -> [f64; 4] {
         let mut coefficients = [0.0; 4];
         for choice in 0..8u32 {
@@ -90,7 +90,8 @@ fn mass_matrix(arm: &PaperArm, l: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(m11, m12, m13, m12, m22, m23, m13, m23, m33)
 }
 
-/// Moment of inertia of a tube about its centre, across its axis: m L²/12 + ρ I L \[kg m²\].
+/// Moment of inertia of a tube about an axis through its centre, at right angles to its own axis: m L²/12 + ρ I L \[kg
+/// m²\].
 fn tube_inertia_kgm2(arm: &PaperArm, link: usize) -> f64 {
     let length_m = arm.lengths_m[link];
     arm.link_kg(link) * length_m * length_m / 12.0

@@ -107,8 +107,8 @@ pub fn dynamic_torque_at_joint_2(arm: &PaperArm, ratio: f64, input_inertia_kgm2:
     let alpha = LOAD_ACCELERATION_M_S2 / reach_m;
     let structure = arm.arm().structure(crate::arm::JointModel::K2);
     let outboard_kgm2 = arm.with_posed(&structure, LinkModel::Rigid, |posed| posed.mass_matrix()[(0, 0)]);
-    // theta'' in Eq 10 is the acceleration of the motor: n_j is the speed of the motor, the ratio times that of the
-    // joint
+    // theta'' in Eq 10 is the acceleration of the motor: n_j is the speed of the motor, which is the ratio times the
+    // speed of the joint
     let rotary_motor_side_nm = input_inertia_kgm2 * ratio * alpha;
     DynamicTorque {
         static_nm,

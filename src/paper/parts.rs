@@ -59,7 +59,7 @@ pub(crate) fn missing(kind: &'static str, name: &str) -> PaperError {
 const PRINTED_GEARS: [(u32, u32, f64, f64); 4] =
     [(58, 100, 4.7, 607e3), (50, 100, 3.2, 405e3), (32, 100, 0.9, 108e3), (20, 50, 0.98, 17.5e3)];
 
-/// A table of the paper's gears next to those of the catalog.
+/// A table that compares the paper's gears with the gears of the catalogs.
 ///
 /// # Errors
 /// The catalog lacks a gear.

@@ -103,7 +103,8 @@ pub struct Connection {
     pub joint: &'static str,
     /// Stiffness of a connection between gear and arm \[N m/rad\].
     pub output_nm_per_rad: f64,
-    /// Stiffness of a connection between motor and gear with the same effect: smaller by N² \[N m/rad\].
+    /// Stiffness of a connection between motor and gear with the same effect: smaller by the factor N², with the ratio
+    /// N of the gear \[N m/rad\].
     pub motor_side_nm_per_rad: f64,
     /// Increase of the load's displacement by the connection \[m\].
     pub added_m: f64,
@@ -111,8 +112,8 @@ pub struct Connection {
     pub frequency_ratio: f64,
 }
 
-/// The effect of compliant connections (after Rivin) on deflection and lowest frequency. Each is between motor and gear
-/// or between gear and arm, in one joint at a time.
+/// The effect of compliant connections (after Rivin) on deflection and lowest frequency. Each connection is between
+/// motor and gear or between gear and arm, in one joint at a time.
 pub fn connections(arm: &PaperArm) -> Vec<Connection> {
     let before = arm.solve(LinkModel::Full);
     let one = |joint: &'static str, stiffness: f64| {
@@ -156,11 +157,11 @@ pub struct Stiffer {
     pub element: &'static str,
     /// Downward displacement of the load after the change \[m\].
     pub drop_m: f64,
-    /// This displacement divided by the one before the change.
+    /// This displacement, divided by the displacement before the change.
     pub drop_ratio: f64,
     /// Lowest frequency after the change \[Hz\].
     pub lowest_hz: f64,
-    /// Lowest frequency after the change, divided by the one before.
+    /// Lowest frequency after the change, divided by the lowest frequency before it.
     pub frequency_ratio: f64,
 }
 

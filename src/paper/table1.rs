@@ -112,7 +112,8 @@ fn third_spring_words(springs: &[Reading]) -> String {
     )
 }
 
-/// Computes the numbers of the paper's Table 1 and writes them next to those of the paper, as a summary and as tables.
+/// Computes the numbers of the paper's Table 1 and writes them next to the paper's own numbers, as a summary and as
+/// tables.
 ///
 /// # Errors
 /// The catalogs lack a part that the paper names.

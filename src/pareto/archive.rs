@@ -1,9 +1,9 @@
 //! Archive: a table that rejects dominated designs within a few nanoseconds.
 //!
-//! The table is over mass and deflection. Each cell has the highest lowest mode that was found so far at or below
-//! its mass and deflection. Both scales divide each octave (factor of two) into equal steps, which are the leading
-//! bits of a floating-point number. The map from numbers to steps is monotone and exact, and needs no logarithm.
-//!
+//! The table is over mass and deflection. Each cell has the highest value that the lowest mode of a design at or
+//! below its mass and deflection has had so far. Both scales divide each octave (factor of two) into equal steps,
+//! which are the leading bits of a floating-point number. The map from numbers to steps is monotone and exact, and
+//! needs no logarithm.
 //! A design is entered at the next grid point above its mass and deflection. It is looked up at the next grid point
 //! below them. Its frequency is rounded down on entry. The table therefore rejects a design only if another one
 //! dominates it. Designs that it lets through are filtered exactly later, so the result does not depend on the

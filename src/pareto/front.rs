@@ -1,7 +1,7 @@
 //! Pareto fronts of three objectives, all to be minimized.
 //!
 //! A sieve first drops most dominated points. The rest are swept along the first objective, over a staircase of the
-//! other two. The method is exact, keeps duplicates, and takes O(n log n) for any set of points.
+//! other two. The method is exact, keeps duplicates, and takes O(n log n) time for any set of points.
 
 use super::ranking::{Ranked, Ranking};
 use super::sieve::sieve;

@@ -3,7 +3,8 @@
 //!
 //! The points are swept as for the front. Each point adds the area that it newly covers in the plane of the second and
 //! third objective, times its distance from the reference point along the first. Every term is positive, so nothing
-//! cancels, and the sum is compensated (Neumaier). The method takes O(n log n). See Beume et al. 2009 for the problem.
+//! cancels, and the sum is compensated (Neumaier). The method takes O(n log n) time. See Beume et al. 2009 for the
+//! problem.
 
 use super::front::{NotANumber, all_numbers};
 use super::objectives::Objectives;

@@ -2,7 +2,7 @@
 //!
 //! Each number is converted to an integer code in the same order: the leading 32 of the bits in which the points
 //! differ. Three passes of eleven bits sort the codes. If two numbers have the same 32 bits, the numbers themselves
-//! are compared. The sort is therefore exact and takes O(n log n) at most.
+//! are compared. The sort is therefore exact and takes at most O(n log n) time.
 //!
 //! Points are sorted by the second objective first, which gives the ranks of this objective. A stable sort by the
 //! first objective follows.

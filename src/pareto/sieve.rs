@@ -46,7 +46,7 @@ struct Bins {
 impl Bins {
     /// Divides the objective with the index `objective` into bins.
     fn new(points: &[[f64; 3]], objective: usize) -> Self {
-        // the sample is every n-th point, so that it is the same in every run, and with it the result
+        // the sample is every n-th point: the sample, and with it the result, is then the same in every run
         let stride = points.len().div_ceil(SAMPLE);
         let mut sample: Vec<f64> =
             points.iter().step_by(stride).map(|p| p[objective]).filter(|x| x.is_finite()).collect();

@@ -1,13 +1,13 @@
 //! Staircase: the points that can still dominate others while a sweep moves along the first of three objectives.
 //!
-//! Points are taken in the order of their first objective. Of the points taken so far, only those matter that no
-//! other one dominates in the second and third objective. They form a staircase: the larger the second objective,
+//! Points are taken in the order of their first objective. Of the points taken so far, only the points matter that no
+//! other point dominates in the second and third objective. They form a staircase: the larger the second objective,
 //! the smaller the third.
 //!
 //! All values of the second objective are known in advance, so a step is addressed by the rank of its second
 //! objective. The steps are then a set of small integers, stored as bits: 64 ranks in a word, and one bit for each
-//! word in the level above. Finding a neighbour or changing a step takes one word in each level. With the two
-//! sorts, a sweep takes O(n log n) (Kung, Luccio & Preparata 1975).
+//! word in the level above. Finding a neighbour or changing a step takes one word in each level. With the two sorts, a
+//! sweep takes O(n log n) time (Kung, Luccio & Preparata 1975).
 
 /// The steps of the staircase: ranks of the second objective, each with the third objective of its point.
 pub(crate) struct Staircase {

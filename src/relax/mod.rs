@@ -11,15 +11,16 @@
 //! - a required lowest mode is `K - ω² M ⪰ 0` with `K` and `M` linear, and each trial shape `x` gives one linear
 //!   inequality (`shapes`).
 //!
-//! The two springs of the bearing of a chosen gear have the same weights as the drive. The allowed loads of that
-//! bearing are left out. Designs that they would exclude are included, so the bound stays valid and is only lower.
+//! In a mixture, the two springs of the bearing of a chosen gear have the same weights as the drive. The allowed
+//! loads of that bearing are left out. Designs that they would exclude are included, so the bound stays valid and is
+//! only lower.
 //!
 //! The lightest mixture is a linear program, which Clarabel solves (`program`). The result is the Lagrangian bound
 //! at the solver's multipliers. It is valid for any multipliers, so it does not depend on the solver's tolerance.
 //!
-//! Options that cannot belong to a design as good and as light as the known one are dropped. This narrows the
-//! ranges of the loads and tightens the bound, and is repeated until nothing changes. Every step is proved in
-//! `docs/relaxation.md`.
+//! A known design meets the requirements. An option is dropped if it cannot belong to any design that also meets the
+//! requirements and is no heavier than the known design. This narrows the ranges of the loads and tightens the bound,
+//! and is repeated until nothing changes. Every step is proved in `docs/relaxation.md`.
 
 pub(crate) mod drives;
 pub(crate) mod parts;

@@ -11,8 +11,8 @@ pub(super) struct Parts {
     /// For each slot, the option of the known design.
     pub known: Vec<u32>,
     mass_kg: Vec<Vec<f64>>,
-    /// Slots whose option is that of a drive: each spring of a sized gear's bearing, and each motor that stands away
-    /// from its joint. Each comes with the slot of the joint to which it belongs.
+    /// Slots that have the same option as a drive: each spring of a sized gear's bearing, and each motor that stands
+    /// away from its joint. Each is listed with the slot of the joint to which it belongs.
     bearings: Vec<(usize, usize)>,
 }
 
@@ -49,8 +49,8 @@ impl Parts {
         }
     }
 
-    /// The inequality `row` with the coefficients of each bearing moved to those of its drive, because the linear
-    /// program has one weight for both. [`Self::follow_drives`] must have been called before.
+    /// The inequality `row` with the coefficients of each bearing added to the coefficients of its drive, and then set
+    /// to zero. The linear program has one weight for both. [`Self::follow_drives`] must have been called before.
     pub(super) fn with_drives(&self, mut row: Row) -> Row {
         for &(bearing, joint) in &self.bearings {
             for at in 0..self.alive[joint].len() {

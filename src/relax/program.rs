@@ -41,8 +41,8 @@ pub(super) struct Solution {
 }
 
 impl Program {
-    /// A program that starts with three kinds of options: those of the known design, the lightest one of each slot,
-    /// and the one with the least coefficient in each row.
+    /// A program that starts with three kinds of options: the options of the known design, the lightest option of each
+    /// slot and, for each row, the option of each slot with the least coefficient.
     pub(super) fn new(parts: &Parts, rows: Vec<Row>) -> Self {
         let masses = parts.masses();
         let seen = (0..masses.len())
@@ -122,7 +122,7 @@ impl Program {
         for (seen, reduced) in self.seen.iter_mut().zip(reduced) {
             let mut order: Vec<usize> = (0..reduced.len()).collect();
             let most = OPTIONS_ADDED.min(order.len());
-            // Only the least are needed; a full sort would cost more.
+            // Only the options with the least reduced costs are needed; a full sort would cost more time.
             if most < order.len() {
                 order.select_nth_unstable_by(most, |&a, &b| reduced[a].total_cmp(&reduced[b]));
             }

@@ -18,8 +18,8 @@ const ROUNDING: f64 = 1e-9;
 /// The bound on mass for designs that meet the required objectives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MassBound {
-    /// No design that deflects at most as far as required, and has at least the required lowest mode, is lighter than
-    /// this \[kg\].
+    /// Every design that deflects at most as far as required, and has at least the required lowest mode, has at least
+    /// this mass \[kg\].
     pub mass_lower_bound_kg: f64,
     /// The bound before it was used to drop options \[kg\]. It is close to the mass of the lightest arm whose parts
     /// are mixtures of catalog options.
@@ -51,8 +51,8 @@ impl<'a> Relaxation<'a> {
     }
 
     /// Lower bound on the mass of every design that deflects at most as far as `asked`, and whose lowest mode is at
-    /// least that of `asked`. `known` is a design (one option for each level) that meets these objectives and weighs at
-    /// most the mass in `asked`. `None` if a part of the known design cannot take its load.
+    /// least as high as the lowest mode of `asked`. `known` is a design (one option for each level) that meets these
+    /// objectives and weighs at most the mass in `asked`. `None` if a part of the known design cannot take its load.
     pub fn mass_lower_bound(&self, known: &[u32], asked: &Objectives) -> Option<MassBound> {
         let arm = self.problem.walk(known, |_, _| {}).ok()?;
         let mut search = Search {
@@ -145,7 +145,8 @@ impl Search<'_> {
         rows.into_iter().map(|row| self.parts.with_drives(row)).chain(shapes).collect()
     }
 
-    /// The least eigenvalue `(2πf)²` that a design may have if its lowest mode is to reach the required one \[1/s²\].
+    /// The least eigenvalue `(2πf)²` that a design may have if its lowest mode reaches the required lowest mode
+    /// \[1/s²\].
     fn eigenvalue(&self) -> f64 {
         let omega = std::f64::consts::TAU * self.asked.lowest_mode_hz;
         omega * omega * (1.0 - ROUNDING)
@@ -179,7 +180,7 @@ impl Search<'_> {
                 break;
             }
         }
-        // With the best multipliers of this round, options that would make the mass exceed the required one are
+        // With the best multipliers of this round, options with which the mass would exceed the required mass are
         // dropped.
         program.drop_options(&mut self.parts, self.asked.mass_kg * (1.0 + ROUNDING));
     }

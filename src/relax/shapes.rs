@@ -2,9 +2,9 @@
 //!
 //! `λ₁ = min_x xᵀK x / xᵀM x`. So a design whose `λ₁` is at least `ω²` satisfies `ω² xᵀM x - xᵀK x ≤ 0` for every
 //! shape `x` of strain coordinates (joint angles and the polynomials of [`beam`](crate::mechanics::beam)). `M` is
-//! linear in the masses of the pieces and `K` in their stiffnesses. For a fixed `x` the left side is therefore a
-//! sum with one number for each piece. The shapes that matter are the modes of mixtures whose lowest mode is below
-//! the required one. They are found one after the other.
+//! linear in the masses of the pieces and `K` in their stiffnesses. For a fixed `x` the left side is therefore a sum
+//! with one number for each piece. The shapes that matter are the modes of mixtures whose lowest mode is below the
+//! required lowest mode. They are found one after the other.
 
 use super::parts::Parts;
 use super::row::Row;
@@ -223,7 +223,8 @@ impl ShapeModel {
                 inertia += field.transpose() * weighted;
             }
         }
-        // Scaled by `K^-½`, so that a rigid coordinate has weight 0 and the matrix stays symmetric.
+        // The eigenvalue problem is scaled by `K^-½`, so that a rigid coordinate has weight 0 and the matrix stays
+        // symmetric.
         let soft = DVector::from_iterator(count, resistance.iter().map(|k| 1.0 / k.sqrt()));
         let scaled = DMatrix::from_fn(count, count, |i, j| soft[i] * inertia[(i, j)] * soft[j]);
         let modes = SymmetricEigen::new(scaled);
@@ -250,7 +251,7 @@ impl LinkShape {
     }
 }
 
-/// The options of a link, with the effects of the study applied; empty if the layer is no link.
+/// The options of a link, with the effects of the study applied; empty if the layer is not a link.
 fn tubes(space: &DesignSpace, layer: &Layer) -> Vec<LinkPiece> {
     match layer {
         Layer::Piece(SpacePiece::Choice(choice)) => {

@@ -25,7 +25,7 @@ pub(super) struct CaseLoads {
     /// For each slot, the load of each option: mass \[kg\] for joints, weight \[N\] for links, 1 for bodies.
     amount: Vec<Vec<f64>>,
     /// Inertias about the joints' axes \[kg m²\]; first index the slot of the joint, second a slot outboard of it,
-    /// third an option of that slot. Empty for a slot that is no joint.
+    /// third an option of that slot. Empty for a slot that is not a joint.
     inertia: Vec<Vec<Vec<f64>>>,
 }
 
@@ -138,7 +138,7 @@ impl CaseLoads {
     }
 
     /// Greatest tangent stiffness \[N m/rad\] of each remaining option of every joint under the torques that are
-    /// possible; by slot, then by option. Infinite for a rigid joint, empty for a slot that is no joint.
+    /// possible; by slot, then by option. Infinite for a rigid joint, empty for a slot that is not a joint.
     pub(super) fn stiffest(&self, problem: &ArmProblem, parts: &Parts) -> Vec<Vec<f64>> {
         let slots = problem.slots().iter().enumerate();
         slots
@@ -156,7 +156,7 @@ impl CaseLoads {
     }
 
     /// Two inequalities that every design satisfies whose tip moves at most `limit_m` along `direction`. One is exact
-    /// where all loads are least, the other where all are greatest.
+    /// where all loads are least, the other is exact where all loads are greatest.
     pub(super) fn deflection_rows(
         &self,
         problem: &ArmProblem,
@@ -232,8 +232,8 @@ impl CaseLoads {
         }
     }
 
-    /// Inequalities that every design satisfies whose sized joints can take their static, peak and emergency torque
-    /// in this case. The heat of a motor is no sum over parts, so there is no row for it; this only weakens the
+    /// Inequalities that every design satisfies whose sized joints can take their static, peak and emergency torque in
+    /// this case. The heat of a motor is not a sum over the parts, so there is no row for it; this only weakens the
     /// bound.
     pub(super) fn torque_rows(&self, problem: &ArmProblem, parts: &Parts) -> Vec<Row> {
         let mut rows = Vec::new();

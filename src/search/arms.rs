@@ -23,8 +23,9 @@ pub(crate) struct EightArms {
     /// Mass \[kg\] of the drive in each inner slot (the slots from the row level to the base). The masses of given
     /// drives are set from the beginning.
     pub masses_kg: Vec<Eight>,
-    /// The largest of the terms that single joints and tube coordinates add to Dunkerley's sums \[s²\]. Each sum is
-    /// that of `1/λ` over the eigenvalues of a block. The lowest eigenvalue is at most the reciprocal of this term.
+    /// The largest of the terms that single joints and tube coordinates add to Dunkerley's sums \[s²\]. Dunkerley's
+    /// sum of a block is the sum of `1/λ` over the block's eigenvalues `λ`. The lowest eigenvalue is at most the
+    /// reciprocal of this term.
     pub largest_s2: Eight,
     /// The eight arms in each case.
     pub cases: Vec<CaseArms>,

@@ -55,7 +55,7 @@ struct Weighed<'p, 'c> {
     arm: Partial,
     objectives: Objectives,
     /// Torque on every joint of the design \[N m\]; first index the slot, second the case. It is 0 for slots that are
-    /// no joints.
+    /// not joints.
     torques_nm: Vec<Vec<f64>>,
 }
 
@@ -143,8 +143,8 @@ impl<'p, 'c> Weighed<'p, 'c> {
         })
     }
 
-    /// The first joint inboard of `slot` whose tangent compliance grows if the weight in this slot becomes that of
-    /// `option`, with the case in which it grows. `None` if no joint becomes softer.
+    /// The first joint inboard of `slot` whose tangent compliance grows if the weight in this slot becomes the weight
+    /// of `option`, with the case in which it grows. `None` if no joint becomes softer.
     fn relieved(&self, slot: usize, option: u32) -> Option<Relieved> {
         let cases = &self.problem.space().judged_cases;
         let inboard = slot + 1..self.problem.slots().len();

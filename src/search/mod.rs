@@ -2,12 +2,13 @@
 //!
 //! - [`sweep`] visits every design and keeps the designs that no other design dominates. A *row* is the set of
 //!   designs that differ in one level alone; the sweep evaluates the designs of a row eight at a time (`finish`).
-//! - [`near`] finds the near designs: those that a design of the front beats by at most a stated percentage.
+//! - [`near`] finds the near designs: designs that are not on the front, but worse than some design of it by at most a
+//!   stated percentage.
 //! - [`resume`] saves the state of a sweep, so that another process can continue it.
 //! - [`scatter`] computes designs whose parts differ a little from the catalog.
 //! - `ballast` finds designs that are on a front only because extra weight loads a gear into a stiffer part of its
 //!   torsion curve.
-//! - `same_drives` finds a lighter arm with the drives that first fit gave a design.
+//! - `same_drives` takes a design and finds a lighter arm with the same drives at the joints sized by first fit.
 
 pub(crate) mod arms;
 pub(crate) mod ballast;

@@ -29,8 +29,8 @@ use std::collections::HashSet;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Upper bound of the relative difference between the fast model and the full one. The slack is made larger by it, so
-/// that no near design is lost to rounding.
+/// Upper bound of the relative difference between the fast model and the full model. The slack is made larger by it,
+/// so that no near design is lost to rounding.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
 /// A front, prepared to compute the shortfall of designs.

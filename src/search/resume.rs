@@ -13,7 +13,7 @@ pub trait KeepState: Sync {
     /// Whether enough time has passed since the last save that the state is to be saved again.
     fn is_due(&self) -> bool;
 
-    /// Saves a state in place of the one saved before. If saving fails, the search continues all the same.
+    /// Saves a state in place of the state saved before. If saving fails, the search continues all the same.
     fn keep(&self, state: &[u8]);
 }
 

@@ -13,10 +13,10 @@
 //! kilobytes. The designs of several rows are evaluated in a batch, so that a chunk stays in the nearest cache while
 //! it is used for all these rows.
 //!
-//! An *inner* slot is one from the row level to the base. Inner slots are numbered from 0. A *hinge* is one elastic
+//! The *inner* slots are the slots from the row level to the base. They are numbered from 0. A *hinge* is one elastic
 //! coordinate of an inner slot: a joint or bearing spring has one hinge, and a given tube has six, one for each end
-//! coordinate of its condensed link. The hinge of a joint has the number of its slot. The hinges of tubes are
-//! numbered after all slots.
+//! coordinate of its condensed link. The hinge of a joint has the number of its slot. The hinges of tubes are numbered
+//! after all slots.
 
 use super::row_bearing::RowBearing;
 use super::row_case::{Hinge, RowCase, hinges};

@@ -1,9 +1,9 @@
 //! Loads on the output bearings of inner joints, eight designs at once.
 //!
-//! The loads are those of [`bearing_loads`](crate::space::bearing_loads). Each load is a sum of three terms: that of
-//! everything outboard of the row, that of the row's link, and that of the inner drives, which grows linearly with
-//! their masses. Each term is projected in advance on the five force and moment components that load a bearing.
-//! During the sweep the terms then only need to be added and squared.
+//! The loads are defined in [`bearing_loads`](crate::space::bearing_loads). Each load is a sum of three terms: from
+//! everything outboard of the row, from the row's link, and from the inner drives. The third term grows linearly with
+//! the masses of these drives. Each term is projected in advance on the five force and moment components that load a
+//! bearing. During the sweep the terms then only need to be added and squared.
 
 use crate::mechanics::Wrench;
 use crate::mechanics::lanes::{Eight, LANES, Lanes};
@@ -152,9 +152,9 @@ impl BearingCase {
 }
 
 impl RowBearing {
-    /// Prepares those bearings of the joints inboard of the row level that are checked. `first` is the slot of the row
-    /// level. If the row level is itself a joint, its bearing is left out, because its load is the same for all drives
-    /// of the row.
+    /// Prepares the checked bearings of the joints inboard of the row level. `first` is the slot of the row level. If
+    /// the row level is itself a joint, its bearing is left out, because its load is the same for all drives of the
+    /// row.
     pub(crate) fn all(problem: &ArmProblem, first: usize) -> Vec<Self> {
         let slots = problem.slots();
         let loads = problem.bearing_loads();
@@ -207,7 +207,7 @@ impl RowBearing {
 }
 
 /// Loads from the arm outboard of a row. First index the bearing, second the sizing case, third the cause: the load at
-/// rest first, then that of each mover (joint that accelerates).
+/// rest first, then the load of each mover (joint that accelerates).
 pub(crate) type BearingsBegun = Vec<Vec<Vec<Components>>>;
 
 impl RowBearing {

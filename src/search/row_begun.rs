@@ -46,7 +46,7 @@ pub(crate) struct CaseBegun {
     /// is given.
     pub at: AtJoints,
     /// The entries of the inertia matrix of everything outboard that count in Dunkerley's sum (the sum of `1/λ` over
-    /// the eigenvalues). Entries off the diagonal are doubled. The order is that of
+    /// the eigenvalues). Entries off the diagonal are doubled. The order is the same as in
     /// [`RowCase::spread_entries`](super::row_case::RowCase::spread_entries).
     pub spread: Vec<f64>,
     /// Loads at the end of the row's link from everything outboard: axial force \[N\], torsion and both bending moments

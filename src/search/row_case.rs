@@ -55,7 +55,7 @@ pub(crate) struct RowCase {
     /// For each block of the eigenvalue problem, the range of `spread_entries` that belongs to it.
     pub spread_of: [Range<usize>; 2],
     /// For each block of the eigenvalue problem, the number of inner slots that take part in its modes: all from the
-    /// row level to the last compliant one. Slots inboard of that one stand still in every mode.
+    /// row level to the last compliant one. Slots inboard of that slot stand still in every mode.
     pub ends: [usize; 2],
     /// Whether at least one option of the row's link is elastic in this case. If none is, the link is rigid (or the row
     /// level is not a link).
@@ -69,7 +69,7 @@ pub(crate) struct RowCase {
     pub sizing: bool,
 }
 
-/// The hinges (elastic coordinates) of the inner slots `slots`, without those of the row's link.
+/// The hinges (elastic coordinates) of the inner slots `slots`, without the hinges of the row's link.
 pub(super) fn hinges(slots: &[Slot]) -> Vec<Hinge> {
     let mut tubes = slots.len();
     let mut hinges = Vec::new();
@@ -78,7 +78,7 @@ pub(super) fn hinges(slots: &[Slot]) -> Vec<Hinge> {
             Slot::Given { .. } | Slot::Sized(_) | Slot::Bearing { .. } => {
                 hinges.push(Hinge { number: slot, slot, end: None });
             }
-            // the first slot may be the link of the row, which is no hinge
+            // the first slot may be the link of the row, which is not a hinge
             Slot::Link { .. } if slot > 0 => {
                 hinges.extend((0..6).map(|end| Hinge { number: tubes + end, slot, end: Some(end) }));
                 tubes += 6;
@@ -150,9 +150,10 @@ impl RowCase {
     }
 }
 
-/// Torque and inertia about each hinge that the inner pieces cause, in two lists: those per kilogram of the drive in
-/// each inner slot, and those of all pieces with a given mass. `slots` are the inner slots of the case, and `pieces`
-/// the same slots of the problem. `numbers` is the length of a list with an entry for the number of every hinge.
+/// Torque and inertia about each hinge that the inner pieces cause, in two lists: torque and inertia per kilogram of
+/// the drive in each inner slot, and torque and inertia due to all pieces with a given mass. `slots` are the inner
+/// slots of the case, and `pieces` the same slots of the problem. `numbers` is the length of a list with an entry for
+/// the number of every hinge.
 fn at_joints_of_pieces(
     slots: &[StationSlot],
     pieces: &[Slot],
@@ -199,8 +200,8 @@ fn link_weight_per_n(links: &[StationLink], down: &Vector3<f64>) -> Wrench {
 }
 
 /// For each block of the eigenvalue problem, the number of inner slots that take part in its modes: all from the row
-/// level to the last compliant one. `first` is the slot of the row level, and `links_are_compliant` tells whether some option
-/// of the row's link is compliant.
+/// level to the last compliant one. `first` is the slot of the row level, and `links_are_compliant` tells whether some
+/// option of the row's link is compliant.
 fn compliant_ends(modal: &Modal, first: usize, links_are_compliant: bool) -> [usize; 2] {
     match modal {
         Modal::Planar(blocks) => [0, 1].map(|b| last_compliant(&blocks[b], first, links_are_compliant)),

@@ -42,8 +42,8 @@ pub(crate) struct StressEight {
     pub round: u8,
 }
 
-/// What eight options of the row's link contribute in one case: weight, tip displacement, inertia about the inner
-/// joints, and the terms for the lowest mode.
+/// What each of eight options of the row's link contributes in one case: weight, tip displacement, inertia about the
+/// inner joints, and the terms for the lowest mode.
 pub(crate) struct CaseChunk {
     /// Weight of each option \[N\].
     pub weight_n: Eight,

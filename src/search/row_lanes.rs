@@ -34,7 +34,7 @@ pub(crate) struct RowsWork<'a, 'c, K> {
     /// Number of designs in each row: the options of the row level.
     pub options: u32,
     pub scratch: &'a mut RowScratch,
-    /// Takes the designs that are of interest, and counts the others.
+    /// Takes the designs that are of interest, and counts the designs that are not.
     pub keep: &'a mut K,
 }
 
@@ -43,8 +43,8 @@ pub(crate) struct RowsWork<'a, 'c, K> {
 struct FinishedEight {
     /// Designs that meet all limits.
     held: u8,
-    /// Designs that meet all limits, but whose lowest mode is below the bar, the mode that they would need for not
-    /// being dominated. Their modes are not computed.
+    /// Designs that meet all limits, but whose lowest mode is below the bar: with their mass and deflection, they are
+    /// dominated. Their modes are not computed.
     below_bar: u8,
     /// Designs that meet all limits, but whose iteration for the lowest mode did not converge. They are computed
     /// again, one by one.
@@ -88,8 +88,8 @@ impl<K: Keep> LaneWork for RowsWork<'_, '_, K> {
 
 impl RowChunk<'_, '_> {
     /// Evaluates eight designs. `valid` is a bit mask of the lanes that have a design. The tests go from the cheapest
-    /// to the most expensive, and the function returns as soon as every design breaks a limit or is below its bar (the
-    /// lowest mode that it needs for not being dominated).
+    /// to the most expensive. The function returns as soon as every design breaks a limit or has a lowest mode below
+    /// its bar, the mode below which it is dominated.
     #[inline(always)]
     fn finish<V: Lanes>(
         &self,
@@ -160,7 +160,7 @@ impl RowChunk<'_, '_> {
         let slots = &self.problem.slots()[self.row.first..];
         let mut largest_s2 = V::zero();
         let mut indices = [0; LANES];
-        // the row level is either a link or a drive, and the other inner slots are no links with options
+        // the row level is either a link or a drive, and none of the other inner slots is a link with options
         match self.row.chunks.get(self.chunk) {
             Some(chunk) => self.start_with_link::<V>(chunk, begun, arms),
             None => self.start::<V>(begun, arms),

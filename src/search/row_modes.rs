@@ -25,8 +25,8 @@ use crate::space::levels::Keep;
 use crate::space::station::{Block, BlockSlot, Modal};
 use std::f64::consts::TAU;
 
-/// Eight complete arms whose lowest modes are to be found, or at least compared with a bar. A bar is the lowest mode
-/// that a design needs for not being dominated.
+/// Eight complete arms whose lowest modes are to be found, or at least compared with a bar. A design whose lowest mode
+/// is below its bar is dominated.
 #[derive(Clone, Copy)]
 pub(crate) struct Question<'a, 'c> {
     at: RowChunk<'a, 'c>,
@@ -66,10 +66,10 @@ impl<'a, 'c> Question<'a, 'c> {
         Self { at, begun, arms }
     }
 
-    /// The designs among `held` that are shown to be dominated by a single bar for all eight. A bar is the lowest mode
-    /// that a design of known mass and deflection needs for not being dominated. The bar that is used here is that of
-    /// an imagined design with the least mass and the least deflection of the eight, so the bar of each of the eight is
-    /// at least as high. `tip_m2` has the squares of the deflections \[m²\].
+    /// The designs among `held` that one bar, used for all eight, shows to be dominated. The bar of a design of known
+    /// mass and deflection is the lowest mode below which the design is dominated. The bar that is used here is that
+    /// of an imagined design with the least mass and the least deflection of the eight, so the bar of each of the
+    /// eight is at least as high. `tip_m2` has the squares of the deflections \[m²\].
     #[inline(always)]
     pub(crate) fn below_one_bar<V: Lanes>(&self, keep: &impl Keep, tip_m2: &Eight, held: u8) -> u8 {
         if !self.at.of_one_group() {
@@ -79,8 +79,8 @@ impl<'a, 'c> Question<'a, 'c> {
         held & self.sluggish(V::splat(eigenvalue(bar_hz)))
     }
 
-    /// The designs among `held` whose lowest mode is below their own bar, that is, below the mode that a design of this
-    /// mass and deflection needs for not being dominated.
+    /// The designs among `held` whose lowest mode is below their own bar. A design of this mass and deflection is
+    /// dominated if its lowest mode is below the bar.
     #[inline(always)]
     pub(crate) fn below_bar<V: Lanes>(&self, keep: &impl Keep, held: u8) -> u8 {
         let (mass_kg, tip_deflection_m) = (&self.arms.mass_kg, &self.arms.tip_deflection_m);

@@ -13,7 +13,7 @@ use crate::space::slot::Slot;
 
 /// An arm that is lighter than a design and has the same drives at the joints sized by first fit.
 pub struct OnSameDrives {
-    /// Pieces whose parts differ from those of the design, numbered from the base to the tip.
+    /// Pieces whose parts differ from the parts of the design, numbered from the base to the tip.
     pub exchanged: Vec<usize>,
     /// Joints at which first fit would take a smaller drive in the lighter arm, as numbers of pieces from the base to
     /// the tip.
@@ -23,10 +23,11 @@ pub struct OnSameDrives {
 }
 
 impl ArmProblem<'_> {
-    /// An arm that is lighter than the design with these `options`, has the same drives at the joints sized by first
-    /// fit, and is no worse in deflection and lowest mode. It is found by exchanging one part at a time for the one
-    /// that gives the lightest arm, so it need not be the lightest of all. `None` if no joint is sized by first fit, if
-    /// no exchange helps, or if first fit would give the lighter arm the same drives.
+    /// An arm that is lighter than the design with the options `options`, has the same drives at the joints sized by
+    /// first fit, and is no worse in deflection and lowest mode. Parts are exchanged one at a time, each time in the
+    /// way that gives the lightest arm, so there may be a still lighter arm that this search does not find. `None` if
+    /// no joint is sized by first fit, if no exchange helps, or if first fit would give the lighter arm the same
+    /// drives.
     pub fn lighter_on_same_drives(&self, options: &[u32]) -> Option<OnSameDrives> {
         let design = self.walk(options, |_, _| {}).ok()?;
         let first_fit = |slot: &Slot| matches!(slot, Slot::Sized(sized) if !sized.all_fits);

@@ -1,9 +1,9 @@
 //! The sweep: it evaluates every design, in parallel.
 //!
 //! `Visit` walks the tree of designs in tasks. A design that another one clearly dominates is dropped at once
-//! (`Archive`). The others are compared exactly from time to time. Memory therefore grows with the front and with the
-//! tables of the problem (for arms some kilobytes per option and case), not with the number of designs. The result
-//! does not depend on the order of visits or on the number of threads.
+//! (`Archive`). The remaining designs are compared exactly from time to time. Memory therefore grows with the front
+//! and with the tables of the problem (for arms some kilobytes per option and case), not with the number of designs.
+//! The result does not depend on the order of visits or on the number of threads.
 
 use super::finish::FinishRows;
 use super::resume::Done;
@@ -19,8 +19,9 @@ use std::ops::Range;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// When candidates are compared exactly, one is dropped only if another one is better by more than this fraction in
-/// every objective. The full model decides between closer candidates later, because the fast model has rounding errors.
+/// When candidates are compared exactly, a candidate is dropped only if another candidate is better by more than this
+/// fraction in every objective. The full model decides between closer candidates later, because the fast model has
+/// rounding errors.
 pub const SLACK: f64 = 1e-7;
 /// Number of added candidates after which the dominated candidates are removed.
 const BUFFER: usize = 1 << 15;
@@ -172,7 +173,7 @@ pub struct Sweep<'p, P: FinishRows> {
     done: Mutex<(Done, Tally)>,
 }
 
-/// The candidates that all tasks have found for one front: that of all designs, or that of a material.
+/// The candidates that all tasks have found for one front: the front of all designs, or the front of one material.
 struct Pool {
     /// Table that rejects dominated candidates at once.
     archive: Archive,
@@ -224,7 +225,7 @@ impl Pool {
         clear_dominated(&mut all);
         // tasks end in any order; sorting makes the result independent of it
         all.sort_unstable_by_key(|c| c.number);
-        // a design is here twice if an earlier process found it in a task that it did not complete
+        // a design is here twice if an earlier process found it in a task and stopped before the end of this task
         all.dedup_by_key(|c| c.number);
         all
     }
@@ -299,7 +300,7 @@ impl<'p, P: FinishRows> Sweep<'p, P> {
         before(number - 1)..before(number)
     }
 
-    /// Number of designs visited or excluded so far, by this process and by those that it continues.
+    /// Number of designs visited or excluded so far, by this process and by earlier processes that it continues.
     pub fn visited(&self) -> u64 {
         self.visited.load(Ordering::Relaxed)
     }
@@ -437,8 +438,8 @@ impl Keep for Worker<'_> {
         self.tally.excluded += designs;
     }
 
-    // A design of a group can be on two fronts: that of the group and that of all designs. If a design of its own
-    // group dominates it, it is on neither, so the bar of the group is used.
+    // A design of a group can be on two fronts: the front of the group and the front of all designs. If a design of
+    // its own group dominates it, it is on neither front, so the bar of the group is used.
     fn bar_hz(&self, group: Option<usize>, mass_kg: f64, tip_deflection_m: f64) -> f64 {
         let pool = group.map_or(self.overall, |group| &self.groups[group]);
         pool.archive.bar_hz(mass_kg, tip_deflection_m)

@@ -23,7 +23,7 @@ const ROWS_PER_BATCH: usize = 16;
 /// Largest number of designs in a batch.
 const BATCH_DESIGNS: usize = 1 << 18;
 
-/// Largest number of designs of a task, which take some seconds. This work is lost if the task is interrupted.
+/// Largest number of designs of a task. Their evaluation takes some seconds, and is lost if the task is interrupted.
 const TASK_DESIGNS: u128 = 1 << 24;
 
 /// A visit to all designs of a tree. Other threads can read its progress and stop it.

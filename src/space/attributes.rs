@@ -29,7 +29,7 @@ pub(crate) struct StressCheck {
     pub per_moment_y: f64,
     /// Largest normal stress per bending moment about the section's z axis \[1/m³\].
     pub per_moment_z: f64,
-    /// Largest shear stress per torsion \[1/m³\].
+    /// Largest shear stress per torsional moment \[1/m³\].
     pub per_torsion: f64,
     /// Whether the section is round. The stresses of the two bending moments then add as vectors.
     pub round: bool,

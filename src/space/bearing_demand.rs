@@ -29,9 +29,10 @@ struct Largest {
 }
 
 impl Largest {
-    /// Raises the largest loads to those of a moving arm: the load `rest` at rest, combined with the load `ramp` that
-    /// the acceleration of one joint adds. The acceleration may have either sign, and in an emergency stop it is
-    /// `stop_factor` times as large. The larger norm of `s ± d` is the root of `|s|² + |d|² + 2 |s·d|`.
+    /// Raises the largest loads to the loads of a moving arm, where these are larger: the load `rest` at rest,
+    /// combined with the load `ramp` that the acceleration of one joint adds. The acceleration may have either sign,
+    /// and in an emergency stop it is `stop_factor` times as large. The larger norm of `s ± d` is the root of
+    /// `|s|² + |d|² + 2 |s·d|`.
     fn moving(&mut self, rest: &Components, ramp: &Components, stop_factor: f64) {
         let larger = |first: usize, times: f64| {
             let (s, d) = ([rest[first], rest[first + 1]], [ramp[first] * times, ramp[first + 1] * times]);

@@ -1,5 +1,5 @@
-//! What loads output bearings, apart from the masses: where links attach, how joints accelerate, and which components
-//! of a wrench load a bearing.
+//! Data from which the loads on output bearings follow, apart from the masses: where links attach, how joints
+//! accelerate, and which components of a wrench load a bearing.
 
 use super::design_space::{DesignSpace, SpaceJoint, SpacePiece};
 use super::slot::Slot;
@@ -22,13 +22,13 @@ pub(crate) struct BearingLoads {
     /// For each slot, the lever of its joint: how far from the face of the flange the link attaches. `None` if the slot
     /// has no joint with a bearing.
     pub levers: Vec<Option<Lever>>,
-    /// Whether the bearing in each slot can exclude a design. One whose ratings are unknown cannot.
+    /// Whether the bearing in each slot can exclude a design. A bearing whose ratings are unknown cannot.
     pub checked: Vec<bool>,
     /// Ratio of emergency deceleration to acceleration.
     pub stop_factor: f64,
 }
 
-/// A joint that accelerates while the others are at rest.
+/// A joint that accelerates while the other joints are at rest.
 pub(crate) struct Mover {
     /// Slot of the joint.
     pub slot: usize,
@@ -51,9 +51,9 @@ impl Lever {
         self.link_slot.map_or(self.lever_m[0], |slot| self.lever_m[options[slot] as usize])
     }
 
-    /// The lever of `joint`: the offset that the study states, or else half the width of the link next to the joint. It
-    /// is zero if the next piece is no tube. `piece` is the number of the joint in the chain, and `piece_slots` has the
-    /// slot of each piece.
+    /// The lever of `joint`: the offset that the study states, or else half the width of the link next to the joint.
+    /// It is zero if the next piece is not a tube. `piece` is the number of the joint in the chain, and `piece_slots`
+    /// has the slot of each piece.
     pub(crate) fn new(space: &DesignSpace, piece: usize, joint: &SpaceJoint, piece_slots: &[usize]) -> Self {
         let half_m =
             |vector_m: &Vector3<f64>, section: &Section| half_width_m(&joint.axis, vector_m, section);
@@ -109,13 +109,13 @@ pub(crate) fn at_centre(load: &JointLoad, bearing: &Bearing) -> BearingLoad {
 fn half_width_m(axis: &Vector3<f64>, vector_m: &Vector3<f64>, section: &Section) -> f64 {
     let along = section_frame(vector_m).tr_mul(axis);
     let (width_m, height_m) = section.outer_m();
-    // exact for a box with one side across the axis, and for a round tube at right angles to the axis
+    // exact for a box with one side at right angles to the axis, and for a round tube at right angles to the axis
     libm::hypot(width_m / 2.0 * along.y, height_m / 2.0 * along.z)
 }
 
 impl BearingLoads {
-    /// Collects these data of a space. `piece_slots` has the slot of each piece, base to tip. `reaches_m` has, for each
-    /// joint, base to tip, the largest distance of the tip from its axis \[m\].
+    /// Collects the levers and accelerations of a space. `piece_slots` has the slot of each piece, base to tip.
+    /// `reaches_m` has, for each joint, base to tip, the largest distance of the tip from its axis \[m\].
     pub(crate) fn new(space: &DesignSpace, slots: &[Slot], piece_slots: &[usize], reaches_m: &[f64]) -> Self {
         let mut levers: Vec<Option<Lever>> = slots.iter().map(|_| None).collect();
         let mut checked = vec![false; slots.len()];

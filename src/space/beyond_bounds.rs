@@ -1,5 +1,5 @@
-//! What of a design space the bounds do not cover, in words. A search or a check that rests on bounds refuses such a
-//! space, or says so.
+//! Features of a design space that the bounds of the searches do not cover, in words. A search or a check that rests
+//! on bounds refuses a space with such features, or says that it has them.
 
 use super::design_space::{DesignSpace, SpacePiece};
 use crate::arm::effect::entry::Effect;
@@ -10,8 +10,8 @@ impl DesignSpace {
         self.pieces.iter().any(|piece| matches!(piece, SpacePiece::Prismatic(slide) if slide.drive.is_some()))
     }
 
-    /// Describes in words what of this space the bounds of the exact search do not cover; `None` if they
-    /// cover all of it.
+    /// Names the features of this space that the bounds of the exact search do not cover. `None` if the bounds cover
+    /// the whole space.
     pub(crate) fn beyond_exact(&self) -> Option<String> {
         let is_known =
             |effect: &&Effect| effect.is_of_test() || effect.kind().is_none_or(|kind| kind.traits.in_bounds);
@@ -24,8 +24,8 @@ impl DesignSpace {
         in_words([in_words([turns, motors]), law])
     }
 
-    /// Describes in words what of this space the bounds of the verifier and of the linear program
-    /// (relaxation) do not cover; `None` if they cover all of it.
+    /// Names the features of this space that the bounds of the verifier and of the linear program (relaxation) do not
+    /// cover. `None` if the bounds cover the whole space.
     pub fn beyond_bounds(&self) -> Option<String> {
         in_words([self.beyond_exact(), (!self.springs.is_empty()).then(|| "springs".into())])
     }

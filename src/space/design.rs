@@ -151,7 +151,7 @@ impl<'c> ArmProblem<'c> {
         })
     }
 
-    /// Mass of those parts at the joints of a design that are neither drive nor bearing \[kg\]. `None` if the design
+    /// Mass of the parts at the joints of a design that are neither drive nor bearing \[kg\]. `None` if the design
     /// breaks a limit.
     pub fn extras_mass_kg(&self, options: &[u32]) -> Option<f64> {
         let joints = self.space().pieces.iter().zip(self.parts(options)?);
@@ -186,7 +186,7 @@ impl DesignSpace {
     }
 }
 
-/// The same chain with the lever of every output bearing as a number, computed from the link next to the bearing.
+/// Returns the chain with the lever of every output bearing as a number, computed from the link next to the bearing.
 fn with_levers(mut chain: Vec<Element>) -> Vec<Element> {
     for index in 0..chain.len() {
         let (inboard, outboard) = chain.split_at_mut(index + 1);

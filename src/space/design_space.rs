@@ -125,13 +125,13 @@ pub struct DesignSpace {
     pub down: Vector3<f64>,
     /// Joints and links of the arm, from base to tip.
     pub pieces: Vec<SpacePiece>,
-    /// Every case of the study: those in which the arm is judged and those in which it is sized.
+    /// Every case of the study: the cases in which the arm is judged and the cases in which it is sized.
     pub cases: Vec<Case>,
     /// Indices of the cases over which the objectives are taken. Of these cases the worst one counts.
     pub judged_cases: Vec<usize>,
     /// Indices of the cases in which joints are sized and stress is checked.
     pub sizing_cases: Vec<usize>,
-    /// The motion that the tip must be able to do. The drives are sized for it.
+    /// The motion that the tip must be able to make. The drives are sized for it.
     pub motion: MotionRequirement,
     /// Model of the links: rigid, or with bending alone, or with all deformations.
     pub links: LinkModel,
@@ -153,7 +153,7 @@ pub struct Case {
     /// Pose of the arm: one entry per driven joint, base to tip. An entry is an angle \[deg\], or the travel of a
     /// prismatic joint \[mm\].
     pub pose_deg: Vec<f64>,
-    /// What the arm holds at the tip.
+    /// The payload at the tip.
     pub payload: Payload,
     /// Force on the tip, in world axes \[N\].
     pub tip_force_n: Vector3<f64>,
@@ -208,7 +208,7 @@ impl SpacePiece {
         }
     }
 
-    /// The options of a link, for changing them; `None` for a piece that leaves no section open.
+    /// The choices of a link, to be changed. `None` for a piece that leaves no section open.
     pub(crate) fn as_choice_mut(&mut self) -> Option<&mut LinkChoice> {
         match self {
             Self::Choice(choice) => Some(choice),

@@ -23,7 +23,7 @@ use nalgebra::{Rotation3, Vector3};
 /// A layer: what the search adds to an arm in one step. Each layer becomes one slot.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Layer<'s> {
-    /// A joint, link or prismatic joint of the chain.
+    /// A rotary joint, link or prismatic joint of the chain.
     Piece(&'s SpacePiece),
     /// A spring that lets a joint tilt about an axis at right angles to the joint's axis.
     Tilt(Tilt<'s>),
@@ -242,7 +242,8 @@ impl DesignSpace {
         out.extend(self.root_springs(link).map(|tilt| (index, tilt)));
     }
 
-    /// Adds the layers of a joint, tip first: what turns with it, its drive and its bearing, and what does not turn.
+    /// Adds the layers of a joint, tip first: first what turns with the joint, then its drive and its bearing, then
+    /// what does not turn with it.
     fn add_joint<'s>(
         &'s self,
         index: usize,
@@ -275,8 +276,8 @@ impl DesignSpace {
         out.extend(self.motors_on(index, false));
     }
 
-    /// Adds the layers of the base: the springs that balance the arm, those of a compliant frame, and the tilts of a
-    /// base that lifts off or is compliant.
+    /// Adds the layers of the base: the springs that balance the arm, the springs of a compliant frame, and the tilts
+    /// of a base that can lift off or is compliant.
     fn add_base<'s>(&'s self, out: &mut Vec<(usize, Layer<'s>)>) {
         out.extend(self.pulled(0, Side::Base));
         let base = self.surroundings();
@@ -355,8 +356,8 @@ impl DesignSpace {
     }
 
     /// The layers of the motors that stand on the piece number `piece`. If `moves` is true, these are the motors that
-    /// move with the piece, otherwise those that stand where it begins. The layer of the motor of a sized prismatic
-    /// joint includes its screw or rack.
+    /// move with the piece, otherwise the motors that stand where it begins. The layer of the motor of a sized
+    /// prismatic joint includes its screw or rack.
     fn motors_on(&self, piece: usize, moves: bool) -> impl Iterator<Item = (usize, Layer<'_>)> {
         let is_joint = !matches!(self.pieces[piece], SpacePiece::Link(_) | SpacePiece::Choice(_));
         self.pieces.iter().enumerate().filter_map(move |(of, what)| {

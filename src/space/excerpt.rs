@@ -19,7 +19,7 @@ impl DesignSpace {
         self.level_sizes_with(&TabulatedJoints::new(self, catalogs))
     }
 
-    /// As [`level_sizes`](Self::level_sizes), with the joints `joints`, whose drives are already in tables.
+    /// Does the same as [`level_sizes`](Self::level_sizes), for joints whose drives are already in tables.
     fn level_sizes_with(&self, joints: &TabulatedJoints) -> Vec<u32> {
         let size = |(place, piece): (usize, &SpacePiece)| match piece {
             SpacePiece::Joint(_) => joints.get(place).filter(|slot| slot.is_level()).map(Slot::options),
@@ -36,7 +36,7 @@ impl DesignSpace {
         self.designs_with(&TabulatedJoints::new(self, catalogs))
     }
 
-    /// As [`designs`](Self::designs), with the joints `joints`, whose drives are already in tables.
+    /// Does the same as [`designs`](Self::designs), for joints whose drives are already in tables.
     pub(crate) fn designs_with(&self, joints: &TabulatedJoints) -> Option<u128> {
         let sizes = self.level_sizes_with(joints);
         sizes.into_iter().try_fold(1u128, |n, size| n.checked_mul(u128::from(size)))
@@ -48,7 +48,7 @@ impl DesignSpace {
         self.excerpt_with(&TabulatedJoints::new(self, catalogs), designs)
     }
 
-    /// As [`excerpt`](Self::excerpt), with the joints `joints`, whose drives are already in tables.
+    /// Does the same as [`excerpt`](Self::excerpt), for joints whose drives are already in tables.
     pub(crate) fn excerpt_with(&self, joints: &TabulatedJoints, designs: &[u128]) -> Option<DesignSpace> {
         let sizes = self.level_sizes_with(joints);
         let mut used: Vec<BTreeSet<u32>> = vec![BTreeSet::new(); sizes.len()];
@@ -79,7 +79,7 @@ impl DesignSpace {
         Some(out)
     }
 
-    /// The space with at most `most` options for each open link: those in the middle of the order by mass.
+    /// The space with at most `most` options for each open link: the options in the middle of the order by mass.
     pub fn middle(&self, most: u32) -> DesignSpace {
         let mut out = self.clone();
         for piece in &mut out.pieces {

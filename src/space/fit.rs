@@ -92,9 +92,9 @@ fn room(
     fit.room(width_across_m(axis, vector_m, section), hollow_m)
 }
 
-/// Width of a link across the axis of its joint \[m\]. If the joint turns the link, it is the extent of the section
-/// in the plane of the rotation. If the joint rolls the link about the link's own axis, it is the smaller side of the
-/// section.
+/// Width of a link at right angles to the axis of its joint \[m\]. If the joint turns the link, it is the extent of
+/// the section in the plane of the rotation. If the joint rolls the link about the link's own axis, it is the smaller
+/// side of the section.
 fn width_across_m(axis: &Unit<Vector3<f64>>, vector_m: &Vector3<f64>, section: &Section) -> f64 {
     let along = section_frame(vector_m).tr_mul(axis);
     let (width_m, height_m) = section.outer_m();

@@ -13,7 +13,7 @@ pub fn full_objectives(arm: &Arm, cases: &[LoadCase]) -> Objectives {
 }
 
 /// Objectives of an arm by the full model, after `change` has altered its structure (the arm as the mechanics sees it,
-/// with all effects). The mass is that of the arm before the change.
+/// with all effects). The mass is the mass of the arm before the change.
 pub fn objectives_with(arm: &Arm, cases: &[LoadCase], change: impl Fn(&mut Structure)) -> Objectives {
     let mut out = Objectives { tip_deflection_m: 0.0, mass_kg: arm.mass_kg(), lowest_mode_hz: f64::INFINITY };
     for case in cases {

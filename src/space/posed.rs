@@ -25,8 +25,8 @@ use rayon::prelude::*;
 /// Number of link options that are condensed at a time, to limit memory.
 const AT_A_TIME: usize = 1024;
 
-/// Indices of the motions within the x-z plane (x, z, rotation about y) and of those across it (y, rotations about x
-/// and z).
+/// Indices of the motions within the x-z plane (first: x, z, rotation about y) and of the motions out of this plane
+/// (second: y, rotations about x and z).
 const PLANES: [[usize; 3]; 2] = [[0, 2, 4], [1, 3, 5]];
 /// Indices of all six motions: three displacements and three rotations.
 const ALL: [usize; 6] = [0, 1, 2, 3, 4, 5];
@@ -352,8 +352,8 @@ fn station_link(
     let tips: Vec<Vector3<f64>> =
         (0..6).map(|g| displacement_at(&placed.end.column(g).into(), tip_m)).collect();
     StationLink {
-        // the part of the inertia that does not depend on the frequency, for motions of the root: that of the link as
-        // a rigid body
+        // the part of the inertia that does not depend on the frequency, for motions of the root: the inertia of the
+        // link as a rigid body
         inertia: placed.inertia[0].fixed_view::<6, 6>(0, 0).into_owned(),
         // the weight of a uniform tube acts at mid-length
         weight: weight_wrench(tube.weight_n_per_m * tube.length_m, down, &place.centre_m),

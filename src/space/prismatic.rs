@@ -60,7 +60,7 @@ impl SpacePrismatic {
         Prismatic { stiffness_n_per_m: gear.single_slope_nm_per_rad(), ..self.joint.clone() }
     }
 
-    /// Collects what stays and what travels from the masses and bodies of the joint.
+    /// Fills `staying` and `travelling` from the masses and bodies of the joint.
     pub(crate) fn collect_bodies(&mut self) {
         let with_point = |mass_kg: f64, bodies: &[RigidBody]| {
             let point = RigidBody { mass_kg, cg_m: Vector3::zeros(), inertia_kgm2: Matrix3::zeros() };

@@ -37,7 +37,7 @@ pub struct ArmProblem<'c> {
     space: &'c DesignSpace,
     /// The slots of the arm: what is added in each step, tip first.
     slots: Vec<Slot<'c>>,
-    /// Slot of each piece, base to tip. Effects may have further slots.
+    /// Slot of each piece, base to tip. The effects of a piece may have further slots.
     piece_slots: Vec<usize>,
     /// Slot of each level, tip first.
     level_slots: Vec<usize>,
@@ -98,7 +98,7 @@ impl<'c> ArmProblem<'c> {
         Self::with_joints(space, &TabulatedJoints::new(space, catalogs))
     }
 
-    /// As [`new`](Self::new), with the joints `joints`, whose drives are already in tables.
+    /// Does the same as [`new`](Self::new), for joints whose drives are already in tables.
     pub(crate) fn with_joints(space: &'c DesignSpace, joints: &TabulatedJoints<'c>) -> Self {
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
         let reaches = reaches_m(space, sizing);
@@ -121,7 +121,7 @@ impl<'c> ArmProblem<'c> {
                 Layer::Bodies(carried) => Slot::Offset { mass_kg: carried.mass_kg() },
                 Layer::Tilt(tilt) => Slot::Given { law: tilt.law(), mass_kg: 0.0 },
                 Layer::Guide(spring) => Slot::Given { law: spring.law(), mass_kg: 0.0 },
-                // the station has the weight and inertia of these; they do not count in the mass of a design
+                // the station has the weights and inertias of these layers, which do not count in the mass of a design
                 Layer::Mass(_) | Layer::Travelling(_) | Layer::Springs(_) => Slot::Offset { mass_kg: 0.0 },
             });
         }
@@ -321,7 +321,7 @@ impl<'c> ArmProblem<'c> {
         true
     }
 
-    /// Adds the next slot, `slot`, with this option to the arm `to`. Returns `false` if the arm breaks a limit with it.
+    /// Adds the next slot, `slot`, with an option, to the arm `to`. Returns `false` if the arm then breaks a limit.
     pub(super) fn add(&self, slot: usize, option: u32, to: &mut Partial) -> bool {
         to.next_slot = slot + 1;
         to.options[slot] = option;
@@ -516,8 +516,9 @@ fn block_eigenvalue<const N: usize>(
     lowest_eigenvalue(&steps, trace_s2)
 }
 
-/// The steps in which the lowest mode of a block (motions that do not couple with the others) is computed, tip first.
-/// They are the payload and the first `slots` slots of the arm. Slots with neither compliance nor mass are left out.
+/// The steps in which the lowest mode of a block is computed, tip first: the payload and the first `slots` slots of
+/// the arm. A block is a set of motions that do not couple with others. Slots with neither compliance nor mass are
+/// left out.
 pub(crate) fn block_steps<'a, const N: usize>(
     block: &'a Block<N>,
     arm: &'a Partial,

@@ -26,7 +26,7 @@ pub(crate) enum Slot<'c> {
     Motor { joint: usize, masses_kg: Vec<f64> },
     /// A tube. It is a choice of the search if it is `open`; a given tube has one option.
     Link { options: Vec<OptionAttributes>, open: bool },
-    /// A rigid offset with its point mass. Bodies, masses of effects and spring forces have such slots too.
+    /// A rigid offset with its point mass. Bodies, masses of effects and spring forces have slots of this kind too.
     Offset { mass_kg: f64 },
 }
 
@@ -37,12 +37,13 @@ pub struct SizedJoint<'c> {
     /// Joint law (angle as a function of torque) with each drive of the table. Effects are included.
     pub(crate) laws: Vec<JointLaw>,
     /// Compliance of the output bearing against tilt \[rad/(N m)\], one entry for each drive. It is the compliance of
-    /// the gear's bearing plus that which effects add.
+    /// the gear's bearing plus the compliance that effects add.
     pub(crate) tilts_rad_per_nm: Vec<f64>,
-    /// For each drive of the table, the part of its mass that does not sit at the joint \[kg\], such as that of a motor
-    /// that stands elsewhere; 0 if the whole drive sits at the joint.
+    /// For each drive of the table, the part of its mass that does not sit at the joint \[kg\], for example the mass
+    /// of a motor that is placed elsewhere; 0 if the whole drive sits at the joint.
     pub(crate) away_kg: Vec<f64>,
-    /// Whether every drive that holds is an option of the search; if not, the lightest one that holds is taken.
+    /// Whether the search may choose every drive that meets the demand. If not, the joint gets the lightest drive that
+    /// meets it.
     pub(crate) all_fits: bool,
 }
 
@@ -165,7 +166,7 @@ impl Slot<'_> {
         }
     }
 
-    /// The motion that a sized joint must be able to do; `None` for other slots.
+    /// The motion that a sized joint must be able to make; `None` for other slots.
     pub(crate) fn motion(&self) -> Option<&JointMotion> {
         match self {
             Slot::Sized(sized) => Some(sized.table.motion()),

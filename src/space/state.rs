@@ -24,7 +24,7 @@ pub(crate) struct StationState {
     /// Dunkerley's sum of each block \[s²\]: the trace of flexibility times mass, which equals the sum of `1/λ` over
     /// all modes. The reciprocal of the sum is a lower bound of the lowest eigenvalue.
     pub trace_s2: [f64; 2],
-    /// Tangent compliance of each slot \[rad/(N m)\], tip first; 0 for slots that are no joints or are not added yet.
+    /// Tangent compliance of each slot \[rad/(N m)\], tip first; 0 for slots that are not joints or are not added yet.
     pub compliances: Vec<f64>,
     /// Wrench that the acceleration of each driven joint makes while the other joints are at rest. There is one entry
     /// for each driven joint, tip first; it is zero until the joint is added. The list is empty if no joint has an
@@ -54,7 +54,7 @@ impl StationState {
     }
 
     /// Torque on the joint that is to be added next \[N m\]: the torque of weight and load outboard, plus the torque
-    /// that acts on this joint in addition, such as that of a counterbalance.
+    /// that acts on this joint in addition, such as the torque of a counterbalance.
     pub(crate) fn torque_nm(&self, joint: &StationJoint) -> f64 {
         let of_passive: f64 = joint.turns.iter().map(|turned| turned.own_nm).sum();
         self.load_torque_nm(joint) + joint.own_nm + of_passive

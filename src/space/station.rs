@@ -21,7 +21,7 @@ use nalgebra::{Matrix3, Matrix3x6, Matrix6, Rotation3, SMatrix, SVector, Vector3
 pub(crate) struct Station {
     /// The data of each slot in this pose, tip first.
     pub slots: Vec<StationSlot>,
-    /// The same slots, as the computation of the lowest mode needs them.
+    /// The slots in the form that the computation of the lowest mode needs.
     pub modal: Modal,
     /// Force and moment of the payload's weight and of the tip load, as a wrench.
     pub start_wrench: Wrench,
@@ -114,7 +114,7 @@ pub(crate) struct StationJoint {
     /// them are outboard of it.
     pub turns: Vec<Turned>,
     /// Whether another joint turns this joint along, by a linkage or because the motor of this joint sits inboard of
-    /// the other.
+    /// that other joint.
     pub is_passive: bool,
 }
 
@@ -200,14 +200,14 @@ impl StationLink {
     }
 }
 
-/// The slots as the computation of the lowest mode needs them: in two blocks of three motions if the pose is planar,
-/// otherwise in one block of six.
+/// The slots in the form that the computation of the lowest mode needs: two blocks of three motions if the pose is
+/// planar, otherwise one block of six.
 pub(crate) enum Modal {
     Planar(Box<[Block<3>; 2]>),
     Spatial(Box<Block<6>>),
 }
 
-/// The slots, restricted to `N` of the six motions: those that do not couple with the others.
+/// The slots, restricted to `N` of the six motions. These `N` motions do not couple with the remaining ones.
 pub(crate) struct Block<const N: usize> {
     /// Inertia matrix of the payload.
     pub payload: SMatrix<f64, N, N>,
@@ -253,7 +253,7 @@ pub(crate) fn weight_wrench(weight_n: f64, down: &Vector3<f64>, at_m: &Vector3<f
 /// Positions of all pieces in a pose.
 pub(crate) struct Walk {
     /// Position \[m\] and attitude of the beginning of each piece, base to tip; the last entry is the tip. The
-    /// attitude of a joint is the one before its own rotation.
+    /// attitude of a joint is its attitude before its own rotation.
     pub(crate) places: Vec<(Vector3<f64>, Rotation3<f64>)>,
     /// Angle of each piece, base to tip \[rad\]; 0 for links.
     pub(crate) angles_rad: Vec<f64>,

@@ -5,8 +5,8 @@
 //! - *static safety*: `P₀ = F_r + 2 (M + R F_r) / d_p + 0.44 F_a` is at most `C₀ / 3` at rest (for high precision) and
 //!   at most `C₀ / 2` in a stop (because of shocks).
 //! - *life*: `10⁶ / (60 n) · (C / (f_w P_c))^(10/3)` is at least the hours that the study asks for, with
-//!   `P_c = X (F_r + 2 (M + R F_r) / d_p) + Y F_a`. Its loads are those of the arm at rest: accelerations are not
-//!   counted in the life.
+//!   `P_c = X (F_r + 2 (M + R F_r) / d_p) + Y F_a`. The loads are those of the arm at rest: the life does not count
+//!   accelerations.
 //!
 //! `M`, `F_r` and `F_a` are the moment, the radial force and the axial force at the face of the flange, `R` is the
 //! distance from there to the centre of the bearing, and `d_p` is its pitch diameter. `C₀` and `C` are the static and
@@ -24,10 +24,10 @@ use crate::catalog::gear::{Gear, GearMass};
 /// The load on an output bearing; also a lower or an upper bound of the load over several designs.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct BearingLoad {
-    /// Moment about an axis across the joint's axis \[N m\]. It is taken where the link attaches or, after
+    /// Moment about an axis at right angles to the joint's axis \[N m\]. It is taken where the link attaches or, after
     /// [`with_lever`](Self::with_lever), at the face of the joint's flange.
     pub moment_nm: f64,
-    /// Force across the axis of the joint (radial) \[N\].
+    /// Force at right angles to the axis of the joint (radial) \[N\].
     pub radial_n: f64,
     /// Force along the axis of the joint \[N\].
     pub axial_n: f64,
@@ -38,9 +38,9 @@ pub(super) struct BearingLoad {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct BearingDemand {
     pub at_rest: BearingLoad,
-    /// Load while one joint speeds up or slows down and the others are at rest.
+    /// Load while one joint speeds up or slows down and the other joints are at rest.
     pub running: BearingLoad,
-    /// Load while one joint stops in an emergency and the others are at rest.
+    /// Load while one joint stops in an emergency and the other joints are at rest.
     pub in_stop: BearingLoad,
 }
 
@@ -127,7 +127,7 @@ impl BearingRatings {
     pub(super) fn of(bearing: Option<&Bearing>, duty: [f64; 2]) -> Self {
         let Some(bearing) = bearing else { return Self::UNLIMITED };
         let printed = &bearing.ratings;
-        // a stated offset is measured from the centre of the bearing, so that no further lever is added
+        // a stated offset is measured from the centre of the bearing, so no further lever is added
         let centre_m = bearing.offset_m.map_or(printed.offset_m.unwrap_or(0.0), |_| 0.0);
         let running_nm = bearing.permissible_moment_nm.unwrap_or(f64::INFINITY);
         let of_moment = Self { centre_m, running_nm, ..Self::UNLIMITED };

@@ -1,11 +1,11 @@
 //! Loads on the output bearings in a pose, as linear functions of the weights and inertias of parts.
 //!
-//! A bearing is loaded by the weight of everything outboard of its joint, and by the inertia forces of one joint at
-//! a time that ramps or stops while the others are at rest. By virtual work, the component of an inertia force or
+//! A bearing is loaded by the weight of everything outboard of its joint, and by the inertia forces that arise while
+//! one joint ramps or stops and the other joints are at rest. By virtual work, the component of an inertia force or
 //! moment along a direction is the coupling `Σ m (v · w)` of two motions: the motion of the joint that accelerates,
 //! and a *probe*. A probe is a virtual motion that shifts or tilts everything outboard of the bearing along that
-//! direction. Couplings are entries of the inertia matrix of [`super::pose`] with probes as further coordinates.
-//! Only mass outboard of both joints contributes, because all other mass is at rest in one of the two motions.
+//! direction. Couplings are entries of the inertia matrix of [`super::pose`] with probes as further coordinates. Only
+//! mass outboard of both joints contributes, because all other mass is at rest in one of the two motions.
 
 use super::bearing::{BearingDemand, BearingLoad};
 use super::layout::{Coordinate, Point};
@@ -14,8 +14,8 @@ use super::span::{Linear, Span};
 use crate::arm::load::LoadCase;
 use nalgebra::Vector3;
 
-/// Components of the load on a bearing: forces along two axes across the axis of the joint, the force along the
-/// axis, and moments about the two axes across.
+/// Components of the load on a bearing: the forces along two axes at right angles to the axis of the joint, the force
+/// along the axis of the joint, and the moments about the same two axes.
 type Components<T> = [T; COMPONENTS];
 const COMPONENTS: usize = 5;
 
@@ -78,7 +78,7 @@ fn probes_of(joint: usize) -> Components<Coordinate> {
     ]
 }
 
-/// The five components of the load on the bearing of `joint` that the weights outboard of it make, each as a linear
+/// The five components of the load on the bearing of `joint` that the weights outboard of it cause, each as a linear
 /// function of these weights.
 fn at_rest(builder: &Builder, joint: usize) -> Components<Linear> {
     let placed = &builder.layout.joints[joint];
@@ -91,7 +91,8 @@ fn at_rest(builder: &Builder, joint: usize) -> Components<Linear> {
 
 impl PosedBearing {
     /// Raises `largest` to the loads on this bearing in this case. `loads` and `inertias` are the intervals of the
-    /// weights and inertias of the parts. `stop_factor` is the acceleration in a stop divided by that in a ramp.
+    /// weights and inertias of the parts. `stop_factor` is the acceleration in a stop divided by the acceleration in a
+    /// ramp.
     pub(super) fn load(&self, loads: &[Span], inertias: &[Span], stop_factor: f64, largest: &mut Largest) {
         let rest = self.rest.each_ref().map(|component| component.over(loads));
         let [at_rest, running, in_stop] = &mut largest.0;
@@ -107,8 +108,8 @@ impl PosedBearing {
     }
 }
 
-/// Raises the largest moment, radial force and axial force to those of one load. The load is given by its forces and
-/// moments along the three axes, as intervals.
+/// Raises the largest moment, radial force and axial force in `largest` to the values of one load, where these are
+/// larger. The load is given by its forces and moments along the three axes, as intervals.
 fn take(largest: &mut [Span; 3], [u_n, v_n, axial_n, u_nm, v_nm]: &Components<Span>) {
     let norm = |a: &Span, b: &Span| Span {
         least: libm::hypot(a.least_size(), b.least_size()),

@@ -28,8 +28,8 @@ pub(super) struct Members<'w> {
     pub loads: Vec<Vec<Span>>,
 }
 
-/// A mass and a deflection that no member improves on. Each is bounded by itself, so that no single member need
-/// have both.
+/// A lower bound of the mass and a lower bound of the deflection over the members. Each is found by itself, so there
+/// may be no single member that reaches both.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct IdealPoint {
     pub mass_kg: f64,
@@ -64,8 +64,8 @@ impl<'w> Members<'w> {
         self.loads.iter_mut().for_each(|loads| loads[joint] = mass);
     }
 
-    /// Intervals of the masses of the drives, followed by those of the inertias per length of the tubes. `water` is the
-    /// index of the medium around the arm.
+    /// Intervals of the masses of the drives, followed by the intervals of the inertias per length of the tubes.
+    /// `water` is the index of the medium around the arm.
     fn inertias(&self, water: usize) -> impl Iterator<Item = Span> {
         let of_drives = self.loads[water][..self.drives.len()].iter().copied();
         let of_tubes = self.tubes.iter().flat_map(move |tube| {
@@ -175,7 +175,7 @@ impl Skeleton {
         })
     }
 
-    /// A mass and a deflection that no member improves on; `None` if one of them is above its limit, so that no
+    /// Lower bounds of mass and deflection over the members; `None` if one of them is above its limit, so that no
     /// member meets the limits.
     pub(super) fn ideal_point(&self, members: &Members) -> Option<IdealPoint> {
         let drives: f64 = members.drives.iter().map(|drive| drive.least_kg).sum();
@@ -199,7 +199,8 @@ impl Skeleton {
             .then_some(ideal)
     }
 
-    /// The greatest stiffness of each coordinate over the members, in a pose. The order is that of `coordinates`.
+    /// The greatest stiffness of each coordinate over the members, in a pose. The order is the same as in
+    /// `coordinates`.
     pub(super) fn stiffnesses(&self, pose: &Pose, members: &Members) -> Vec<f64> {
         let loads = &members.loads[pose.water];
         let stiffness = |coordinate: &Coordinate| match *coordinate {

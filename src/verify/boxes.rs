@@ -69,8 +69,8 @@ impl Boxes {
             .collect()
     }
 
-    /// A mass \[kg\] and a tip deflection \[m\] below which no member of the box `parts` lies. `None` if it is proved
-    /// that no member meets the limits.
+    /// Lower bounds, over the members of the box `parts`, of the mass \[kg\] and of the tip deflection \[m\]. `None`
+    /// if it is proved that no member meets the limits.
     pub fn least_mass_and_deflection(&self, parts: &PartsBox) -> Option<[f64; 2]> {
         let ideal = self.skeleton.ideal_point(&self.members(parts)?)?;
         Some([ideal.mass_kg, ideal.tip_m])

@@ -1,8 +1,8 @@
-//! The least and the most of each number over a set of drives.
+//! The least and the greatest value of each number over a set of drives.
 //!
-//! A set of drives is bounded by two torsion curves, a stiff and a soft one. First the slopes of each member are
-//! made monotonic: *lifted* (each slope is at least the one before) for the stiff bound, *lowered* (each slope is
-//! at most the one after) for the soft bound.
+//! A set of drives is bounded by two torsion curves, a stiff and a soft one. First the slopes of each member are made
+//! monotonic: *lifted* (each slope is raised to at least the slope before it) for the stiff bound, *lowered* (each
+//! slope is reduced to at most the slope after it) for the soft bound.
 //!
 //! The stiff bound has the largest of the lifted slopes and the least of the break points. At every torque it is at
 //! least as steep as each member: the bound enters each segment no later than the member does, and its slope there
@@ -21,7 +21,8 @@ pub(super) struct DriveRange {
     pub stiff: Windup,
     /// A torsion curve that is nowhere stiffer than the curve of any of the drives.
     pub soft: Windup,
-    /// Tilt of the output bearing per moment across the axis, effects included \[rad/(N m)\]; 0 is rigid.
+    /// Tilt of the output bearing \[rad/(N m)\] per moment about an axis at right angles to the joint's axis, effects
+    /// included; 0 is rigid.
     pub tilt_rad_per_nm: Span,
     /// Greatest slope with which any of the drives vibrates \[N m/rad\], where the study lets modes use one slope
     /// at every torque. Infinite if the slope of some drive depends on the torque.

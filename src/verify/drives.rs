@@ -73,7 +73,7 @@ impl DriveOptions {
         Self { level: offers.is_choice.then_some(level), duty: Some(offers.duty.clone()), options }
     }
 
-    /// The same list with only some of its options. `some` has the indices of these options in ascending order.
+    /// A list of some of the options of this list. `some` has the indices of these options in ascending order.
     pub(super) fn only(&self, some: &[u32]) -> Self {
         let options = some.iter().map(|&i| self.options[i as usize].clone()).collect();
         Self { level: self.level, duty: self.duty.clone(), options }
@@ -132,7 +132,7 @@ impl Drives {
         self.tree.options(node).iter().map(|&i| &self.options[i as usize])
     }
 
-    /// Least and greatest numbers of those drives below `node` that may meet a demand of at least `asked`. `None` if no
+    /// Least and greatest numbers of the drives below `node` that may meet a demand of at least `asked`. `None` if no
     /// drive can.
     pub(super) fn holding(&self, node: u32, asked: &Demand) -> Option<DriveRange> {
         if self.tree.options(node).len() > SMALL_SET {

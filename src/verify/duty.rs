@@ -27,7 +27,7 @@ pub(super) struct Duty {
     /// the two is zero: Eq 8 (see docs/sizing.md) can be read in either way, and the study states which one it takes.
     linear_per_inertia: f64,
     linear_per_static: f64,
-    /// Torque of linear acceleration in an emergency stop, divided by that in a ramp.
+    /// Torque of linear acceleration in an emergency stop, divided by the torque of linear acceleration in a ramp.
     pub stop_factor: f64,
     mean: MeanTorque,
     /// Duration of an emergency stop \[s\].
@@ -167,10 +167,11 @@ impl AskedMotion {
         self.tip_speed_m_s / self.ramp_time_s
     }
 
-    /// Whether no torque of a demand and no heat decreases when static torque or inertia grows. Only while the joint
-    /// slows down is the linear torque subtracted from the static torque. If the joint speeds up for at least as long
-    /// as it slows down, speeding up outweighs this: the motor then has its largest torque of the cycle while the joint
-    /// speeds up, and that torque grows at least as fast as any other decreases.
+    /// Whether every torque of a demand and the motor's heat grow, or stay the same, if static torque or inertia
+    /// grows. The linear torque (due to linear acceleration) is subtracted from the static torque only while the joint
+    /// slows down. If the joint speeds up for at least as long as it slows down, speeding up outweighs this: the motor
+    /// then has its largest torque of the cycle while the joint speeds up, and that torque grows at least as fast as
+    /// any other decreases.
     pub fn grows(&self) -> bool {
         let mean = self.mean_torque();
         mean.of_difference <= mean.of_sum

@@ -21,7 +21,7 @@ use nalgebra::Vector3;
 /// rounding.
 const SAME_SIZE: f64 = 1e-9;
 
-/// Widths of gear and motor \[m\]: the largest that a link leaves room for, or those of a drive.
+/// Widths of gear and motor \[m\]: either the largest widths for which a link leaves room, or the widths of a drive.
 pub(super) type Widths = [f64; 2];
 
 /// Widths without a limit: there is no link, or the study asks nothing of it.

@@ -9,8 +9,8 @@ const BETTER_BY: f64 = 1e-7;
 
 /// The designs of a front, sorted by mass, in a form in which the highest frequency among the designs up to a given
 /// mass and deflection is found quickly. `blocks` is a Fenwick tree with positions counted from 1. The block at
-/// position `i` consists of the last `i & -i` designs up to the `i`-th: their deflections in ascending order, each with
-/// the highest frequency of those designs of the block that deflect no more.
+/// position `i` consists of the last `i & -i` designs up to the `i`-th: their deflections in ascending order, each
+/// with the highest frequency among the designs of the block that deflect at most as far.
 pub(super) struct FrontIndex {
     masses_kg: Vec<f64>,
     blocks: Vec<Vec<(f64, f64)>>,

@@ -10,7 +10,7 @@ use std::time::Instant;
 /// complete.
 const MOST_DESIGNS: usize = 200_000;
 
-/// Number of boxes that a search has bounded, and number of those that it left open.
+/// Number of boxes that a search has bounded, and number of boxes that it left open.
 #[derive(Default)]
 pub(super) struct Found {
     pub boxes: u64,

@@ -42,8 +42,8 @@ pub(super) struct CycleShares {
     /// this fraction.
     pub travel: f64,
     pub ramp_down: f64,
-    /// Rest, weighted with the square of its fraction of the static torque in the same way; 0 if a brake holds the
-    /// joint.
+    /// Rest. A phase with a stated fraction of the static torque is weighted with the square of this fraction. 0 if a
+    /// brake holds the joint.
     pub rest: f64,
 }
 
@@ -113,7 +113,8 @@ impl MotorHeat {
         }
     }
 
-    /// Whether each number is at most that of `other`, so that this motor passes whenever the other one does.
+    /// Whether each number is at most the same number of `other`, so that this motor passes whenever the other one
+    /// does.
     pub(super) fn covers(&self, other: &Self) -> bool {
         self.driving <= other.driving
             && self.driven <= other.driven
@@ -186,8 +187,9 @@ impl StatedPhase {
     }
 }
 
-/// The phases of a stated duty. A phase at half the speed of the one after or before it, within 5 % because speeds are
-/// printed with few digits, is taken as the ramp between rest and that speed. With a brake, phases at rest need no motor torque and are left out.
+/// The phases of a stated duty. A phase at half the speed of the phase after or before it is taken as the ramp between
+/// rest and that speed. A speed counts as half if it differs from half by less than 5 %, because speeds are printed
+/// with few digits. With a brake, phases at rest need no motor torque and are left out.
 pub(super) fn stated_phases(duty: &[AskedDutyPhase], has_brake: bool) -> Vec<StatedPhase> {
     let whole_s: f64 = duty.iter().map(|phase| phase.time_s).sum();
     let full_rad_s = |place: usize| duty[place % duty.len()].speed_rpm * PI / 30.0;

@@ -1,8 +1,8 @@
 //! Evaluation of one design by the full model, with all checks and limits.
 //!
-//! The arm of a design is built from the question's own numbers and the catalog rows of its drives. Statics and
-//! modes are those of `mechanics`, the full model that `armwright analyze` uses. The demands on drives and tubes
-//! are computed by this folder, with each weight known exactly.
+//! The arm of a design is built from the question's own numbers and the catalog rows of its drives. Statics and modes
+//! are computed by `mechanics`, the full model that `armwright analyze` uses. The demands on drives and tubes are
+//! computed by this folder, with each weight known exactly.
 
 use super::bound::Members;
 use super::carriers::carriers;
@@ -71,8 +71,8 @@ impl<'q> Judge<'q> {
         self.question
     }
 
-    /// Judges a design. `None` if it fails a check or a limit, if it is not a design of the question, or if a joint
-    /// with the first-fit rule names another drive than the lightest that passes.
+    /// Judges a design. `None` if it fails a check or a limit, if it is not a design of the question, or if `picks`
+    /// names a drive for a joint with the first-fit rule that is not the lightest drive that passes.
     ///
     /// A torque that exceeds a rating by less than 1e-9 (relative) still passes, and so does a stress that close to
     /// its limit.
@@ -132,7 +132,7 @@ impl<'q> Judge<'q> {
     }
 
     /// Checks from the tip inward whether every drive meets the demand of everything outboard of it. Returns the parts
-    /// of the design: those in `picks`, and for each joint with the first-fit rule the lightest drive that passes.
+    /// of the design: the parts in `picks`, and for each joint with the first-fit rule the lightest drive that passes.
     /// `None` if a drive or a tube fails.
     fn with_drives(&self, picks: &[Pick], tubes: &[TubeRange]) -> Option<Vec<Pick>> {
         let pieces = self.question.pieces.iter().enumerate();
@@ -169,7 +169,8 @@ impl<'q> Judge<'q> {
             (false, _) => offers.first_fit(&least)?,
         };
         if !offers.is_choice {
-            // a drive before it in the list must not surely pass, or it would be the first that fits
+            // no drive before it in the list may carry even the greatest demand, because that drive would be the
+            // first fit
             let before = offers.offers.iter().take_while(|other| *other != offer);
             before.into_iter().all(|other| !other.ratings.hold(&most)).then_some(())?;
         }

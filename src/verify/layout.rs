@@ -1,9 +1,9 @@
 //! Where joints, tubes and masses are in a pose, and how each coordinate moves a point.
 //!
-//! The coordinates are the angle of torsion of each joint, its tilts about two axes across, the springs of effects
-//! and of prismatic joints and, for each tube, constant and linear curvature in both planes, and constant shear,
-//! torsion and stretch. The full model has all of these, and more. A model with fewer ways to deform is stiffer, so
-//! its lowest mode is no lower than that of the full model.
+//! The coordinates are the angle of torsion of each joint, its tilts about two axes at right angles to the joint's
+//! axis, the springs of effects and of prismatic joints and, for each tube, constant and linear curvature in both
+//! planes, and constant shear, torsion and stretch. The full model has all of these, and more. A model with fewer ways
+//! to deform is stiffer, so its lowest mode is at least as high as the lowest mode of the full model.
 
 use crate::arm::LinkModel;
 use crate::arm::body::RigidBody;
@@ -51,7 +51,7 @@ pub(super) struct PlacedMass {
     /// Vector from the point `carrier` to the centre of mass \[m\].
     pub arm_m: Vector3<f64>,
     pub mass_kg: f64,
-    /// Inertia about the centre of mass, in axes of the world \[kg m²\].
+    /// Inertia about the centre of mass, in the axes of the world \[kg m²\].
     pub inertia_kgm2: Matrix3<f64>,
 }
 
@@ -148,8 +148,8 @@ impl Layout {
         layout
     }
 
-    /// Adds the springs on which the arm stands, such as those of a base that tilts. They are inboard of the first
-    /// piece, although the list has them after the springs of that piece.
+    /// Adds the springs on which the arm stands, such as the springs of a base that tilts. They are inboard of the
+    /// first piece, although the list has them after the springs of that piece.
     fn add_base(&mut self, structure: &Structure) {
         let fixed = structure.base_frame.springs();
         let level = [Vector3::x(), Vector3::y()].map(|axis| (axis, structure.base_tilt_rad_per_nm));
@@ -336,11 +336,11 @@ impl Shape {
 pub(super) enum Coordinate {
     /// Angle of torsion of a joint.
     Joint(usize),
-    /// Tilt of a joint's bearing about one of the two axes across the joint's axis.
+    /// Tilt of a joint's bearing about one of two axes at right angles to the joint's axis.
     Tilt(usize, usize),
-    /// Displacement of everything outboard of a joint along one of the two axes across the joint's axis, or along the
-    /// joint's axis (index 2). The arm does not deform in this way: the motion is a virtual one, from which forces
-    /// follow.
+    /// Displacement of everything outboard of a joint along one of two axes at right angles to the joint's axis, or
+    /// along the joint's axis (index 2). The arm does not deform in this way: the motion is a virtual one, from which
+    /// forces follow.
     Shift(usize, usize),
     /// Deformation of a tube in one shape.
     Tube(usize, Shape),
@@ -348,8 +348,8 @@ pub(super) enum Coordinate {
     Spring(usize),
 }
 
-/// All coordinates (ways to deform) of an arm, those of the joints first. `model` tells which deformations of links
-/// count, and `tilting` tells for each joint whether its bearing may tilt.
+/// All coordinates (ways to deform) of an arm, the coordinates of the joints first. `model` tells which deformations
+/// of links count, and `tilting` tells for each joint whether its bearing may tilt.
 pub(super) fn coordinates(layout: &Layout, model: LinkModel, tilting: &[bool]) -> Vec<Coordinate> {
     let shapes: &[&[Shape]] = match model {
         LinkModel::Rigid => &[],

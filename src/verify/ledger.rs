@@ -97,8 +97,8 @@ impl<'s> Ledger<'s> {
         found
     }
 
-    /// The bytes of the state. The designs are read after the branches, so that those of every finished branch are
-    /// among them.
+    /// The bytes of the state. The finished branches are read first and the designs after them, so that the designs
+    /// found in every finished branch are included.
     fn bytes(&self, halt: &Halt) -> Vec<u8> {
         let boxes = self.done().boxes.clone();
         let designs = halt.designs.lock().unwrap_or_else(PoisonError::into_inner).clone();

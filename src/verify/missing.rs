@@ -42,8 +42,7 @@ pub struct Looked {
 
 /// Checks whether the verifier's bounds are valid for a question.
 ///
-/// # Errors
-/// A sentence that names what the bounds do not take into account.
+/// If they are not valid, a sentence that names what the bounds do not take into account.
 pub fn conditions(question: &Question) -> Result<(), String> {
     match question.motion.grows() {
         true => Ok(()),
@@ -68,8 +67,8 @@ impl Judge<'_> {
         self.missing_since(&Ledger::default(), front, settings, (stop, deadline))
     }
 
-    /// As [`missing`](Self::missing), without the branches that are finished in `ledger`. The ledger must be of the
-    /// same question and the same front.
+    /// Does the same as [`missing`](Self::missing), but skips the branches that are finished in `ledger`. The ledger
+    /// must be of the same question and the same front.
     pub fn missing_since(
         &self,
         ledger: &Ledger,
@@ -118,8 +117,8 @@ impl Judge<'_> {
         drives.chain(tubes).try_fold(1u128, |product, options| product.checked_mul(options as u128))
     }
 
-    /// Judges designs by the full model. Returns those that pass all checks and limits and that no design of the front
-    /// dominates. Each design is given by its options, one for each level.
+    /// Judges designs by the full model. Returns the designs that pass all checks and limits and that no design of the
+    /// front dominates. Each design in `designs` is given by its options, one for each level.
     fn unbeaten(&self, designs: &[Vec<u32>], front: &FrontIndex) -> Vec<Judged> {
         let judged = designs.par_iter().filter_map(|options| self.judge(&self.picks(options)));
         judged.filter(|design| !front.beats(&design.objectives)).collect()
@@ -145,7 +144,8 @@ impl Judge<'_> {
 }
 
 /// The options of each single design, in ascending order, and a flag that tells whether all ties are listed. If there
-/// are too many, one design of each set of ties is listed.
+/// are too many, one design of each set of ties is listed. A level at which no option surely passes its checks keeps
+/// all of its options, because the first one may fail.
 fn one_by_one(designs: &BTreeSet<Design>) -> (Vec<Vec<u32>>, bool) {
     let count = |design: &Design| design.iter().map(|choice| choice.options.len() as f64).product::<f64>();
     let is_one = |design: &Design| count(design) == 1.0;

@@ -19,11 +19,11 @@
 //!   inertia at its least. It has fewer coordinates than the full model, so its lowest mode is no lower (`pencil`,
 //!   `layout`).
 //!
-//! A box is discarded if no member meets its checks and limits, or if a design of the front dominates every member: it
-//! is no worse in all three objectives and better in one (`front_index`). Otherwise one level of the box is halved
-//! (`search`), until single designs are left. The full model judges these: those that meet all limits and that no
-//! design of the front dominates belong on the front (`judge`). So every design of the question is accounted for.
-//! Either it was judged by itself, or it was in a discarded box and is dominated or fails.
+//! A box is discarded if no member meets its checks and limits, or if a design of the front dominates every member:
+//! this design is no worse in all three objectives and better in one (`front_index`). Otherwise one level of the box
+//! is halved (`search`), until single designs are left. The full model judges these single designs (`judge`). A design
+//! belongs on the front if it meets all limits and no design of the front dominates it. So every design of the
+//! question is accounted for. Either it was judged by itself, or it was in a discarded box and is dominated or fails.
 //!
 //! Very large spaces are searched region by region (`region`).
 

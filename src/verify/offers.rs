@@ -33,7 +33,8 @@ pub(super) struct Offer {
     pub bearing: Option<Bearing>,
     /// Torque-to-twist law of the joint with this gear, effects included.
     pub law: JointLaw,
-    /// Tilt of the output bearing per moment across the axis, effects included \[rad/(N m)\].
+    /// Tilt of the output bearing \[rad/(N m)\] per moment about an axis at right angles to the joint's axis, effects
+    /// included.
     pub tilt_rad_per_nm: f64,
     pub ratings: Ratings,
 }
@@ -47,8 +48,8 @@ pub(super) enum JointOffers {
 /// The drives of the catalogs that a joint may have.
 pub(super) struct CatalogOffers {
     pub duty: Duty,
-    /// Whether the search may choose any drive that meets the demand. Otherwise the joint takes the lightest one
-    /// that does.
+    /// Whether the search may choose any drive that meets the demand. Otherwise the joint takes the lightest drive
+    /// that meets it.
     pub is_choice: bool,
     /// The drives, lightest first. Drives of equal mass are ordered by the names of gear and motor.
     pub offers: Vec<Offer>,
@@ -173,7 +174,8 @@ fn torsion_curve(gear: &Gear, joint: &AskedJoint) -> Option<Windup> {
         let own = stiffness? * (1.0 / (1.0 + share));
         Some(if before > 0.0 { 1.0 / (1.0 / own + before) } else { own })
     };
-    // K1 alone, or equal slopes without break points, are a straight line; its break points may be chosen at will
+    // K1 alone, or three equal slopes with a blank break point, make a straight line: its break points have no
+    // effect, so any two serve
     let [k1, k2, k3] = [gear.k1_nm_per_rad, gear.k2_nm_per_rad, gear.k3_nm_per_rad];
     let breaks = gear.t1_nm.is_some() as usize + gear.t2_nm.is_some() as usize;
     let one_line = (k2.is_none() && k3.is_none() && breaks == 0) || (k1 == k2 && k2 == k3 && breaks < 2);

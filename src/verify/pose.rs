@@ -152,7 +152,7 @@ impl Carried {
 }
 
 impl<'a> Builder<'a> {
-    /// Collects the inputs of a case. `coordinates` are those over which its inertia matrices are made.
+    /// Collects the inputs of a case. Its inertia matrices will be made over `coordinates`.
     pub(super) fn new(
         question: &Question,
         structure: &Structure,
@@ -172,7 +172,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The same inputs with the coordinates `coordinates` for the inertia matrices.
+    /// These inputs, but with the coordinates `coordinates` for the inertia matrices.
     pub(super) fn with_coordinates(&self, coordinates: &'a [Coordinate]) -> Self {
         Self { coordinates, ..*self }
     }
@@ -214,8 +214,9 @@ impl Builder<'_> {
         carried.along(false, &joint.axis)
     }
 
-    /// Displacement of the tip if the bearing of `joint` had a compliance of one: the moments about both axes across,
-    /// each times the displacement of the tip per tilt about this axis.
+    /// Displacement of the tip if the bearing of `joint` had a compliance of 1 rad/(N m). The joint's two axes of tilt
+    /// are at right angles to its own axis. The moment about each axis of tilt is multiplied by the displacement of
+    /// the tip per tilt about this axis.
     fn by_tilt(&self, joint: usize) -> LinearVector {
         let joint = &self.layout.joints[joint];
         let carried = self.carried(&Point { at_m: joint.at_m, rank: joint.rank, inside_m: None });

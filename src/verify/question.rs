@@ -153,7 +153,8 @@ pub enum AskedDrive {
 /// The parts of the catalogs that a joint may use. `None` in a field allows all.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AllowedParts {
-    /// Which of the two catalog masses of a gear is used: that of its housed unit or that of its component set.
+    /// Which of the two catalog masses of a gear is used: the mass of its housed unit or the mass of its component
+    /// set.
     pub gear_mass: GearMass,
     /// Allowed series of gears.
     pub gear_series: Option<Vec<String>>,

@@ -1,7 +1,7 @@
-//! What loads a drive can take, computed from its catalog rows (Eqs 7-12; docs/sizing.md, "The checks").
+//! The loads that a drive can bear, computed from its catalog rows (Eqs 7-12; docs/sizing.md, "The checks").
 //!
 //! Speed and duty cycle of a joint are fixed, so every check of a drive compares one torque with one number. The
-//! torques are those of [`Quantity`]. Each check is an entry of [`CHECKS`], which says which quantity it limits and
+//! torques are listed in [`Quantity`]. Each check is an entry of [`CHECKS`], which says which quantity it limits and
 //! to what value. A further check is one more entry. A further torque is one more quantity, and [`Duty::demand`]
 //! computes its value.
 //!
@@ -173,7 +173,7 @@ fn actuator_stop_nm(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<f64> {
 fn bears_the_stops(gear: &Gear, duty: &Duty) -> bool {
     let waves = 2.0 * input_rpm(gear, duty.speed_rad_s) / 60.0 * duty.stop_s;
     let has_waves = gear.kind == GearKind::StrainWave;
-    // the study states a whole number, and the speed has gone through rad/s
+    // the margin is for rounding: the speed was converted to rad/s and back to rpm
     duty.emergency_stops.is_none_or(|stops| !has_waves || stops * waves.max(1.0) <= 1e4 * (1.0 + 1e-9))
 }
 

@@ -7,8 +7,8 @@ pub struct Settings {
     pub regions_from: u128,
     /// A region is searched box by box as soon as it has at most this many designs.
     pub boxes_to: f64,
-    /// Relative step of the grid on which the front is thinned before regions are computed: of several designs in a
-    /// cell one is used. 0 uses all.
+    /// Relative step of the grid on which the front is thinned before regions are computed: only one of the designs in
+    /// each cell of the grid is used. With a step of 0 all designs are used.
     pub apart: f64,
 }
 

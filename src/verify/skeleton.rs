@@ -130,8 +130,8 @@ impl Skeleton {
     }
 }
 
-/// The first tube between each joint and the next, base to tip, as an index into the list of links with weight along
-/// their length. `None` if there is no tube between them.
+/// The first tube between each joint and the next joint, base to tip, as an index into the list of links with weight
+/// along their length. `None` if there is no tube between the two joints.
 fn first_tubes(question: &Question) -> Vec<Option<usize>> {
     let mut first: Vec<Option<usize>> = Vec::new();
     let mut tubes = 0;

@@ -32,7 +32,7 @@ pub(super) struct TubeNumbers {
     /// Stress divided by the strength, per unit of each internal load, in the order of [`STRESSES`] \[1/N, 1/(N m)\];
     /// zero if the strength is unknown.
     pub stresses: [f64; STRESSES],
-    /// 1 for a round tube, 0 for a rectangular one.
+    /// 1 for a round section whose strength is known, 0 for any other.
     pub round: f64,
     /// Half the width of the tube along the axis of the joint next to its root \[m\]; zero if it does not start at
     /// a joint.
@@ -115,7 +115,7 @@ impl TubeOptions {
         })
     }
 
-    /// The same list with only some of its options. `some` has the indices of these options in ascending order.
+    /// A list of some of the options of this list. `some` has the indices of these options in ascending order.
     pub(super) fn only(&self, some: &[u32]) -> Self {
         Self { tubes: some.iter().map(|&i| self.tubes[i as usize].clone()).collect(), ..*self }
     }
@@ -165,8 +165,8 @@ fn half_width_m(piece: &LinkPiece, direction: &Vector3<f64>) -> f64 {
 }
 
 /// The position of a tube in the space in which the tree puts similar tubes together: logarithms of its mass, both
-/// bending stiffnesses and its torsional stiffness. Those of mass and torsional stiffness are multiplied by a factor
-/// (1.5 and 0.3).
+/// bending stiffnesses and its torsional stiffness. The logarithms of mass and torsional stiffness are multiplied by
+/// the factors 1.5 and 0.3.
 fn keys(tube: &TubeNumbers) -> Vec<f64> {
     let [bending_y, bending_z, _, torsion, _] = tube.stiffnesses.map(libm::log);
     vec![1.5 * libm::log(tube.mass_kg), bending_y, bending_z, 0.3 * torsion]

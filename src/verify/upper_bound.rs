@@ -4,7 +4,8 @@
 use super::bound::{IdealPoint, ROUNDING};
 use super::modes::eigenvalue_of;
 
-/// A local upper bound. A design is below it if it is no heavier, deflects no more, and its lowest mode is no lower.
+/// A local upper bound: a mass, a deflection and a frequency. A design is below it if its mass and its deflection are
+/// at most, and its lowest mode is at least, these values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct UpperBound {
     pub mass_kg: f64,

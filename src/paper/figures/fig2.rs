@@ -140,7 +140,7 @@ fn ends(values: &[f64]) -> (f64, f64) {
     (values.first().copied().unwrap_or(f64::NAN), values.last().copied().unwrap_or(f64::NAN))
 }
 
-/// By how much the stiffness per weight of the largest section exceeds that of the smallest.
+/// Stiffness per weight of the largest section, minus the stiffness per weight of the smallest section.
 fn rise(points: &[BeamPoint]) -> f64 {
     let values: Vec<f64> = points.iter().map(BeamPoint::stiffness_per_weight).collect();
     let (first, last) = ends(&values);

@@ -16,7 +16,8 @@ use crate::report::table::{Column, Table};
 pub const MATERIAL: &str = "Aluminium 6082-T6";
 /// Outer sizes for which the wall is thickened step by step \[m\].
 const THICKENED_M: [f64; 3] = [0.07, 0.10, 0.13];
-/// Largest weight per length of the thickened sections, divided by that of the section with the largest outer size.
+/// Largest weight per length of the thickened sections, divided by the weight per length of the section with the
+/// largest outer size.
 const WEIGHT_SHOWN: f64 = 1.1;
 
 /// A section that is made heavier by the same factor in two ways: with larger outer dimensions, and with a thicker

@@ -16,8 +16,8 @@ use super::weights::{Member, Reduced};
 /// Smallest score for which a level or torque is branched, as a fraction of what the upper bound allows. If no
 /// score is larger, the level with the most options is branched.
 const WORTH_IT: f64 = 1e-4;
-/// If a row's value for the mixture is within this distance of zero (its limit), [`EXTRA_WEIGHT`] is added to the weight of the
-/// row in the score.
+/// If a row's value for the mixture is within this distance of zero (its limit), [`EXTRA_WEIGHT`] is added to the
+/// weight of the row in the score.
 const NEAR_LIMIT: f64 = 0.2;
 const EXTRA_WEIGHT: f64 = 0.1;
 /// A member with a smaller weight in the mixture than this has no influence on the torque at which an interval is
@@ -32,8 +32,8 @@ const EDGE_SHARE: f64 = 0.1;
 /// One way to divide a subproblem in two.
 pub(super) enum Branching {
     /// Divides the options of a part (joints are numbered before tubes) by a value: the sum of an option's numbers
-    /// times `per_number`. Options with a value up to `at` make one half, the others the second. Without `at` the
-    /// halves have equal numbers of options.
+    /// times `per_number`. Options with a value of at most `at` make the first half, the remaining options the second.
+    /// Without `at` the halves have equal numbers of options.
     Options {
         part: usize,
         per_number: Vec<f64>,
@@ -82,9 +82,9 @@ impl Rows<'_> {
         between
     }
 
-    /// Score of a division by the options of a part, and this division. The score says how much the members of the
-    /// mixture differ in what the part adds to the rows. The options are divided by their value in the row in which the
-    /// members differ most. `between` are the numbers of the mixture.
+    /// The branching that divides the options of `part`, with its score. The score says how much the members of the
+    /// mixture differ in what the part adds to the rows. The options are divided by what they add to one row: the row
+    /// in which the members differ most. `between` are the numbers of the mixture.
     fn by_options(
         &self,
         part: usize,
@@ -122,8 +122,8 @@ impl Rows<'_> {
         }
     }
 
-    /// Weight of a row in the score of a branching: its multiplier, and [`EXTRA_WEIGHT`] more if the mixture, with the numbers
-    /// `between`, is close to the row's limit. Rows of torque intervals have weight zero.
+    /// Weight of a row in the score of a branching: its multiplier, and [`EXTRA_WEIGHT`] more if the mixture, with
+    /// the numbers `between`, is close to the row's limit. Rows of torque intervals have weight zero.
     fn says(&self, row: usize, between: &[f64], left: &Reduced) -> f64 {
         let near = self.rows[row].value(between) > -NEAR_LIMIT;
         match (self.first_interval..self.first_mode).contains(&row) {
@@ -306,8 +306,9 @@ impl Subproblem {
     }
 }
 
-/// Divides `options` into those whose `value` is at most `at` and the others. If one of the two lists would be empty,
-/// the options are sorted by their value and divided into equal halves. `None` if there is only one option.
+/// Divides `options` into two lists: the options whose `value` is at most `at`, and the remaining ones. If one list
+/// would be empty, the options are sorted by their value and divided into equal halves. `None` if there is only one
+/// option.
 fn halved(options: &[u32], value: impl Fn(&u32) -> f64, at: Option<f64>) -> Option<[Vec<u32>; 2]> {
     let (mut low, mut high): (Vec<u32>, Vec<u32>) =
         options.iter().partition(|option| at.is_some_and(|at| value(option) <= at));

@@ -4,15 +4,15 @@
 //! `t + μ (Σ log(A w - t) + Σ log w)` while `μ` is reduced. The fractions `μ / (A w - t)` of the rows are the dual
 //! solution.
 //!
-//! The simplex method is not used, for three reasons. Weights near the optimum give bounds that are as good.
-//! Weights from the centre exclude more options than weights at a vertex. And the search already uses the simplex
-//! method, so that the verifier uses another one.
+//! The simplex method is not used, for three reasons. Weights near the optimum give bounds that are as good. Weights
+//! from the centre exclude more options than weights at a vertex. And the verifier should use another method than the
+//! search, which uses the simplex method.
 
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
-/// Barrier parameter `μ` before the first stage, which already uses [`BARRIER_FACTOR`] times this value. It is also how far `t`
-/// starts below the least row sum.
+/// Barrier parameter `μ` before the first stage; the first stage already uses [`BARRIER_FACTOR`] times this value.
+/// `t` starts below the least row sum by the same number.
 const FIRST_BARRIER: f64 = 0.3;
 /// Factor by which `μ` is reduced from stage to stage.
 const BARRIER_FACTOR: f64 = 0.2;
@@ -28,7 +28,7 @@ const LARGEST_WEIGHT: f64 = 3.0;
 const SHORT_OF: f64 = 0.95;
 
 /// Weights of the columns, and fractions of the rows in a mixture (the dual solution). The fractions add up to one.
-/// So do the weights of those columns that are not conditions.
+/// The weights of the columns that are not conditions add up to one, too.
 pub(super) struct Minimax {
     pub weights: Vec<f64>,
     pub shares: Vec<f64>,
@@ -38,9 +38,10 @@ pub(super) struct Minimax {
 
 /// The weights of the columns for which the smallest weighted row sum is greatest.
 ///
-/// The sum of the weights, which is one, does not include the weights of conditions. Each of these is at most [`LARGEST_WEIGHT`]
-/// instead. Conditions come in pairs of opposite sign (a torque is at least a value, and at most another). If the sum
-/// included them, equal weights on both columns of a pair would use up a part of it without any effect.
+/// The sum of the weights, which is one, does not include the weights of conditions. Each of these is at most
+/// [`LARGEST_WEIGHT`] instead. Conditions come in pairs of opposite sign (a torque is at least a value, and at most
+/// another). If the sum included them, equal weights on both columns of a pair would use up a part of it without any
+/// effect.
 pub(super) fn solve(rows: &[Vec<f64>], conditions: Range<usize>) -> Minimax {
     let (count, width) = (rows.len(), rows[0].len());
     let is_counted = |column: &usize| !conditions.contains(column);

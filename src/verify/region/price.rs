@@ -66,8 +66,8 @@ pub(super) fn cheapest(table: &TubeTable, nodes: &[u32], prices: &Prices) -> (f6
 }
 
 /// About `about` nodes that together contain every tube below `nodes` that is cheap enough under all sets of prices in
-/// `limits`. With each set comes the greatest price that a tube may have under it. The nodes with the most tubes are
-/// divided first.
+/// `limits`. Each set of prices comes with the greatest price that a tube may have under these prices. The nodes with
+/// the most tubes are divided first.
 pub(super) fn affordable(
     table: &TubeTable,
     nodes: &[u32],

@@ -36,8 +36,8 @@ use nalgebra::Vector3;
 /// Margin for rounding in the rows of torque intervals (relative).
 const ROUNDING: f64 = 1e-9;
 
-/// An inequality that every member below the upper bound satisfies: a linear function of the numbers of all parts
-/// is not positive.
+/// An inequality that every member below the upper bound satisfies: a linear function of the numbers of all parts is
+/// at most zero.
 pub(super) struct Row {
     pub per_number: Vec<f64>,
     pub fixed: f64,

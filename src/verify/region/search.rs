@@ -24,7 +24,8 @@ const WORTH_IT: f64 = 0.3;
 
 /// The inputs of a search, except the parts.
 pub(in super::super) struct Work<'s> {
-    /// The designs of the front. `index` finds the highest frequency among those up to a given mass and deflection.
+    /// The designs of the front. `index` finds the highest frequency among the designs up to a given mass and
+    /// deflection.
     pub front: &'s [Objectives],
     pub index: &'s FrontIndex,
     pub settings: Settings,
@@ -39,7 +40,7 @@ pub(in super::super) struct RegionSearch<'s> {
     work: &'s Work<'s>,
 }
 
-/// The result of reducing the options of a subproblem.
+/// How the reduction of the options of a subproblem ended.
 enum Narrowed {
     /// The subproblem is done: it is proved that no member is below the upper bound.
     Refuted,

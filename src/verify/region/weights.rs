@@ -1,9 +1,9 @@
 //! Weighted sums of a subproblem's rows (surrogate constraints).
 //!
-//! With non-negative weights, a weighted sum of the rows is not positive for any member below the upper bound. The
-//! least value of this sum over all members is found part by part. If it is positive, no member lies below the
-//! upper bound. Otherwise the distance of this least value from zero tells which options are too expensive for any
-//! member (reduced costs).
+//! With non-negative weights, a weighted sum of the rows is at most zero for every member below the upper bound. The
+//! least value of this sum over all members is found part by part. If it is positive, no member lies below the upper
+//! bound. Otherwise the distance of this least value from zero tells which options are too expensive for any member
+//! (reduced costs).
 
 use super::matrix_game::{Minimax, solve};
 use super::price::{Prices, affordable, cheapest};
@@ -25,7 +25,7 @@ const WEIGHT_CONVERGENCE: f64 = 5e-4;
 const LARGEST_ROW: f64 = 10.0;
 /// Margin for rounding in sums whose terms are about one.
 pub(super) const ROUNDING: f64 = 1e-9;
-/// Number of weightings that are used to exclude options: those with the greatest least sums.
+/// Number of weightings that are used to exclude options: the weightings with the greatest least sums.
 const WEIGHTINGS_USED: usize = 12;
 /// Approximate number of nodes into which the tubes of a link are divided when options are excluded.
 const NODES_PER_LINK: usize = 128;
@@ -38,8 +38,8 @@ struct Surrogate {
     parts: Vec<f64>,
 }
 
-/// The cheapest member under a weighting, as the numbers of its parts. It need not be a design, because each gear
-/// may have the twist of another torque than the masses cause.
+/// The cheapest member under a weighting, as the numbers of its parts. It need not be a design, because the twist of a
+/// gear may belong to a torque other than the one that the masses cause.
 pub(super) struct Member {
     pub numbers: Vec<f64>,
     /// Index of the drive of each joint.
@@ -115,8 +115,8 @@ impl Rows<'_> {
         (Surrogate { weights, least, parts }, Member { numbers, drives })
     }
 
-    /// The weights with which the search of a subproblem starts: those with which its parent ended, or equal weights if
-    /// it has no parent.
+    /// The weights with which the search of a subproblem starts: the weights with which its parent ended, or equal
+    /// weights if it has no parent.
     fn inherited(&self, subproblem: &Subproblem) -> Vec<f64> {
         let mut weights = subproblem.weights.clone();
         weights.resize(self.first_mode, 0.0);
@@ -160,8 +160,8 @@ impl Rows<'_> {
             }
             weights = minimax.weights;
         };
-        // weightings of a single row; those of mass and tip displacement were tried for the parent already, if there is
-        // one
+        // each row by itself, with weight 1; a subproblem with a parent leaves out the rows of mass and tip
+        // displacement, which were tried for the parent already
         let first = if subproblem.weights.is_empty() { 0 } else { self.first_interval };
         let singles = (first..self.first_mode).map(|row| {
             let mut weights = vec![0.0; self.rows.len()];
@@ -184,8 +184,8 @@ impl Rows<'_> {
         })
     }
 
-    /// Indices of the rows of torque intervals. These rows come in pairs of opposite sign, so the sum of the weights,
-    /// which is one, does not include theirs.
+    /// Indices of the rows of torque intervals. These rows come in pairs of opposite sign, so the weights of these
+    /// rows are not counted in the sum of the weights, which is one.
     fn conditions(&self) -> Range<usize> {
         self.first_interval..self.first_mode
     }
