@@ -34,11 +34,17 @@ use crate::arm::Arm;
 use serde_json::Value;
 use std::cell::OnceCell;
 
+/// Poses that are held out together are the only ones that show an effect if the right model leaves more than this on them
+/// \[standard deviations\].
+const SHOWN_BY_ONE_FOLD: f64 = 1.5;
 /// An effect is only suspected if it raises the natural logarithm of the evidence by less than this. Such evidence is
 /// not yet strong (Kass and Raftery 1995, table of Bayes factors).
 const WEAK_EVIDENCE: f64 = 3.0;
 /// Reason that is written for the verdict `no_gap`.
 const NOTHING_MISSING: &str = "noise and calibration within tolerance explain every reading";
+/// Reason that is added to the verdict `explained` if held-out poses cannot confirm it.
+const ONE_FOLD_ALONE: &str = "one pose alone shows an effect, so that poses held out of the fit cannot confirm it: repeat the test \
+    that shows it in another pose";
 /// Reason that is written for the verdict `no_gap` if a calibrated factor is outside its tolerance.
 const BEYOND_TOLERANCE: &str = "noise and calibration explain every reading, but not within tolerance";
 
@@ -79,6 +85,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     };
     let without = is_weak(&found.selection).then(|| lack_of_fit(campaign, &forward, &baseline, &weights));
     let left_out = [&baseline, &best].map(|f| held_out::residuals(&forward, &f.model, &f.point.u, &weights));
+    let expected_rms = held_out::expected_rms(&forward, &best, &weights);
     let analysis = Analysis {
         campaign,
         forward: &forward,
@@ -97,6 +104,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         without,
         ends: OnceCell::new(),
         left_out,
+        expected_rms,
     };
     analysis.conclude()
 }
@@ -179,6 +187,8 @@ struct Analysis<'a> {
     /// 95 % intervals of the parameters of the best model's effects. They are computed when they are first asked for.
     ends: OnceCell<Vec<Interval>>,
     left_out: [Vec<Option<f64>>; 2],
+    /// Root mean square that the residuals of held-out poses have if the best model is right.
+    expected_rms: f64,
 }
 
 /// The corrected arm, and what was changed in it: calibrated factors and laws without a name.
@@ -194,6 +204,9 @@ impl Analysis<'_> {
     fn conclude(self) -> Outcome {
         let held_out = self.held_out();
         let (verdict, mut reasons) = self.verdict(&held_out);
+        if verdict == Verdict::Explained && self.shows_in_one_fold() {
+            reasons.push(ONE_FOLD_ALONE.to_string());
+        }
         if matches!(verdict, Verdict::Explained | Verdict::Unexplained) {
             reasons.extend(self.at_a_limit());
         }
@@ -277,12 +290,12 @@ impl Analysis<'_> {
         if self.lack_of_fit.fails {
             return (Verdict::Unexplained, self.left_over());
         }
+        let (tolerances, calibrated) = (fitted::tolerances(&self.best), fitted::calibrated(&self.best));
+        if let Some(text) = caution::impossible_calibration(self.campaign, tolerances, &calibrated) {
+            return (Verdict::Unexplained, vec![text]);
+        }
         if self.best.model.effects.is_empty() {
-            let (tolerances, calibrated) = (fitted::tolerances(&self.best), fitted::calibrated(&self.best));
-            return match caution::impossible_calibration(self.campaign, tolerances, &calibrated) {
-                Some(text) => (Verdict::Unexplained, vec![text]),
-                None => (Verdict::NoGap, vec![NOTHING_MISSING.to_string()]),
-            };
+            return (Verdict::NoGap, vec![NOTHING_MISSING.to_string()]);
         }
         if let Some(better) = &self.unnamed {
             return (Verdict::Unexplained, vec![self.beaten(better)]);
@@ -298,6 +311,9 @@ impl Analysis<'_> {
                 return (Verdict::InsufficientData, vec![text]);
             }
         }
+        // without the poses that alone show an effect nothing is known of it, so nothing can be predicted either
+        let held_out =
+            held_out.filter(|k| !self.shows_in_one_fold() || k.rms_after > TOO_FAR_OFF * self.expected_rms);
         if let Some(k) = held_out.filter(|k| k.rms_after > k.rms_before + 0.02) {
             let [after, before] = [k.rms_after, k.rms_before].map(|rms| format!("{rms:.2} sigma"));
             let text = does_not_predict(&self.best.model.label(), &after, &before);
@@ -417,6 +433,11 @@ impl Analysis<'_> {
             .collect();
         let text = format!("the readings say nothing about {}", blind.join(", "));
         if blind.is_empty() { Vec::new() } else { vec![text] }
+    }
+
+    /// Whether the poses of one fold alone show an effect, so that held-out poses cannot confirm it.
+    fn shows_in_one_fold(&self) -> bool {
+        self.expected_rms > SHOWN_BY_ONE_FOLD
     }
 
     fn held_out(&self) -> Option<HeldOut> {

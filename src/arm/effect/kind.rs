@@ -304,6 +304,9 @@ pub struct Traits {
     /// Finds a contradiction between the values of all parameters, each of which is within its limits. Returns the
     /// problem and the advice; `None` if there is no contradiction.
     pub contradiction: fn(&[f64]) -> Option<(&'static str, &'static str)>,
+    /// Changes fitted numbers that no arm can have, such as amplitudes whose sum is too large, to the nearest that one can
+    /// have.
+    pub bounded: fn(&mut [f64]),
 }
 
 impl Traits {
@@ -325,6 +328,7 @@ impl Traits {
         rotation: None,
         same_at_vertical_first_joint: None,
         contradiction: |_| None,
+        bounded: |_| {},
     };
 }
 

@@ -41,6 +41,7 @@ pub(crate) const KIND: Kind = Kind {
         starts,
         is_nonlinear: true,
         contradiction,
+        bounded,
         ..Traits::USUAL
     },
 };
@@ -52,6 +53,17 @@ fn starts(setting: &Setting) -> Vec<Vec<f64>> {
     match setting.values_at_one.len() {
         2 => PHASES.map(|phase| vec![1.0, phase]).to_vec(),
         _ => PHASES.iter().flat_map(|p| PHASES.map(|r| vec![1.0, 1.0, *p, r])).collect(),
+    }
+}
+
+/// Largest sum of both amplitudes in a fit. It is a little below the sum that an arm file may state.
+const MOST_IN_A_FIT: f64 = 0.949;
+
+/// The numbers with amplitudes whose sum leaves the compliance positive at every angle.
+fn bounded(numbers: &mut [f64]) {
+    let sum = numbers[0] + numbers[1];
+    if sum > MOST_IN_A_FIT {
+        numbers[..2].iter_mut().for_each(|size| *size *= MOST_IN_A_FIT / sum);
     }
 }
 

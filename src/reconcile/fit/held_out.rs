@@ -6,9 +6,10 @@
 //! and a reference reading. Bench rows belong to no pose and stay in every fit, unless there is nothing else: then
 //! every fourth row of the bench is a fold.
 
-use super::descent::{Effort, Weights, descent};
+use super::descent::{Effort, Fit, Weights, descent};
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::Model;
+use nalgebra::{Cholesky, DMatrix};
 use rayon::prelude::*;
 
 /// Number of folds into which the poses are divided. One fold is held out at a time.
@@ -69,6 +70,39 @@ pub(crate) fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &W
         all[i] = Some(r);
     }
     all
+}
+
+/// Root mean square that the residuals of held-out poses have if the model of `fit` is right \[standard deviations of
+/// `weights`\]: 1 if the other poses determine every parameter as well as all do, and much more if an effect shows in the
+/// poses of one fold alone, so that nothing is known of it without them.
+///
+/// To first order, a fit without the data of a fold has the residuals `(I - H)⁻¹ r` on them, with the residuals r of the
+/// full fit and the block `H = M Mᵀ` of its hat matrix, `M = w J L⁻ᵀ`. Their covariance is `(I - H)⁻¹`, and by Woodbury's
+/// formula its diagonal is that of `I + M (I - Mᵀ M)⁻¹ Mᵀ`.
+pub(crate) fn expected_rms(forward: &Forward, fit: &Fit, weights: &Weights) -> f64 {
+    // a parameter that only this fold determines makes I - MᵀM singular; with this it has a large finite variance
+    const RIDGE: f64 = 1e-9;
+    let parameters = fit.curvature.nrows();
+    let identity = DMatrix::<f64>::identity(parameters, parameters);
+    let Some(root) =
+        Cholesky::new(fit.curvature.clone()).and_then(|factor| factor.l().solve_lower_triangular(&identity))
+    else {
+        return 1.0;
+    };
+    let reach = &fit.jacobian * root.transpose();
+    let mut variances = Vec::new();
+    for fold in 0..FOLDS {
+        let is_own = |i: &usize| fold_of(forward, *i) == Some(fold) && weights.inverse[*i] > 0.0;
+        let own: Vec<usize> = (0..forward.data.len()).filter(is_own).collect();
+        let block = DMatrix::from_fn(own.len(), parameters, |row, p| {
+            weights.inverse[own[row]] * reach[(own[row], p)]
+        });
+        let left = &identity * (1.0 + RIDGE) - block.tr_mul(&block);
+        let Some(inverse) = Cholesky::new(left).map(|factor| factor.inverse()) else { return f64::INFINITY };
+        let spread = &block * inverse;
+        variances.extend((0..own.len()).map(|row| 1.0 + spread.row(row).dot(&block.row(row))));
+    }
+    rms(variances.into_iter().map(f64::sqrt))
 }
 
 /// Root mean square of the residuals, in their unit; 0 for an empty list.

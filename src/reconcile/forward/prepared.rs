@@ -34,6 +34,8 @@ pub struct Forward {
     pub groups: Vec<String>,
     /// Density of the payloads \[kg/m³\].
     pub payload_density_kg_m3: f64,
+    /// Tolerance of the joints' stiffnesses: a 95 % limit of their relative deviation.
+    pub(crate) stiffness_tolerance: f64,
     /// The largest stated payload \[kg\].
     pub largest_payload_kg: f64,
     /// The smallest stated payload above zero \[kg\]; infinite if there is none.
@@ -92,6 +94,7 @@ impl Forward {
             starts,
             groups: groups.names,
             payload_density_kg_m3: campaign.statement.payload_density_kg_m3,
+            stiffness_tolerance: campaign.statement.tolerance.joint_stiffness,
             zero_columns: OnceLock::new(),
             level_columns: OnceLock::new(),
             length_columns: OnceLock::new(),

@@ -167,6 +167,7 @@ fn candidate(forward: &Forward, sizes: &Sizes, asked: Asked) -> Candidate {
                 let reference = if parameter.scale == Scale::Torque { torque_nm } else { reference };
                 let free = FreeParameter::new(sized, component, reference);
                 let free = within_torque(free, parameter, torque_nm);
+                let free = within_tolerance(free, parameter, kind, forward.stiffness_tolerance);
                 free_parameters.push(within_rows(free, rows_of_campaign(forward)));
                 numbers.push(Number::Free);
             } else {
@@ -190,6 +191,21 @@ fn candidate(forward: &Forward, sizes: &Sizes, asked: Asked) -> Candidate {
         Setting { torque_nm, twist_rad: torque_nm / reference, rows, values_at_one: &values_at_one };
     let starts = (kind.traits.starts)(&setting);
     Candidate { kind, at, free_parameters, numbers, starts, twins: Vec::new() }
+}
+
+/// Widens the range of a slope of a gear's curve by three standard deviations of the joint's stiffness, whose 95 % limit
+/// is `tolerance`. The curve takes the place of the joint's stiffness, and with it of the calibrated factor, so its slopes
+/// must reach as far.
+fn within_tolerance(
+    free: FreeParameter,
+    parameter: &Parameter,
+    kind: &Kind,
+    tolerance: f64,
+) -> FreeParameter {
+    match kind.traits.is_gear_curve && parameter.scale == Scale::Stiffness {
+        true => free.widened(libm::exp(3.0 * tolerance / 2.0)),
+        false => free,
+    }
 }
 
 /// Limits the range of a torque parameter to fractions of `torque_nm`, the largest torque of the campaign. A torsion

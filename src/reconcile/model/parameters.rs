@@ -84,6 +84,12 @@ impl FreeParameter {
         Self { low, high, expected: (low, high), ..self }
     }
 
+    /// This parameter, sought from the lower limit divided by `factor` to the upper limit times `factor`. What is expected
+    /// of it stays.
+    pub(crate) fn widened(self, factor: f64) -> Self {
+        Self { low: self.low / factor, high: self.high * factor, ..self }
+    }
+
     /// Distance of `u` from its expected range, as a multiple of the range's width; 0 inside the range.
     pub fn beyond_expected(&self, u: f64) -> f64 {
         let (low, high) = self.expected;
@@ -281,7 +287,17 @@ impl Candidate {
             Number::Free => free.next().unwrap_or_default(),
             Number::Stated(value) => *value,
         };
-        self.numbers.iter().map(number).collect()
+        let mut numbers: Vec<f64> = self.numbers.iter().map(number).collect();
+        (self.kind.traits.bounded)(&mut numbers);
+        numbers
+    }
+
+    /// Whether the effect is absent at `u`, because a stiffness that stands for it is as good as infinite.
+    pub(crate) fn is_rigid(&self, u: &[f64]) -> bool {
+        let of_stiffness =
+            |(free, _): &(&FreeParameter, &f64)| free.scale == Scale::Stiffness && free.is_size();
+        let mut sizes = self.free_parameters.iter().zip(u).filter(of_stiffness).peekable();
+        sizes.peek().is_some() && sizes.all(|(free, u)| free.value(*u) >= RIGID_NM_PER_RAD)
     }
 
     /// Values of the fitted parameters at `u`, in their units. A parameter that must not be below another is raised
@@ -307,7 +323,9 @@ impl Candidate {
             .map(|p| {
                 let (own, others) = rest.split_at(p.count.min(rest.len()));
                 rest = others;
-                (p.name.to_string(), own.to_vec())
+                // a stiffness beyond the range of files is as good as rigid
+                let most = if p.scale == Scale::Stiffness { p.high } else { f64::INFINITY };
+                (p.name.to_string(), own.iter().map(|x| x.min(most)).collect())
             })
             .collect();
         Effect { effect: self.kind.name.into(), at: self.at.clone(), parameters, source: None }

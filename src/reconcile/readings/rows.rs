@@ -263,7 +263,7 @@ pub(crate) fn modal_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Moda
             sigma_hz: sigma_hz?,
         })
     });
-    check_duplicates(table, &HashSet::new());
+    check_duplicates(table, &(0..table.rows.len()).collect());
     check_angles(table, &state.motions, rows.iter().map(|r| r.pose_deg.as_slice()));
     rows
 }
@@ -295,7 +295,7 @@ pub(crate) fn windup_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Win
             sigma_arcmin: sigma_arcmin?,
         })
     });
-    check_duplicates(table, &HashSet::new());
+    check_duplicates(table, &(0..table.rows.len()).collect());
     rows
 }
 
@@ -367,8 +367,8 @@ fn each_row<T>(table: &Table, read: impl Fn(usize) -> Option<T>) -> Vec<T> {
 }
 
 /// Reports each row that repeats an earlier row in everything but the label of the test. Such a row is a copying error,
-/// because a repeated test would have noise of its own. The rows `coarse`, in which not all components were measured,
-/// are an exception: a gauge may show the same digits twice, so two such rows with different labels are taken as
+/// because a repeated test would have noise of its own. The rows `coarse`, of which a single number was measured, are an
+/// exception: an instrument may show the same digits twice, so two such rows with different labels are taken as
 /// repeated tests.
 fn check_duplicates(table: &Table, coarse: &HashSet<usize>) {
     let label = table.optional("test");

@@ -48,6 +48,9 @@ const UNDECIDED_FRACTION: f64 = 0.1;
 /// Sizes of effects at which candidates are tried if much is missing, as fractions of the sizes at which their fits
 /// start.
 const TRIED_SIZES: [f64; 3] = [0.1, 0.3, 1.0];
+/// A calibrated factor is far from nominal beyond this \[standard deviations of its tolerance\]. One honest part in
+/// sixteen thousand deviates so far.
+const FAR_CALIBRATED: f64 = 4.0;
 /// If chi-squared of a model is below this fraction of its expectation, the residuals are far below the declared
 /// noise.
 const FAR_BELOW_NOISE: f64 = 0.5;
@@ -243,7 +246,7 @@ impl<'a> Search<'a> {
     /// Models that are in `seen` were fitted before and are copied from there.
     fn extend(&self, base: &Scored, seen: &[Scored]) -> Vec<Scored> {
         let mut screened = self.screen(base);
-        if !self.may_explain(base) {
+        if !self.may_explain(base) || self.is_far_calibrated(base) {
             // a calibration that compensates for missing physics is far from its value with the right effect
             let nominal = self.uncalibrated(base);
             screened.extend(self.screen(&nominal));
@@ -274,6 +277,11 @@ impl<'a> Search<'a> {
         fits.extend(far);
         fits.extend(known);
         fits
+    }
+
+    /// Whether a calibrated factor of the model is so far from its nominal value that something else is probably missing.
+    fn is_far_calibrated(&self, scored: &Scored) -> bool {
+        scored.u[..self.model(&[]).len()].iter().any(|deviation| deviation.abs() > FAR_CALIBRATED)
     }
 
     /// The model `scored` with all calibrated parameters at their nominal values.

@@ -49,6 +49,10 @@ fn add_effects(campaign: &Campaign, forward: &Forward, fit: &Fit, findings: &[Fi
     for (i, (candidate, finding)) in fit.model.effects.iter().zip(findings).enumerate() {
         let first = fit.model.first_parameter(i);
         let u = &fit.point.u[first..first + candidate.free_parameters.len()];
+        // an infinite stiffness is no effect, and no arm file takes it
+        if candidate.is_rigid(u) {
+            continue;
+        }
         let place = forward.nominal.structure.place(&candidate.at, candidate.kind.places);
         let mut effect = candidate.effect(u, place.unwrap_or(Place::Arm));
         let intervals: Vec<Value> = finding
