@@ -26,6 +26,11 @@ pub enum MotorKind {
 }
 
 impl MotorKind {
+    /// Whether the outer size of such a motor is the side of a square flange. That of other motors is a diameter.
+    pub fn has_square_flange(self) -> bool {
+        matches!(self, MotorKind::AcServo | MotorKind::Stepper)
+    }
+
     /// All kinds that `motors.csv` may have, in the order of [`Self::WORDS`].
     pub const ALL: [MotorKind; 7] = [
         MotorKind::AcServo,

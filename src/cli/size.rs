@@ -211,7 +211,12 @@ fn room_words(room: &LinkRoom) -> String {
         true => format!("; the link leaves {:.1} mm to the {part}", m * 1e3),
         false => String::new(),
     };
-    format!("{}{}", part("gear", room.gear_m), part("motor", room.motor_m))
+    let round = room.motor_m == room.square_m;
+    let motors = match round {
+        true => part("motor", room.motor_m),
+        false => part("motor", room.motor_m) + &part("side of a square motor", room.square_m),
+    };
+    part("gear", room.gear_m) + &motors
 }
 
 /// A line with the loads on the output bearing of a joint: at rest, in a ramp and in a stop. Empty if there are none.

@@ -354,7 +354,7 @@ mod tests {
             stop_torque_nm: times(2) * usual.stop_torque_nm,
             mean_torque_cubed_nm3: times(3).powi(3) * usual.mean_torque_cubed_nm3,
             bearing: BearingLimits { running_moment_nm: 100.0 * times(4), ..BearingLimits::NONE },
-            widths: DriveWidths { gear_m: 0.02 * f64::from(of[5]), motor_m: 0.0 },
+            widths: DriveWidths { gear_m: 0.02 * f64::from(of[5]), ..DriveWidths::default() },
             heat: MotorHeat::NONE,
         };
         DriveBox {

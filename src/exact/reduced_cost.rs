@@ -254,7 +254,7 @@ mod tests {
         stop_torque_nm: 0.0,
         mean_torque_cubed_nm3: 0.0,
         bearing: BearingLimits::NONE,
-        widths: DriveWidths { gear_m: 0.0, motor_m: 0.0 },
+        widths: DriveWidths { gear_m: 0.0, motor_m: 0.0, square_m: 0.0 },
         heat: MotorHeat::NONE,
     };
 

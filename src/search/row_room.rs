@@ -19,7 +19,7 @@ enum RoomOf {
     Slot(usize),
     /// The link of the row. Each entry is for a chunk of its options: the largest outer diameters \[m\] of the gear and
     /// of the motor, for eight options.
-    Chunk(Vec<[Eight; 2]>),
+    Chunk(Vec<[Eight; 3]>),
 }
 
 impl RowRoom {
@@ -45,12 +45,12 @@ impl RowRoom {
         &self,
         problem: &ArmProblem,
         (from, chunk): (&Partial, usize),
-    ) -> Option<[V; 2]> {
+    ) -> Option<[V; 3]> {
         match &self.of {
-            RoomOf::Chunk(chunks) => Some([V::load(&chunks[chunk][0]), V::load(&chunks[chunk][1])]),
+            RoomOf::Chunk(chunks) => Some(std::array::from_fn(|part| V::load(&chunks[chunk][part]))),
             RoomOf::Slot(slot) => {
                 let room = problem.rooms()[*slot].as_ref()?.of(&from.options);
-                Some([V::splat(room.gear_m), V::splat(room.motor_m)])
+                Some([V::splat(room.gear_m), V::splat(room.motor_m), V::splat(room.square_m)])
             }
         }
     }
@@ -58,11 +58,11 @@ impl RowRoom {
 
 /// Largest outer diameters \[m\] that each option of the link leaves for the gear and for the motor, eight options in a
 /// chunk. The last chunk is filled up with copies of the last option.
-fn chunks(room: &RoomAtJoint) -> Vec<[Eight; 2]> {
+fn chunks(room: &RoomAtJoint) -> Vec<[Eight; 3]> {
     let of = |option: usize| room.rooms[option.min(room.rooms.len() - 1)];
     let eight = |chunk: usize| {
         let rooms: [_; LANES] = std::array::from_fn(|lane| of(LANES * chunk + lane));
-        [rooms.map(|room| room.gear_m), rooms.map(|room| room.motor_m)]
+        [rooms.map(|room| room.gear_m), rooms.map(|room| room.motor_m), rooms.map(|room| room.square_m)]
     };
     (0..room.rooms.len().div_ceil(LANES)).map(eight).collect()
 }

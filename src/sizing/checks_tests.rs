@@ -276,7 +276,7 @@ proptest! {
         let demand = motion
             .demand_of_torques(torques[0], torques[1])
             .with_bearing(bearing_loads(torques[2]))
-            .with_room(motion.fit.room(link_m[0], link_m[1]));
+            .with_room(motion.fit.room(link_m[0], [link_m[1], 0.8 * link_m[1]]));
         let checks = checks(&drive, &motion, &demand);
         let by_thresholds = DriveLimits::of(&drive, &motion).is_ok_and(|l| l.hold(&demand));
         prop_assert_eq!(by_thresholds, all_hold(&checks));

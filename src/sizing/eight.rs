@@ -21,9 +21,9 @@ pub(crate) struct EightDemands<V> {
     mean_torque_cubed_nm3: V,
     /// Loads on the output bearings; `None` if they are not checked.
     bearing: Option<EightBearing<V>>,
-    /// Largest outer diameters of gear and motor that the links leave room for \[m\]; `None` if the study does not
+    /// Largest widths of gear, round motor and square flange that the links leave room for \[m\]; `None` if the study does not
     /// ask for this check.
-    room: Option<[V; 2]>,
+    room: Option<[V; 3]>,
     /// T + T_lin, the torque while speeding up \[N m\]. The next field has max(T - T_lin, 0) and max(T_lin - T, 0) \[N
     /// m\], which are needed while slowing down.
     up_nm: V,
@@ -212,7 +212,7 @@ impl<V: Lanes> EightDemands<V> {
     /// These demands with `room` as the largest outer diameters of gear and motor that fit \[m\]; `None`: sizes are not
     /// checked.
     #[inline(always)]
-    pub(crate) fn with_room(self, room: Option<[V; 2]>) -> Self {
+    pub(crate) fn with_room(self, room: Option<[V; 3]>) -> Self {
         Self { room, ..self }
     }
 
@@ -230,9 +230,10 @@ impl<V: Lanes> EightDemands<V> {
                     None => 0,
                 }
                 | match &self.room {
-                    Some([gear_m, motor_m]) => {
+                    Some([gear_m, motor_m, square_m]) => {
                         gear_m.less(V::splat(limits.widths.gear_m))
                             | motor_m.less(V::splat(limits.widths.motor_m))
+                            | square_m.less(V::splat(limits.widths.square_m))
                     }
                     None => 0,
                 });
@@ -313,13 +314,13 @@ mod tests {
     use crate::sizing::select::{DriveFilter, DriveTable};
     use proptest::prelude::*;
 
-    struct Fits<'a>(&'a DriveTable<'a>, Eight, Eight, u8, usize, [Eight; 2]);
+    struct Fits<'a>(&'a DriveTable<'a>, Eight, Eight, u8, usize, [Eight; 3]);
 
     impl LaneWork for Fits<'_> {
         type Output = ([usize; LANES], u8);
 
         fn run<V: Lanes>(mut self) -> Self::Output {
-            let room = [V::load(&self.5[0]), V::load(&self.5[1])];
+            let room = [V::load(&self.5[0]), V::load(&self.5[1]), V::load(&self.5[2])];
             let demands =
                 EightDemands::new(self.0.motion(), V::load(&self.1), V::load(&self.2)).with_room(Some(room));
             self.0.first_fits(&demands, self.3, &mut self.4)
@@ -347,8 +348,8 @@ mod tests {
             let motion = motion.with_linear_reading(reading);
             let filter = DriveFilter::everything(GearMass::ComponentSet);
             let table = DriveTable::build("j", motion, &filter, &gears, &motors);
-            let rooms = links_m.map(|[width_m, hollow_m]| motion.fit.room(width_m, hollow_m));
-            let room_m = [rooms.map(|room| room.gear_m), rooms.map(|room| room.motor_m)];
+            let rooms = links_m.map(|[width_m, hollow_m]| motion.fit.room(width_m, [hollow_m, 0.8 * hollow_m]));
+            let room_m = [rooms.map(|room| room.gear_m), rooms.map(|room| room.motor_m), rooms.map(|room| room.square_m)];
             let (fits, fitted) = in_lanes(Fits(&table, torques, inertias, wanted, step, room_m));
             for lane in 0..LANES {
                 let demand = table.motion().demand(torques[lane], inertias[lane]).with_room(rooms[lane]);

@@ -3,7 +3,7 @@
 //! | asked | size of the parts | limit |
 //! |---|---|---|
 //! | gear at the link that the joint carries | outer diameter of the gear | factor times width of the link |
-//! | motor in the hollow of that link | outer diameter of the motor | the smaller clear width of the hollow |
+//! | motor in the hollow of that link | outer diameter of the motor; the side of a square flange | the smaller clear width of the hollow; for a square in a round tube its diameter over √2 |
 //! | cables along the axis | bore of the gear, and of a motor behind it | at least the bore that the study states |
 //! | space at the joint | length of the gear, plus that of a motor behind it | the length that the study states |
 //!
@@ -13,6 +13,7 @@
 //! of the parts do not depend on these sizes, because the geometry of a chain is stated.
 
 use crate::catalog::envelope::Envelope;
+use crate::catalog::motor::Motor;
 
 /// Relative tolerance of the comparisons of size. A part exactly as wide as its space fits, whatever the rounding of
 /// a factor times a width.
@@ -50,8 +51,10 @@ pub enum MotorPlace {
 pub struct LinkRoom {
     /// Largest outer diameter that the gear may have \[m\]; infinite if there is no limit.
     pub gear_m: f64,
-    /// Largest outer diameter that the motor may have \[m\]; infinite if there is no limit.
+    /// Largest outer diameter that a round motor may have \[m\]; infinite if there is no limit.
     pub motor_m: f64,
+    /// Largest side that the square flange of a motor may have \[m\]; infinite if there is no limit.
+    pub square_m: f64,
 }
 
 /// Outer diameters of gear and motor of a drive \[m\]. A diameter is zero if the study does not limit it, or if the
@@ -60,8 +63,10 @@ pub struct LinkRoom {
 pub struct DriveWidths {
     /// Outer diameter of the gear \[m\].
     pub gear_m: f64,
-    /// Outer diameter of the motor \[m\].
+    /// Outer diameter of a round motor \[m\].
     pub motor_m: f64,
+    /// Side of the square flange of a motor \[m\].
+    pub square_m: f64,
 }
 
 impl Default for LinkRoom {
@@ -72,50 +77,68 @@ impl Default for LinkRoom {
 
 impl LinkRoom {
     /// No limit on any size.
-    pub const ANY: Self = Self { gear_m: f64::INFINITY, motor_m: f64::INFINITY };
+    pub const ANY: Self = Self { gear_m: f64::INFINITY, motor_m: f64::INFINITY, square_m: f64::INFINITY };
 
     /// The larger of the diameters of this room and of `other`, one by one.
     pub(crate) fn max(self, other: Self) -> Self {
-        Self { gear_m: self.gear_m.max(other.gear_m), motor_m: self.motor_m.max(other.motor_m) }
+        Self {
+            gear_m: self.gear_m.max(other.gear_m),
+            motor_m: self.motor_m.max(other.motor_m),
+            square_m: self.square_m.max(other.square_m),
+        }
     }
 
     /// The smaller of the diameters of this room and of `other`, one by one.
     pub(crate) fn min(self, other: Self) -> Self {
-        Self { gear_m: self.gear_m.min(other.gear_m), motor_m: self.motor_m.min(other.motor_m) }
+        Self {
+            gear_m: self.gear_m.min(other.gear_m),
+            motor_m: self.motor_m.min(other.motor_m),
+            square_m: self.square_m.min(other.square_m),
+        }
     }
 }
 
 impl DriveWidths {
-    /// The diameters of a gear and a motor. A diameter that the requirement `fit` does not limit is zero.
-    pub(super) fn of(gear: &Envelope, motor: &Envelope, fit: &FitRequirement) -> Self {
+    /// The widths of a gear and a motor. A width that the requirement `fit` does not limit is zero.
+    pub(super) fn of(gear: &Envelope, motor: &Motor, fit: &FitRequirement) -> Self {
         let counts = |asked: bool, width_m: Option<f64>| width_m.filter(|_| asked).unwrap_or(0.0);
+        let (in_link, is_square) = (fit.motor == MotorPlace::InLink, motor.kind.has_square_flange());
         Self {
             gear_m: counts(fit.gear_to_link_max.is_some(), gear.outer_diameter_m),
-            motor_m: counts(fit.motor == MotorPlace::InLink, motor.outer_diameter_m),
+            motor_m: counts(in_link && !is_square, motor.envelope.outer_diameter_m),
+            square_m: counts(in_link && is_square, motor.envelope.outer_diameter_m),
         }
     }
 
     /// Whether gear and motor fit into `room`: neither diameter exceeds the largest one that the link allows.
     #[inline]
     pub fn fit(&self, room: &LinkRoom) -> bool {
-        (self.gear_m <= room.gear_m) & (self.motor_m <= room.motor_m)
+        (self.gear_m <= room.gear_m) & (self.motor_m <= room.motor_m) & (self.square_m <= room.square_m)
     }
 
     /// The smaller of the diameters of this drive and of `other`, one by one.
     pub(super) fn min(&self, other: &Self) -> Self {
-        Self { gear_m: self.gear_m.min(other.gear_m), motor_m: self.motor_m.min(other.motor_m) }
+        Self {
+            gear_m: self.gear_m.min(other.gear_m),
+            motor_m: self.motor_m.min(other.motor_m),
+            square_m: self.square_m.min(other.square_m),
+        }
     }
 
     /// The larger of the diameters of this drive and of `other`, one by one.
     pub(super) fn max(&self, other: &Self) -> Self {
-        Self { gear_m: self.gear_m.max(other.gear_m), motor_m: self.motor_m.max(other.motor_m) }
+        Self {
+            gear_m: self.gear_m.max(other.gear_m),
+            motor_m: self.motor_m.max(other.motor_m),
+            square_m: self.square_m.max(other.square_m),
+        }
     }
 
     /// Whether neither part of this drive is wider than the same part of `other`, so that this drive fits wherever
     /// `other` fits.
     #[inline]
     pub(super) fn cover(&self, other: &Self) -> bool {
-        (self.gear_m <= other.gear_m) & (self.motor_m <= other.motor_m)
+        (self.gear_m <= other.gear_m) & (self.motor_m <= other.motor_m) & (self.square_m <= other.square_m)
     }
 }
 
@@ -130,14 +153,17 @@ impl FitRequirement {
         self.gear_to_link_max.is_some() || self.motor == MotorPlace::InLink
     }
 
-    /// The largest diameters of gear and motor \[m\] next to a link of width `width_m` across the joint's axis \[m\],
-    /// whose hollow has the clear width `hollow_m` \[m\].
-    pub(crate) fn room(&self, width_m: f64, hollow_m: f64) -> LinkRoom {
+    /// The largest widths of gear and motor \[m\] next to a link of width `width_m` across the joint's axis \[m\].
+    /// `hollow_m` is the clear width of the link's hollow for a round motor and for a square flange \[m\].
+    pub(crate) fn room(&self, width_m: f64, hollow_m: [f64; 2]) -> LinkRoom {
         let any = f64::INFINITY;
         let in_link = self.motor == MotorPlace::InLink;
+        let [motor_m, square_m] =
+            hollow_m.map(|clear_m| if in_link { clear_m * (1.0 + ROUNDING) } else { any });
         LinkRoom {
             gear_m: self.gear_to_link_max.map_or(any, |factor| factor * width_m * (1.0 + ROUNDING)),
-            motor_m: if in_link { hollow_m * (1.0 + ROUNDING) } else { any },
+            motor_m,
+            square_m,
         }
     }
 

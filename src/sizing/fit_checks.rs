@@ -38,6 +38,7 @@ pub(super) fn motor_fits(
 ) -> impl Iterator<Item = Check> {
     let (gear, motor) = (&drive.gear_envelope(), &drive.motor.envelope);
     let width = known(motor.outer_diameter_m, "motor outer_diameter_mm");
+    let clear_m = if drive.motor.kind.has_square_flange() { room.square_m } else { room.motor_m };
     let blank = match gear.length_m {
         None => size_of(drive.gear_mass, "gear length_mm"),
         Some(_) => "motor length_mm",
@@ -46,7 +47,7 @@ pub(super) fn motor_fits(
     let bore = known(motor.hollow_bore_m, "motor hollow_bore_mm");
     let least_bore_m = fit.least_bore_m().filter(|_| fit.motor == MotorPlace::Behind);
     let checks = [
-        at_most(CheckKind::MotorWidth, width, room.motor_m),
+        at_most(CheckKind::MotorWidth, width, clear_m),
         least_bore_m.map(|least_m| bore_check(CheckKind::MotorBore, least_m, bore)),
         at_most(CheckKind::DriveLength, length, fit.most_length_m().unwrap_or(f64::INFINITY)),
     ];
@@ -98,7 +99,7 @@ mod tests {
             Envelope { outer_diameter_m: Some(0.14), length_m: Some(0.12), hollow_bore_m: Some(0.02) };
         change(&mut gear, &mut motor, &mut fit);
         let motion = JointMotion { fit, ..motion() };
-        let demand = motion.demand_of_torques(300.0, 100.0).with_room(fit.room(0.15, 0.14));
+        let demand = motion.demand_of_torques(300.0, 100.0).with_room(fit.room(0.15, [0.14; 2]));
         let drive = housed(&gear, &motor);
         let checks = checks(&drive, &motion, &demand);
         let holds = DriveLimits::of(&drive, &motion).is_ok_and(|limits| limits.hold(&demand));
@@ -167,7 +168,7 @@ mod tests {
             drive_length_max_m: Some(0.2),
         };
         let motion = JointMotion { fit, ..motion() };
-        let demand = motion.demand_of_torques(300.0, 100.0).with_room(fit.room(0.15, 0.14));
+        let demand = motion.demand_of_torques(300.0, 100.0).with_room(fit.room(0.15, [0.14; 2]));
         let holds = |which| {
             let drive = Drive { gear_mass: which, ..housed(&gear, &motor) };
             let said = checks(&drive, &motion, &demand).into_iter().filter(|c| c.kind.is_fit());

@@ -105,7 +105,7 @@ impl DriveLimits {
             stop_torque_nm: gear_stop_nm(gear)?.min(actuator_stop_nm(drive, motion)?),
             mean_torque_cubed_nm3: gear_average_cubed_nm3(gear)?.min(gear_life_cubed_nm3(gear, motion)?),
             bearing: BearingLimits::of(drive.bearing().as_ref(), motion.mean_speed_rad_s(), motion.life_h),
-            widths: DriveWidths::of(&drive.gear_envelope(), &drive.motor.envelope, &motion.fit),
+            widths: DriveWidths::of(&drive.gear_envelope(), drive.motor, &motion.fit),
             heat: MotorHeat::of(drive, motion)?,
         })
     }

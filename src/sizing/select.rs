@@ -511,7 +511,7 @@ mod tests {
             let demand = motion
                 .demand_of_torques(torques[0] / 2.0, torques[1] / 4.0)
                 .with_bearing(bearing_loads(torques[2]))
-                .with_room(motion.fit.room(link_m[0], link_m[1]));
+                .with_room(motion.fit.room(link_m[0], [link_m[1], 0.8 * link_m[1]]));
             let table = DriveTable::build("j", motion, &DriveFilter::everything(gear_mass), &gears, &motors);
             let mut slow = Vec::new();
             for gear in &gears {

@@ -10,6 +10,7 @@ use crate::mechanics::beam::ALONG_COSINE;
 use crate::mechanics::beam::section_frame;
 use crate::sizing::fit::{FitRequirement, LinkRoom};
 use nalgebra::{Unit, Vector3};
+use std::f64::consts::FRAC_1_SQRT_2;
 
 /// The room that the link of one joint leaves for gear and motor: their largest outer diameters.
 pub(crate) struct RoomAtJoint {
@@ -89,7 +90,8 @@ fn room(
 ) -> LinkRoom {
     let (outer_m, wall_m) = (section.outer_m(), section.wall_m());
     let hollow_m = outer_m.0.min(outer_m.1) - 2.0 * wall_m;
-    fit.room(width_across_m(axis, vector_m, section), hollow_m)
+    let square_m = if section.is_round() { hollow_m * FRAC_1_SQRT_2 } else { hollow_m };
+    fit.room(width_across_m(axis, vector_m, section), [hollow_m, square_m])
 }
 
 /// Width of a link at right angles to the axis of its joint \[m\]. If the joint turns the link, it is the extent of

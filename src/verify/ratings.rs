@@ -56,7 +56,7 @@ impl Ratings {
         most: [f64::INFINITY; QUANTITIES],
         bearing: BearingRatings::UNLIMITED,
         heat: MotorHeat::NONE,
-        widths: [0.0; 2],
+        widths: [0.0; 3],
     };
 
     /// The ratings of a drive under a joint's motion; `None` if the motion is too fast for the drive, if the drive does
@@ -78,8 +78,7 @@ impl Ratings {
             false => MotorHeat::NONE,
         };
         let bearing = BearingRatings::of(bearing, [duty.mean_speed_rad_s, duty.life_h]);
-        let mut ratings =
-            Self { bearing, heat, widths: widths(&duty.fit, size, &motor.envelope), ..Self::UNLIMITED };
+        let mut ratings = Self { bearing, heat, widths: widths(&duty.fit, size, motor), ..Self::UNLIMITED };
         for check in &CHECKS {
             let most = (check.most)(gear, motor, duty)?;
             let rating = &mut ratings.most[check.on as usize];

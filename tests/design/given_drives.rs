@@ -89,8 +89,13 @@ fn an_actuator_that_is_named_as_the_gear_is_checked_with_its_own_motor() {
     let catalogs = Catalogs::builtin();
     let actuators = catalogs.gears.iter().filter(|gear| gear.kind == armwright::catalog::GearKind::Actuator);
     let id = actuators.map(|gear| gear.id.clone()).next().expect("an actuator of the catalog");
-    let alone = row(&one_joint(json!({"gear": id, "mass_kg": 3})), &catalogs);
-    let twice = row(&one_joint(json!({"gear": id, "motor": id, "mass_kg": 3})), &catalogs);
+    let named = |joint: Value| {
+        let mut study = one_joint(joint);
+        study["chain"][0]["mass_kg"] = json!(3);
+        study["chain"][0]["stiffness_nm_per_rad"] = json!(2e4);
+        row(&study, &catalogs)
+    };
+    let (alone, twice) = (named(json!({"gear": id})), named(json!({"gear": id, "motor": id})));
     assert_eq!(alone, twice);
     assert!(!alone.checks.is_empty());
 }
@@ -120,6 +125,7 @@ fn what_a_joint_holds_while_another_one_ramps_is_said() {
     // on a rail across the arm, whose ramp is 10 m/s², the wrist holds m r a
     let mut railed = study.clone();
     railed["chain"][0] = json!({"type": "prismatic", "name": "rail", "axis": [0, 1, 0], "stiffness_n_per_m": 1e7, "mass_kg": 5});
+    railed["poses"] = json!([{"pose": {"rail_mm": 0, "w_deg": 0}}]);
     let text = said(&railed);
     let held_nm: f64 = 25.0 * 0.1 * 10.0;
     assert!(text.contains(&format!("w holds {held_nm:.1} N m while rail ramps")), "{text}");

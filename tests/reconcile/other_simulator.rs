@@ -168,3 +168,43 @@ fn a_modulus_that_falls_as_the_arm_warms_gets_no_name_of_something_else() {
     names_nothing_but("modulus-falls-with-bench", &["thermal_modulus@arm"]);
     names_nothing_but("modulus-falls", &["thermal_modulus@arm"]);
 }
+
+/// The stiffness of the joint is 25 % above nominal, within a tolerance of 30 %, and its curve is that of this stiffness.
+#[test]
+fn the_curve_of_a_gear_as_stiff_as_its_tolerance_allows_is_found() {
+    is_explained("curve-of-a-stiff-part");
+}
+
+/// Play of which one pose alone tells: the readings of that pose cannot be predicted without them, and all are explained.
+#[test]
+fn an_effect_that_one_pose_alone_shows_is_found_and_the_pose_is_asked_for_again() {
+    is_explained("lost-motion-in-one-pose");
+    let text = outcome("lost-motion-in-one-pose").to_text();
+    assert!(text.contains("one pose alone shows an effect"), "{text}");
+}
+
+/// Calibration imitates the base with a bearing half as stiff as stated, which no honest part is.
+#[test]
+fn a_base_is_not_hidden_by_a_factor_that_no_honest_part_has() {
+    is_explained("curve-and-soft-base");
+}
+
+/// The bench shows the same digits twice, under different labels.
+#[test]
+fn repeats_that_show_the_same_digits_are_honest() {
+    is_explained("repeats-on-the-bench");
+}
+
+/// Physics that no effect has: the corrected arm of such campaigns had a wave of 0.96 and a stiffness of 1e15 N m/rad, which
+/// no verb reads.
+#[test]
+fn the_corrected_arm_can_be_read_again() {
+    for name in ["play-of-a-foreign-law", "bearing-that-stiffens"] {
+        let outcome = outcome(name);
+        assert_eq!(outcome.verdict, Verdict::Unexplained, "{name}: {}", outcome.to_text());
+        let text = outcome.corrected.to_json().to_string();
+        let document = armwright::input::Document::parse("arm.corrected.json", &text).expect("JSON");
+        let read = armwright::arm::read_arm_document(document, &Catalogs::builtin());
+        assert!(read.is_ok(), "{name}: {}", read.err().map(|faults| faults.to_string()).unwrap_or_default());
+    }
+}

@@ -49,7 +49,7 @@ pub(super) struct TubeTable {
 
 /// How many numbers of a tube, in addition to its stresses, have no price: whether it is round, half its width, and
 /// the largest widths of gear and motor.
-const BESIDE_STRESSES: usize = 4;
+const BESIDE_STRESSES: usize = 5;
 
 /// Positions of a tube's numbers in its list.
 pub(super) mod place {
@@ -212,7 +212,7 @@ fn tube(numbers: &[f64]) -> TubeNumbers {
         stresses: std::array::from_fn(|i| rest[i]),
         round: rest[STRESSES],
         half_width_m: rest[STRESSES + 1],
-        room: [rest[STRESSES + 2], rest[STRESSES + 3]],
+        room: std::array::from_fn(|i| rest[STRESSES + 2 + i]),
         around: (0..waters).map(around).collect(),
     }
 }

@@ -19,6 +19,8 @@ use serde_json::{Value, json};
 pub struct Sizes {
     gear: [Option<f64>; 3],
     motor: [Option<f64>; 3],
+    /// Whether the motor's size is the side of a square flange.
+    is_square: bool,
 }
 
 const DIAMETER: usize = 0;
@@ -29,7 +31,8 @@ impl Sizes {
     pub fn of(gear: &Row, motor: &Row) -> Self {
         let of =
             |row: &Row| ["outer_diameter_mm", "length_mm", "hollow_bore_mm"].map(|column| row.number(column));
-        Self { gear: of(gear), motor: of(motor) }
+        let is_square = ["AC servo", "stepper"].contains(&motor.text("type"));
+        Self { gear: of(gear), motor: of(motor), is_square }
     }
 
     /// Whether the parts fit into a joint about an axis, with the arm outboard of it, nearest first.
@@ -47,7 +50,11 @@ impl Sizes {
             on_axis.iter().map(|part| part[LENGTH]).try_fold(0.0, |sum, length| Some(sum + length?));
         let link = first_link(outboard).map(|link| (link, &link.option.as_ref().expect("a section").tube));
         let width_mm = link.map(|(link, tube)| 1e3 * width_m(axis, &link.vector_m, tube));
-        let clear_mm = link.map(|(_, tube)| 1e3 * (tube.width_m.min(tube.height_m) - 2.0 * tube.wall_m));
+        let clear_mm = link.map(|(_, tube)| {
+            let hollow_mm = 1e3 * (tube.width_m.min(tube.height_m) - 2.0 * tube.wall_m);
+            // the corners of a square flange touch the hollow of a round tube
+            if self.is_square && tube.is_round { hollow_mm / 2f64.sqrt() } else { hollow_mm }
+        });
         on_axis.iter().all(|part| at_least(part[BORE], "cable_bore_min_mm"))
             && at_most(length_mm, asked["drive_length_max_mm"].as_f64())
             && at_most(
