@@ -40,18 +40,22 @@ impl Held {
         self.binding.as_ref().and_then(Check::torque_margin).unwrap_or(f64::INFINITY)
     }
 
+    fn fails(&self) -> bool {
+        self.binding.as_ref().is_some_and(|check| check.state == CheckState::Fails)
+    }
+
+    /// The check with the smallest margin, and the margin: `motor peak of w, 0.699`.
+    fn margin_words(&self) -> Option<String> {
+        let label = self.binding.as_ref()?.kind.label();
+        Some(format!("{label} of {}, {}", self.joint, significant(self.margin(), 3)))
+    }
+
     fn words(&self) -> String {
-        let Self { joint, mover, unit, reaction, own_nm: [ramp_nm, stop_nm], binding } = self;
+        let Self { joint, mover, unit, reaction, own_nm: [ramp_nm, stop_nm], .. } = self;
         let short = |x: f64| significant(x, 3);
-        let verdict = match binding {
-            Some(check) if check.state == CheckState::Fails => {
-                format!("which its drive does not hold ({} {})", check.kind.label(), short(self.margin()))
-            }
-            Some(check) => format!("which its drive holds ({} {})", check.kind.label(), short(self.margin())),
-            None => "of which no check can be made".into(),
-        };
+        let margin = self.margin_words().map_or(String::new(), |words| format!(" (margin: {words})"));
         format!(
-            "{joint} holds {} {unit} while {mover} ramps and {} {unit} while it stops, {verdict}; its own motion asks {} and {} {unit}",
+            "{joint} holds {} {unit} while {mover} ramps and {} {unit} while it stops{margin}; its own motion asks {} and {} {unit}",
             short(reaction.in_ramp_nm),
             short(reaction.in_stop_nm),
             short(*ramp_nm),
@@ -81,24 +85,34 @@ fn held(problem: &ArmProblem, catalogs: &Catalogs, chosen: &[u32]) -> Option<Vec
     Some(problem.reactions(chosen)?.into_iter().filter_map(of_joint).collect())
 }
 
-/// A sentence on the reactions that exceed what the joints' own motions ask; `None` if there are none. Of each joint the
-/// design with the smallest margin is named. `whose` says of which designs it tells, such as "in the picks".
+/// A sentence on the reactions that exceed what the joints' own motions ask; `None` if there are none. It names the joints
+/// whose drives do not hold their reactions, each in the design with the smallest margin, or the smallest margin if all
+/// hold. `whose` says of which designs it tells.
 fn sentence(all: Vec<Held>, whose: &str) -> Option<String> {
     let mut worst: Vec<Held> = Vec::new();
     for held in all {
         match worst.iter_mut().find(|known| known.joint == held.joint) {
-            Some(known) if (held.margin(), known.excess()) < (known.margin(), held.excess()) => *known = held,
+            Some(known) if held.margin() < known.margin() => *known = held,
             Some(_) => {}
             None => worst.push(held),
         }
     }
-    let words: Vec<String> = worst.iter().map(Held::words).collect();
-    (!words.is_empty()).then(|| {
-        format!(
-            "Drives are sized for the motion of their own joint, one joint at a time. While another joint moves, a joint that \
-             stands still holds its reaction, at most {whose}: {}. This excludes no design.",
-            words.join("; ")
-        )
+    let nearest = worst.iter().min_by(|a, b| a.margin().total_cmp(&b.margin()))?;
+    let weak: Vec<String> = worst.iter().filter(|held| held.fails()).map(Held::words).collect();
+    Some(match (weak.is_empty(), nearest.margin_words()) {
+        (true, Some(margin)) => format!(
+            "Drives are sized for the motion of their own joint. What a joint holds while another one ramps or stops is held \
+             too {whose} (smallest margin: {margin})."
+        ),
+        (true, None) => format!(
+            "Drives are sized for the motion of their own joint. Whether they hold what another joint's ramp or stop asks of \
+             them is not known {whose}, since ratings are blank."
+        ),
+        (false, _) => format!(
+            "Drives are sized for the motion of their own joint. What a joint holds while another one ramps or stops is too \
+             much for some {whose}: {}. This excludes no design.",
+            weak.join("; ")
+        ),
     })
 }
 
