@@ -76,8 +76,9 @@ fn a_law_without_a_name_predicts_poses_that_nobody_fitted() {
     let outcome = outcome(folder.path());
     assert_eq!(outcome.verdict, Verdict::Unexplained, "{hidden}: {}", outcome.to_text());
     assert!(outcome.effects.is_empty() && outcome.suspects.is_empty());
-    let law = outcome.empirical.iter().find(|law| law.finding.at == at);
-    assert!(law.is_some(), "{hidden}: {}", outcome.to_text());
+    // the law competes with effects of the library at the same joint, which together bend as it does
+    let law = outcome.models.iter().find(|row| row.model.contains(&format!("a further twist of {at}")));
+    assert!(law.is_some_and(|row| row.kept_out_rms_sigma < 1.2), "{hidden}: {}", outcome.to_text());
     let nominal_mm = error_mm(folder.path(), &folder.path().join("fitted/arm.json"));
     let corrected_mm = error_mm(folder.path(), &folder.path().join("verdict/arm.corrected.json"));
     println!("{hidden}: {nominal_mm:.4} mm as given, {corrected_mm:.4} mm corrected");

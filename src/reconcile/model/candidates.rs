@@ -8,6 +8,7 @@ use crate::arm::effect::catalogue::KINDS;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::immersion::PAYLOAD_DENSITY;
 use crate::arm::effect::kind::{ElasticRotation, Freed, Kind, Parameter, Place, Removes, Scale, Setting};
+use crate::arm::effect::soft_windup::MIDDLE_SLOPE;
 use crate::arm::effect::validate::fits_nominal;
 use crate::arm::effect::wrong_unit;
 use crate::arm::effect::{connection_compliance, servo_compliance, thermal_modulus, travel_compliance};
@@ -167,7 +168,7 @@ fn candidate(forward: &Forward, sizes: &Sizes, asked: Asked) -> Candidate {
                 let reference = if parameter.scale == Scale::Torque { torque_nm } else { reference };
                 let free = FreeParameter::new(sized, component, reference);
                 let free = within_torque(free, parameter, torque_nm);
-                let free = within_tolerance(free, parameter, kind, forward.stiffness_tolerance);
+                let free = within_tolerance(free, parameter, forward.stiffness_tolerance);
                 free_parameters.push(within_rows(free, rows_of_campaign(forward)));
                 numbers.push(Number::Free);
             } else {
