@@ -194,16 +194,11 @@ fn candidate(forward: &Forward, sizes: &Sizes, asked: Asked) -> Candidate {
     Candidate { kind, at, free_parameters, numbers, starts, twins: Vec::new() }
 }
 
-/// Widens the range of a slope of a gear's curve by three standard deviations of the joint's stiffness, whose 95 % limit
-/// is `tolerance`. The curve takes the place of the joint's stiffness, and with it of the calibrated factor, so its slopes
-/// must reach as far.
-fn within_tolerance(
-    free: FreeParameter,
-    parameter: &Parameter,
-    kind: &Kind,
-    tolerance: f64,
-) -> FreeParameter {
-    match kind.traits.is_gear_curve && parameter.scale == Scale::Stiffness {
+/// Widens the range of the middle slope of a gear's curve by three standard deviations of the joint's stiffness, whose
+/// 95 % limit is `tolerance`. The curve takes the place of the joint's stiffness, and with it of the calibrated factor. The
+/// ranges of the other slopes are wide enough for both.
+fn within_tolerance(free: FreeParameter, parameter: &Parameter, tolerance: f64) -> FreeParameter {
+    match parameter.name == MIDDLE_SLOPE {
         true => free.widened(libm::exp(3.0 * tolerance / 2.0)),
         false => free,
     }
