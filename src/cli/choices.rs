@@ -146,8 +146,8 @@ fn search_choice(
     }
 }
 
-/// Name of the folder of a choice, which is number `at` from zero. It has a part of the hash of its study, so that the
-/// result of an edited study does not replace one that an earlier joint front names.
+/// Folder name of choice `at` (counted from 0). It contains a part of the study's hash, so that the result of an edited
+/// study does not replace one that a common front written earlier names.
 fn folder_of_choice(at: usize, choice: &BalanceChoice) -> String {
     format!("choice-{}-{}", at + 1, &hash(choice.text.as_bytes())[..HASH_LETTERS])
 }

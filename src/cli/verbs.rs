@@ -80,7 +80,7 @@ enum Verb {
     New(new::NewArgs),
     /// Find where an arm and its measurements disagree and which physics is missing
     Reconcile(reconcile::ReconcileArgs),
-    /// Add the model's value to every reading of a file
+    /// Write the model's value next to every reading of a file
     Predict(predict::PredictArgs),
     /// Check the catalogs, or list what is in them
     Catalog(catalog::CatalogArgs),

@@ -81,7 +81,7 @@ pub(super) fn probe<'p>(
     best.into_iter().flatten().collect()
 }
 
-/// The designs that `dives` short probes find. A short probe only descends once; it does not optimize the levels one by
+/// Makes short probes, as many as `dives`, and returns what they find. A short probe only descends once; it does not optimize the levels one by
 /// one.
 pub(super) fn dives(budget: &Budget, problem: &Problem, dives: usize) -> Findings {
     let mut all = Findings::default();

@@ -33,7 +33,8 @@ pub(super) struct Survivors {
     pub candidates: Vec<DesignBox>,
 }
 
-/// The dual points and relaxed designs of the multipliers tried so far for a box.
+/// For each set of multipliers that was tried for a box: its dual point, and the relaxed design that minimizes the weighted
+/// sum.
 #[derive(Default)]
 struct Proofs {
     points: Vec<DualPoint>,

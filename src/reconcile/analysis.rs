@@ -2,16 +2,14 @@
 //! effects are missing, how certain these are, and whether they predict held-out poses.
 
 use super::fit::descent::{Effort, Fit, Weights};
-use super::fit::held_out;
-use super::fit::held_out::{HeldOut, rms};
+use super::fit::held_out::{self, HeldOut, rms};
 use super::fit::interval::intervals;
 use super::fit::noise::Noise;
 use super::fit::units;
 use super::forward::prepared::Forward;
 use super::model::calibration::Nuisance;
 use super::model::candidates::candidates;
-use super::model::estimate::Finding;
-use super::model::estimate::Interval;
+use super::model::estimate::{Finding, Interval};
 use super::model::parameters::{Candidate, Model};
 use super::readings::campaign::Campaign;
 use super::readings::components::DISPLACEMENT;
@@ -22,10 +20,9 @@ use super::select::screening::Selection;
 use super::select::search::{Scored, Search};
 use super::select::seen::seen;
 use super::select::settle::Settled;
-use super::select::unnamed;
-use super::select::unnamed::Better;
+use super::select::unnamed::{self, Better};
 use super::verdict::corrected_model::Choice;
-use super::verdict::judgement::{TOO_FAR_OFF, does_not_predict, too_many_alternatives};
+use super::verdict::judgement::{TOO_FAR_OFF, does_not_predict, shows_in_few_poses, too_many_alternatives};
 use super::verdict::next_test;
 use super::verdict::outcome::{Calibrated, Evidence, Law, Located, Outcome, ReadingResidual, Verdict};
 use super::verdict::too_little::{rows, too_little};
@@ -42,9 +39,6 @@ const SHOWN_BY_ONE_FOLD: f64 = 1.5;
 const WEAK_EVIDENCE: f64 = 3.0;
 /// Reason that is written for the verdict `no_gap`.
 const NOTHING_MISSING: &str = "noise and calibration within tolerance explain every reading";
-/// Reason that is added to the verdict `explained` if held-out poses cannot confirm it.
-const ONE_FOLD_ALONE: &str = "one pose alone shows an effect, so that poses held out of the fit cannot confirm it: repeat the test \
-    that shows it in another pose";
 /// Reason that is written for the verdict `no_gap` if a calibrated factor is outside its tolerance.
 const BEYOND_TOLERANCE: &str = "noise and calibration explain every reading, but not within tolerance";
 
@@ -205,7 +199,7 @@ impl Analysis<'_> {
         let held_out = self.held_out();
         let (verdict, mut reasons) = self.verdict(&held_out);
         if verdict == Verdict::Explained && self.shows_in_one_fold() {
-            reasons.push(ONE_FOLD_ALONE.to_string());
+            reasons.push(shows_in_few_poses(&self.best.model.label()));
         }
         if matches!(verdict, Verdict::Explained | Verdict::Unexplained) {
             reasons.extend(self.at_a_limit());
@@ -291,7 +285,9 @@ impl Analysis<'_> {
             return (Verdict::Unexplained, self.left_over());
         }
         let (tolerances, calibrated) = (fitted::tolerances(&self.best), fitted::calibrated(&self.best));
-        if let Some(text) = caution::impossible_calibration(self.campaign, tolerances, &calibrated) {
+        if let Some(text) =
+            caution::impossible_calibration(self.campaign, &self.best.model.label(), tolerances, &calibrated)
+        {
             return (Verdict::Unexplained, vec![text]);
         }
         if self.best.model.effects.is_empty() {

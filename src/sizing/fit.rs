@@ -45,7 +45,7 @@ pub enum MotorPlace {
     Beside,
 }
 
-/// Largest diameters of the parts of a joint, as given by the link that the joint carries. Infinite if the study sets
+/// Largest widths of the parts of a joint, as given by the link that the joint carries. Infinite if the study sets
 /// no limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinkRoom {
@@ -57,7 +57,7 @@ pub struct LinkRoom {
     pub square_m: f64,
 }
 
-/// Outer diameters of gear and motor of a drive \[m\]. A diameter is zero if the study does not limit it, or if the
+/// Widths of gear and motor of a drive \[m\]. A width is zero if the study does not limit it, or if the
 /// catalog leaves it blank.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DriveWidths {
@@ -79,7 +79,7 @@ impl LinkRoom {
     /// No limit on any size.
     pub const ANY: Self = Self { gear_m: f64::INFINITY, motor_m: f64::INFINITY, square_m: f64::INFINITY };
 
-    /// The larger of the diameters of this room and of `other`, one by one.
+    /// The larger of the widths of this room and of `other`, one by one.
     pub(crate) fn max(self, other: Self) -> Self {
         Self {
             gear_m: self.gear_m.max(other.gear_m),
@@ -88,7 +88,7 @@ impl LinkRoom {
         }
     }
 
-    /// The smaller of the diameters of this room and of `other`, one by one.
+    /// The smaller of the widths of this room and of `other`, one by one.
     pub(crate) fn min(self, other: Self) -> Self {
         Self {
             gear_m: self.gear_m.min(other.gear_m),
@@ -110,13 +110,13 @@ impl DriveWidths {
         }
     }
 
-    /// Whether gear and motor fit into `room`: neither diameter exceeds the largest one that the link allows.
+    /// Whether gear and motor fit into `room`: no width exceeds the largest one that the link allows.
     #[inline]
     pub fn fit(&self, room: &LinkRoom) -> bool {
         (self.gear_m <= room.gear_m) & (self.motor_m <= room.motor_m) & (self.square_m <= room.square_m)
     }
 
-    /// The smaller of the diameters of this drive and of `other`, one by one.
+    /// The smaller of the widths of this drive and of `other`, one by one.
     pub(super) fn min(&self, other: &Self) -> Self {
         Self {
             gear_m: self.gear_m.min(other.gear_m),
@@ -125,7 +125,7 @@ impl DriveWidths {
         }
     }
 
-    /// The larger of the diameters of this drive and of `other`, one by one.
+    /// The larger of the widths of this drive and of `other`, one by one.
     pub(super) fn max(&self, other: &Self) -> Self {
         Self {
             gear_m: self.gear_m.max(other.gear_m),

@@ -29,9 +29,17 @@ pub struct FixedDrive<'c> {
     after: Stage,
 }
 
+impl FixedDrive<'_> {
+    /// Torque at the joint for each newton metre at the output of the gear: ratio times efficiency of the stages between
+    /// both.
+    pub(crate) fn gain_after_gear(&self) -> f64 {
+        self.after.ratio * self.after.efficiency
+    }
+}
+
 impl ArmProblem<'_> {
-    /// The given drive of piece number `piece` (base to tip); `None` unless the study names a gear and a motor that
-    /// are both in the catalogs. An actuator has both, so that its name as the gear suffices.
+    /// The given drive of piece number `piece` (base to tip); `None` unless the study names a gear of the
+    /// catalogs and, if this is no actuator, a motor of the catalogs.
     pub fn fixed_drive<'c>(&self, piece: usize, catalogs: &'c Catalogs) -> Option<FixedDrive<'c>> {
         let space = self.space();
         let SpacePiece::Joint(joint) = &space.pieces[piece] else { return None };

@@ -8,8 +8,8 @@ use crate::sizing::checks::{binding, checks};
 
 impl ArmProblem<'_> {
     /// The first piece from the tip that is overloaded in one of `cases`, for an arm with these `options`, one for each
-    /// slot. Returns its number, and the check that its drive fails; `None` in the place of the check means that the
-    /// piece is a link whose stress is too high. `None` if no piece is overloaded. Drives that the study gives by name
+    /// slot. Returns its number, and the check that its drive fails; `None` in the place of the check means a
+    /// link whose stress is too high, or a drive none of whose checks can be made. `None` if no piece is overloaded. Drives that the study gives by name
     /// count too, as far as their ratings in `catalogs` are known.
     pub(crate) fn overload(
         &self,

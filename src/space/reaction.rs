@@ -14,11 +14,13 @@ use super::station::{StationJoint, StationSlot};
 pub(crate) struct Reaction {
     /// Piece of the joint that stands still, counted from the base.
     pub piece: usize,
-    /// Piece of the joint whose ramp gives the largest torque.
-    pub mover: usize,
-    /// Static torque plus that of the ramp \[N m\]; of a prismatic joint the force \[N\].
+    /// Piece of the joint whose ramp gives the largest torque in a ramp.
+    pub ramps: usize,
+    /// Piece of the joint whose emergency stop gives the largest torque in a stop.
+    pub stops: usize,
+    /// Static torque plus that of the other joint's ramp \[N m\]; of a prismatic joint the force \[N\].
     pub in_ramp_nm: f64,
-    /// Static torque plus that of the emergency stop of this joint \[N m\]; of a prismatic joint the force \[N\].
+    /// Static torque plus that of the other joint's emergency stop \[N m\]; of a prismatic joint the force \[N\].
     pub in_stop_nm: f64,
 }
 
@@ -55,20 +57,24 @@ impl ArmProblem<'_> {
         .ok()?;
         let stop_factor = self.space().motion.stop_factor();
         let largest = |here: usize| {
-            let others = (0..movers.len()).filter(|other| *other != here);
-            let of = |other: usize| {
-                let ramp_nm = |at: usize| inertia_kgm2[here][other][at] * movers[other].acceleration;
-                let held = |times: f64| {
+            // the largest torque if accelerations are `times` those of the ramps, with the joint that moves
+            let with_mover = |times: f64| {
+                let held = |other: usize| {
+                    let ramp_nm = |at: usize| inertia_kgm2[here][other][at] * movers[other].acceleration;
                     (0..cases.len()).map(|at| static_nm[here][at] + times * ramp_nm(at)).fold(0.0, f64::max)
                 };
-                Reaction {
-                    piece: self.piece_of_slot(movers[here].slot),
-                    mover: self.piece_of_slot(movers[other].slot),
-                    in_ramp_nm: held(1.0),
-                    in_stop_nm: held(stop_factor),
-                }
+                let others = (0..movers.len()).filter(|other| *other != here);
+                let all = others.map(|other| (held(other), self.piece_of_slot(movers[other].slot)));
+                all.max_by(|a, b| a.0.total_cmp(&b.0))
             };
-            others.map(of).max_by(|a, b| a.in_stop_nm.total_cmp(&b.in_stop_nm))
+            let ((in_ramp_nm, ramps), (in_stop_nm, stops)) = (with_mover(1.0)?, with_mover(stop_factor)?);
+            Some(Reaction {
+                piece: self.piece_of_slot(movers[here].slot),
+                ramps,
+                stops,
+                in_ramp_nm,
+                in_stop_nm,
+            })
         };
         Some((0..movers.len()).filter_map(largest).collect())
     }

@@ -1,12 +1,12 @@
-//! What the drives of a design hold while another joint moves, in sentences. Drives are sized for their own joints' ramps
-//! and stops, so that such a torque is in no check of the search.
+//! What the drives of a design must hold while another joint moves, in sentences. Drives are sized for their own joints'
+//! ramps and stops, so that such a torque is in no check of the search.
 
-use super::table::driven_joints;
+use super::table::{DrivenJoint, driven_joints};
 use crate::catalog::Catalogs;
 use crate::report::front_table::FrontTable;
 use crate::report::number::significant;
 use crate::report::picks::{designs, picks};
-use crate::sizing::check::{Check, CheckState};
+use crate::sizing::check::{Check, CheckKind, CheckState};
 use crate::sizing::checks::{binding, reaction_checks};
 use crate::space::design::number_of;
 use crate::space::problem::ArmProblem;
@@ -18,21 +18,45 @@ const NAMED_FROM: f64 = 0.02;
 /// The reaction on one joint, next to what its own motion asks.
 struct Held {
     joint: String,
-    mover: String,
+    /// The joint whose ramp gives the largest torque in a ramp, and the one whose stop gives the largest in a stop.
+    movers: [String; 2],
     /// Unit of the torques: N m, or N of a prismatic joint.
     unit: &'static str,
-    reaction: Reaction,
-    /// Largest torque of the joint's own ramp and of its own stop.
+    /// Torque in the ramp and in the stop of another joint, at the joint.
+    reaction_nm: [f64; 2],
+    /// Largest torque in the joint's own ramp and in its own stop, at the joint.
     own_nm: [f64; 2],
     /// The check with the smallest margin; `None` if no check could be made.
     binding: Option<Check>,
+    /// Whether a rating is blank that every drive needs for these checks.
+    is_open: bool,
 }
 
 impl Held {
-    /// How far the reaction exceeds what the joint's own motion asks, as a ratio.
-    fn excess(&self) -> f64 {
-        let [ramp_nm, stop_nm] = self.own_nm;
-        (self.reaction.in_ramp_nm / ramp_nm).max(self.reaction.in_stop_nm / stop_nm)
+    fn new(problem: &ArmProblem, joint: &DrivenJoint, reaction: &Reaction) -> Self {
+        let name = |piece: usize| problem.space().pieces[piece].name().to_string();
+        let at_gear_nm = [reaction.in_ramp_nm, reaction.in_stop_nm].map(|nm| nm / joint.gain_after_gear);
+        let checks = reaction_checks(&joint.drive, &joint.motion, at_gear_nm[0], at_gear_nm[1]);
+        // buckling and ratcheting are not checked where the catalog leaves them blank, as in sizing
+        let is_needed =
+            |kind: CheckKind| !matches!(kind, CheckKind::GearBuckling | CheckKind::GearRatcheting);
+        let is_open =
+            checks.iter().any(|c| is_needed(c.kind) && matches!(c.state, CheckState::NotChecked(_)));
+        Self {
+            joint: name(reaction.piece),
+            movers: [reaction.ramps, reaction.stops].map(name),
+            unit: if joint.drive.gear.kind.slides() { "N" } else { "N m" },
+            reaction_nm: [reaction.in_ramp_nm, reaction.in_stop_nm],
+            own_nm: [joint.demand.peak_torque_nm(), joint.demand.stop_torque_nm]
+                .map(|nm| nm * joint.gain_after_gear),
+            binding: binding(&checks).copied(),
+            is_open,
+        }
+    }
+
+    /// Whether the reaction exceeds what the joint's own motion asks.
+    fn exceeds(&self) -> bool {
+        (0..2).any(|i| self.reaction_nm[i] > (1.0 + NAMED_FROM) * self.own_nm[i])
     }
 
     /// The margin of the drive; infinite where it is not known.
@@ -51,36 +75,24 @@ impl Held {
     }
 
     fn words(&self) -> String {
-        let Self { joint, mover, unit, reaction, own_nm: [ramp_nm, stop_nm], .. } = self;
-        let short = |x: f64| significant(x, 3);
+        let Self { joint, movers: [ramps, stops], unit, reaction_nm, own_nm, .. } = self;
+        let [[in_ramp, in_stop], [own_ramp, own_stop]] =
+            [reaction_nm, own_nm].map(|pair| pair.map(|nm| significant(nm, 3)));
         let margin = self.margin_words().map_or(String::new(), |words| format!(" (margin: {words})"));
         format!(
-            "{joint} holds {} {unit} while {mover} ramps and {} {unit} while it stops{margin}; its own motion asks {} and {} {unit}",
-            short(reaction.in_ramp_nm),
-            short(reaction.in_stop_nm),
-            short(*ramp_nm),
-            short(*stop_nm)
+            "{joint} must hold {in_ramp} {unit} while {ramps} ramps and {in_stop} {unit} while {stops} stops{margin}; its own \
+             motion asks {own_ramp} and {own_stop} {unit}"
         )
     }
 }
 
 /// The reactions of one design that exceed what the joints' own motions ask. `chosen` are the options of the design, one
-/// for each level, tip first.
+/// for each level, tip first. `None` if the design breaks a limit.
 fn held(problem: &ArmProblem, catalogs: &Catalogs, chosen: &[u32]) -> Option<Vec<Held>> {
     let driven = driven_joints(problem, catalogs, chosen).ok()?;
-    let pieces = &problem.space().pieces;
     let of_joint = |reaction: Reaction| {
         let joint = driven.iter().find(|joint| joint.piece == reaction.piece)?;
-        let checks = reaction_checks(&joint.drive, &joint.motion, reaction.in_ramp_nm, reaction.in_stop_nm);
-        let held = Held {
-            joint: pieces[reaction.piece].name().to_string(),
-            mover: pieces[reaction.mover].name().to_string(),
-            unit: if joint.drive.gear.kind.slides() { "N" } else { "N m" },
-            own_nm: [joint.demand.peak_torque_nm(), joint.demand.stop_torque_nm],
-            binding: binding(&checks).copied(),
-            reaction,
-        };
-        (held.excess() > 1.0 + NAMED_FROM).then_some(held)
+        Some(Held::new(problem, joint, &reaction)).filter(Held::exceeds)
     };
     Some(problem.reactions(chosen)?.into_iter().filter_map(of_joint).collect())
 }
@@ -99,21 +111,22 @@ fn sentence(all: Vec<Held>, whose: &str) -> Option<String> {
     }
     let nearest = worst.iter().min_by(|a, b| a.margin().total_cmp(&b.margin()))?;
     let weak: Vec<String> = worst.iter().filter(|held| held.fails()).map(Held::words).collect();
-    Some(match (weak.is_empty(), nearest.margin_words()) {
-        (true, Some(margin)) => format!(
-            "Drives are sized for the motion of their own joint. What a joint holds while another one ramps or stops is held \
-             too {whose} (smallest margin: {margin})."
-        ),
-        (true, None) => format!(
-            "Drives are sized for the motion of their own joint. Whether they hold what another joint's ramp or stop asks of \
-             them is not known {whose}, since ratings are blank."
+    let open: Vec<&str> = worst.iter().filter(|held| held.is_open).map(|held| held.joint.as_str()).collect();
+    let main = match (weak.is_empty(), nearest.margin_words()) {
+        (true, margin) => format!(
+            "As far as their ratings are known, they also withstand the ramps and stops of the other joints {whose}{}.",
+            margin.map_or(String::new(), |margin| format!(" (smallest margin: {margin})"))
         ),
         (false, _) => format!(
-            "Drives are sized for the motion of their own joint. What a joint holds while another one ramps or stops is too \
-             much for some {whose}: {}. This excludes no design.",
+            "The ramps and stops of other joints are too much for some of them {whose}: {}. This excludes no design.",
             weak.join("; ")
         ),
-    })
+    };
+    let blank = match open.is_empty() {
+        true => String::new(),
+        false => format!(" Ratings are blank in {}.", open.join(", ")),
+    };
+    Some(format!("Drives are sized for the motion of their own joint. {main}{blank}"))
 }
 
 /// The remark on one design.

@@ -125,8 +125,10 @@ pub(super) struct DrivenJoint<'c> {
     pub drive: Drive<'c>,
     /// The motion that the study asks of the joint.
     pub motion: JointMotion,
-    /// The demand on the drive.
+    /// The demand at the output of the gear.
     pub demand: JointDemand,
+    /// Torque at the joint for each newton metre at the output of the gear; 1 unless stages are behind the gear.
+    pub gain_after_gear: f64,
     /// Mass of the arm outboard of the joint and of its drive \[kg\].
     inward_kg: f64,
 }
@@ -150,11 +152,14 @@ pub(super) fn driven_joints<'c>(
     let options: Vec<u32> = problem.options(&complete).collect();
     let inward_kg = problem.masses_inward_kg(&complete);
     let driven = |(piece, demand): (usize, JointDemand)| {
-        let (drive, motion) = match problem.sized_joint(piece) {
-            Some(sized) => (sized.table.drive(options[piece] as usize), *sized.table.motion()),
-            None => problem.fixed_drive(piece, catalogs).map(|fixed| (fixed.drive, fixed.motion))?,
+        let (drive, motion, gain_after_gear) = match problem.sized_joint(piece) {
+            Some(sized) => (sized.table.drive(options[piece] as usize), *sized.table.motion(), 1.0),
+            None => {
+                let fixed = problem.fixed_drive(piece, catalogs)?;
+                (fixed.drive, fixed.motion, fixed.gain_after_gear())
+            }
         };
-        Some(DrivenJoint { piece, drive, motion, demand, inward_kg: inward_kg[piece] })
+        Some(DrivenJoint { piece, drive, motion, demand, gain_after_gear, inward_kg: inward_kg[piece] })
     };
     Ok(demands.into_iter().filter_map(driven).collect())
 }
@@ -168,7 +173,7 @@ pub(crate) fn sizing_rows(
     chosen: &[u32],
 ) -> Result<Vec<JointSizingRow>, usize> {
     let row = |joint: &DrivenJoint| {
-        let DrivenJoint { piece, drive, motion, demand, inward_kg } = joint;
+        let DrivenJoint { piece, drive, motion, demand, inward_kg, .. } = joint;
         let name = problem.space().pieces[*piece].name();
         let row = JointSizingRow::new(name, drive, motion, demand, *inward_kg);
         at_cycle_efficiency(row, catalogs, drive, motion, demand)

@@ -180,7 +180,7 @@ fn the_curve_of_a_gear_as_stiff_as_its_tolerance_allows_is_found() {
 fn an_effect_that_one_pose_alone_shows_is_found_and_the_pose_is_asked_for_again() {
     is_explained("lost-motion-in-one-pose");
     let text = outcome("lost-motion-in-one-pose").to_text();
-    assert!(text.contains("one pose alone shows an effect"), "{text}");
+    assert!(text.contains("lost_motion@r2 shows in few poses only"), "{text}");
 }
 
 /// Calibration imitates the base with a bearing half as stiff as stated, which no honest part is.

@@ -129,6 +129,12 @@ pub fn objective(forward: &Forward, model: &Model, u: &[f64], predicted: &[f64],
     data + u[..model.calibrated()].iter().map(|u| u * u).sum::<f64>()
 }
 
+/// Factor on a residual \[standard deviations\] and on its row in iteratively reweighted least squares: the weight of a
+/// residual above [`HUBER_SIGMAS`] is `HUBER_SIGMAS / |r|`, and the factor is its root.
+pub(crate) fn robust_factor(residual: f64) -> f64 {
+    if residual.abs() <= HUBER_SIGMAS { 1.0 } else { (HUBER_SIGMAS / residual.abs()).sqrt() }
+}
+
 fn loss(r: f64) -> f64 {
     let size = r.abs();
     if size <= HUBER_SIGMAS { r * r } else { 2.0 * HUBER_SIGMAS * size - HUBER_SIGMAS * HUBER_SIGMAS }
@@ -206,9 +212,7 @@ pub fn normal(
     let (mut factors, mut right) = (Vec::with_capacity(count), Vec::with_capacity(count));
     for ((datum, predicted), weight) in forward.data.iter().zip(predicted).zip(&weights.inverse) {
         let residual = (predicted - datum.value) * weight;
-        // iteratively reweighted least squares: the weight of a residual above HUBER_SIGMAS is HUBER_SIGMAS / |r|
-        let robust =
-            if residual.abs() <= HUBER_SIGMAS { 1.0 } else { (HUBER_SIGMAS / residual.abs()).sqrt() };
+        let robust = robust_factor(residual);
         factors.push(robust * weight);
         right.push(residual * robust);
     }

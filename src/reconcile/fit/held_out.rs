@@ -6,7 +6,7 @@
 //! and a reference reading. Bench rows belong to no pose and stay in every fit, unless there is nothing else: then
 //! every fourth row of the bench is a fold.
 
-use super::descent::{Effort, Fit, Weights, descent};
+use super::descent::{Effort, Fit, Weights, descent, robust_factor};
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::Model;
 use nalgebra::{Cholesky, DMatrix};
@@ -47,10 +47,10 @@ pub(crate) fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &W
     let mut model = model.clone();
     model.held = model.break_points().into_iter().map(|p| (p, u[p])).collect();
     let model = &model;
-    let hands: Vec<Vec<(usize, f64)>> = (0..FOLDS)
+    let folds: Vec<Vec<(usize, f64)>> = (0..FOLDS)
         .into_par_iter()
-        .map(|hand| {
-            let out = |i: usize| fold_of(forward, i) == Some(hand);
+        .map(|fold| {
+            let out = |i: usize| fold_of(forward, i) == Some(fold);
             let mut kept = weights.clone();
             (0..forward.data.len()).filter(|&i| out(i)).for_each(|i| kept.inverse[i] = 0.0);
             // the start is close to the minimum, so a few steps are enough
@@ -66,15 +66,16 @@ pub(crate) fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &W
         })
         .collect();
     let mut all = vec![None; forward.data.len()];
-    for (i, r) in hands.into_iter().flatten() {
+    for (i, r) in folds.into_iter().flatten() {
         all[i] = Some(r);
     }
     all
 }
 
 /// Root mean square that the residuals of held-out poses have if the model of `fit` is right \[standard deviations of
-/// `weights`\]: 1 if the other poses determine every parameter as well as all do, and much more if an effect shows in the
-/// poses of one fold alone, so that nothing is known of it without them.
+/// `weights`\]: 1 if the other poses determine every parameter as well as all do, and much more if something shows in the
+/// poses of one fold alone, so that nothing is known of it without them. Break points keep their values, as in
+/// [`residuals`]. It is 1 too if the curvature is singular.
 ///
 /// To first order, a fit without the data of a fold has the residuals `(I - H)⁻¹ r` on them, with the residuals r of the
 /// full fit and the block `H = M Mᵀ` of its hat matrix, `M = w J L⁻ᵀ`. Their covariance is `(I - H)⁻¹`, and by Woodbury's
@@ -82,23 +83,26 @@ pub(crate) fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &W
 pub(crate) fn expected_rms(forward: &Forward, fit: &Fit, weights: &Weights) -> f64 {
     // a parameter that only this fold determines makes I - MᵀM singular; with this it has a large finite variance
     const RIDGE: f64 = 1e-9;
-    let parameters = fit.curvature.nrows();
-    let identity = DMatrix::<f64>::identity(parameters, parameters);
-    let Some(root) =
-        Cholesky::new(fit.curvature.clone()).and_then(|factor| factor.l().solve_lower_triangular(&identity))
+    let held = fit.model.break_points();
+    let free: Vec<usize> = (0..fit.curvature.nrows()).filter(|p| !held.contains(p)).collect();
+    let identity = DMatrix::<f64>::identity(free.len(), free.len());
+    let curvature = fit.curvature.select_rows(&free).select_columns(&free);
+    let Some(root) = Cholesky::new(curvature).and_then(|factor| factor.l().solve_lower_triangular(&identity))
     else {
         return 1.0;
     };
-    let reach = &fit.jacobian * root.transpose();
+    let reach = fit.jacobian.select_columns(&free) * root.transpose();
+    // the curvature counts large residuals less, and so must the block
+    let factors: Vec<f64> = fit.residuals(forward, weights).iter().map(|r| robust_factor(*r)).collect();
     let mut variances = Vec::new();
     for fold in 0..FOLDS {
         let is_own = |i: &usize| fold_of(forward, *i) == Some(fold) && weights.inverse[*i] > 0.0;
         let own: Vec<usize> = (0..forward.data.len()).filter(is_own).collect();
-        let block = DMatrix::from_fn(own.len(), parameters, |row, p| {
-            weights.inverse[own[row]] * reach[(own[row], p)]
+        let block = DMatrix::from_fn(own.len(), free.len(), |row, p| {
+            factors[own[row]] * weights.inverse[own[row]] * reach[(own[row], p)]
         });
         let left = &identity * (1.0 + RIDGE) - block.tr_mul(&block);
-        let Some(inverse) = Cholesky::new(left).map(|factor| factor.inverse()) else { return f64::INFINITY };
+        let Some(inverse) = Cholesky::new(left).map(|factor| factor.inverse()) else { return 1.0 };
         let spread = &block * inverse;
         variances.extend((0..own.len()).map(|row| 1.0 + spread.row(row).dot(&block.row(row))));
     }

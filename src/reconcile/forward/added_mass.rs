@@ -1,4 +1,4 @@
-//! The mass matrix of an added mass as a product of two matrices with few columns. The matrix then need not be
+//! Factorizes the mass matrix of a mass that a fit adds: `L Lᵀ`, where `L` has few columns. The matrix then need not be
 //! assembled when the amount of mass changes.
 
 use crate::mechanics::product::Panels;

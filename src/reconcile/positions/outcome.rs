@@ -243,7 +243,7 @@ impl Positions {
             );
             return Some((Verdict::InsufficientData, vec![text]));
         }
-        if let Some(text) = caution::impossible_calibration(campaign, self.tolerances(), adjusted) {
+        if let Some(text) = caution::impossible_calibration(campaign, "", self.tolerances(), adjusted) {
             return Some((Verdict::Unexplained, vec![text]));
         }
         let text = "the positions fit only an arm that is far from the arm file: check the unit of the positions, and the \

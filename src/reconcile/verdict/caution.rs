@@ -121,10 +121,12 @@ pub(crate) fn beyond_tolerance(
     (!beyond.is_empty()).then(|| format!("calibration leaves the tolerance: {}{doubt}", beyond.join(", ")))
 }
 
-/// Sentence that calibration explains the readings only with a factor that no faultless part has; `None` if there is no
-/// such factor. `deviations` are the standard deviations of the logarithms of the factors by their tolerances.
+/// Sentence that a model, with its calibration, explains the readings only with a factor that no faultless part has; `None`
+/// if there is no such factor. `effects` is the label of the model's effects, empty without any. `deviations` are the
+/// standard deviations of the logarithms of the factors by their tolerances.
 pub(crate) fn impossible_calibration(
     campaign: &Campaign,
+    effects: &str,
     deviations: impl Iterator<Item = f64>,
     calibrated: &[Calibrated],
 ) -> Option<String> {
@@ -139,8 +141,12 @@ pub(crate) fn impossible_calibration(
         true => String::new(),
         false => format!(", or the arm lacks an effect that its file states ({})", stated.join(", ")),
     };
+    let explained = match effects {
+        "" => "calibration explains".to_string(),
+        named => format!("{named} and calibration explain"),
+    };
     Some(format!(
-        "calibration explains the readings, but only with factors that less than one honest part in a million has: {}. The \
+        "{explained} the readings, but only with factors that less than one honest part in a million has: {}. The \
          part is another than the arm file says, something else deflects or has mass there{stated}",
         words.join(", ")
     ))

@@ -39,6 +39,14 @@ impl Verdict {
     }
 }
 
+/// Sentence that held-out poses cannot confirm the effects with this label, because few poses show them.
+pub(crate) fn shows_in_few_poses(label: &str) -> String {
+    format!(
+        "{label} shows in few poses only, so that poses held out of the fit cannot confirm it: repeat the tests that show it \
+         in other poses"
+    )
+}
+
 /// Sentence that `count` alternatives fit as well as the effect `label`; `None` if there are few enough to name it.
 pub(crate) fn too_many_alternatives(label: &str, count: usize) -> Option<String> {
     (count > MOST_ALTERNATIVES).then(|| format!("{count} other effects fit as well as {label}"))

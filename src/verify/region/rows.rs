@@ -263,8 +263,8 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Adds the linear lower bound of force times compliance to `row`. `number` is the position of the compliance in
-    /// the list of numbers and `least` its least value. The displacement is taken along `direction`.
+    /// Adds to `row`, which bounds the tip's displacement along `direction`, a linear lower bound of one displacement: force
+    /// times compliance. `number` is the position of the compliance in the list of numbers, and `least` its least value.
     fn add_product(&self, row: &mut Row, number: usize, least: f64, force: &Force, direction: &Vector3<f64>) {
         row.per_number[number] += force.least;
         let per_load = force.work.per_load.iter().map(|per| least * per.dot(direction));
