@@ -54,6 +54,21 @@ impl Rerun {
     }
 }
 
+/// The study is not run again, because the verdict names no effect.
+fn not_explained(outcome: &Outcome, study: &str) -> Rerun {
+    let verdict = outcome.verdict.word();
+    let why = format!("not re-run: the verdict is {verdict}, so there is no effect to put into it");
+    Rerun::without(study, "not_run", &why)
+}
+
+/// The study is not run again, because no effect of the corrected arm applies to it.
+fn nothing_applies(name: &str, corrected: &Asked) -> Rerun {
+    let mut rerun = Rerun::without(name, "not_run", "not re-run: no effect of the arm applies to it");
+    rerun.text.push_str(corrections::to_text(&corrected.corrections).trim_start());
+    rerun.json["carried_over"] = corrections_json(&corrected.corrections);
+    rerun
+}
+
 /// Runs the study without and with the corrections of the outcome, each with the search options `how`. `dir` is the
 /// folder of the campaign's result. The files of a finished run are written there at once, by `keep`.
 ///
@@ -68,11 +83,7 @@ pub(super) fn rerun(
     log: Log,
 ) -> Result<Rerun, Failure> {
     if outcome.verdict != Verdict::Explained {
-        let why = format!(
-            "not re-run: the verdict is {}, so there is no effect to put into it",
-            outcome.verdict.word()
-        );
-        return Ok(Rerun::without(study, "not_run", &why));
+        return Ok(not_explained(outcome, study));
     }
     let (nominal, text) = study_of(study, catalogs)?;
     let name = nominal.name.clone();
@@ -80,10 +91,7 @@ pub(super) fn rerun(
         outcome.calibrated.iter().map(|c| (c.name.clone(), c.factor.value)).collect();
     let corrected = Asked::corrected(&nominal, &text, &outcome.corrected, &calibrated, catalogs)?;
     if corrected.study.space.effects.len() == nominal.space.effects.len() {
-        let mut rerun = Rerun::without(&name, "not_run", "not re-run: no effect of the arm applies to it");
-        rerun.text.push_str(corrections::to_text(&corrected.corrections).trim_start());
-        rerun.json["carried_over"] = corrections_json(&corrected.corrections);
-        return Ok(rerun);
+        return Ok(nothing_applies(&name, &corrected));
     }
     let nominal = Asked { study: nominal, text, corrections: Vec::new() };
     let (mut found, mut kept) = (Vec::new(), Files::new());

@@ -86,13 +86,17 @@ pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game 
     for (i, &variable) in basic.iter().enumerate().filter(|(_, variable)| **variable < count) {
         mix[variable] = table[i * line + count].max(0.0);
     }
-    for shares in [&mut weights, &mut mix] {
-        let sum: f64 = shares.iter().sum();
-        shares.iter_mut().for_each(|x| *x /= sum);
-    }
+    normalize(&mut weights);
+    normalize(&mut mix);
     let weighted = |row: &[f64]| row.iter().zip(&weights).map(|(a, w)| a * w).sum::<f64>();
     let value = rows.chunks(width).map(weighted).fold(f64::INFINITY, f64::min);
     Game { weights, mix, value }
+}
+
+/// Divides shares by their sum.
+fn normalize(shares: &mut [f64]) {
+    let sum: f64 = shares.iter().sum();
+    shares.iter_mut().for_each(|share| *share /= sum);
 }
 
 /// Computes the least number of a list.

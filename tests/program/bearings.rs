@@ -372,9 +372,9 @@ fn a_bearing_of_a_given_drive_without_names_is_said_not_to_be_checked() {
         "materials": ["Aluminium 6061-T6"],
         "sections": [{"shape": "rectangular_tube", "width_mm": [60, 80], "wall_mm": [2, 3]}]}});
     let words = |study: &Value| run(study, &[]).0.split_whitespace().collect::<Vec<_>>().join(" ");
-    let sentence =
-        "Output bearing not checked in j1: the drive is given without the names of gear and motor.";
-    assert!(words(&given).contains(sentence));
+    let sentence = "Output bearing not checked in j1: the drive is given without the names of gear and motor, or its gear sits at the motor.";
+    let said = words(&given);
+    assert!(said.contains(sentence) && said.contains("The drive of j1 is not checked"), "{said}");
     given["chain"][0]["motor"] = json!("F11-5");
     let holds = words(&given);
     assert!(!holds.contains("Output bearing not checked") && !holds.contains("carries too much"), "{holds}");

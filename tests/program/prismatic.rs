@@ -158,7 +158,10 @@ fn a_study_says_what_its_guides_bear_at_rest_and_in_a_stop() {
         // the percentage is printed as a whole number, the others with three digits
         assert!((number - expected).abs() <= 0.02 * expected, "{number} {expected}: {bear}");
     }
-    assert!(numbers.len() == 6 && bear.ends_with("times what it holds) in an emergency stop."), "{bear}");
+    assert!(
+        numbers.len() == 6 && bear.ends_with("times what it holds) in an emergency stop of its own travel."),
+        "{bear}"
+    );
     assert!(said("Whether guides hold").contains("rail has no max_roll_nm, max_yaw_nm in its guide"));
     // water bears a part of the weight, and the whole mass is braked
     let mut sunk = study;
