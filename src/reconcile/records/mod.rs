@@ -3,7 +3,7 @@
 //!
 //! - [`spec`] reads what `campaign.json` says of records, and [`reading`] reads the records.
 //! - `smooth` computes slopes and curvatures. `signals` gathers the rows of one joint and divides them into blocks of
-//!   time. `wave` removes a transmission error within a turn of the motor before signals are differentiated.
+//!   time, and `known` says at which rows torque and friction are known. `wave` removes a transmission error within a turn of the motor before signals are differentiated.
 //! - `blocks` fits columns to rows, with intervals and held-out errors by blocks.
 //! - `twist` chooses the terms of the twist, `friction` balances the torques, `curve` looks for torsion laws beyond a
 //!   single compliance, and `ringing` for free vibration.
@@ -18,6 +18,8 @@ pub mod finding;
 pub(crate) mod friction;
 pub(crate) mod intervals;
 pub(crate) mod judge;
+pub(crate) mod known;
+pub(crate) mod other_cause;
 pub(crate) mod outcome;
 pub mod reading;
 pub(crate) mod report;
