@@ -15,9 +15,9 @@ use super::friction::Friction;
 use super::intervals::{covering, half, is_positive, widened};
 use super::signals::Sample;
 use super::twist::{CLEARLY, Group, Places, TwistModel, columns, fill, fill_known};
-use std::ops::Range;
 use crate::arm::effect::{hysteresis, lost_motion};
 use crate::reconcile::model::estimate::Estimate;
+use std::ops::Range;
 
 /// Break points T1 and T2 that are tried, as fractions of the largest spring torque.
 const BREAKS: [f64; 11] = [0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
@@ -542,7 +542,9 @@ impl Curve {
     /// at a torque that the record does not show.
     fn one_break(&self, place: usize, t1: f64, torque: usize) -> Vec<(String, Vec<Estimate>)> {
         let at = self.first + 4 * place;
-        let (Law::Segments(_, t2), known) = (self.laws[place], self.spring_nm.iter()) else { return Vec::new() };
+        let (Law::Segments(_, t2), known) = (self.laws[place], self.spring_nm.iter()) else {
+            return Vec::new();
+        };
         let largest_nm = known.fold(0.0f64, |m, t| m.max(t.abs()));
         let [first, second] = self.breaks(place, [t1, t2]);
         let upper = self.fitted.estimate(|c| 1.0 / c(torque));

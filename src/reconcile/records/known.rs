@@ -19,8 +19,11 @@ const LEAST_MOVING_PART: f64 = 0.2;
 /// A joint reverses at rows where the magnitude of the smoothed sign of its speed differs from one by more than this. Where the
 /// sign changes smoothly although friction does not, Coulomb friction would come out too large.
 pub(super) const TURNING: f64 = 0.05;
-/// Rows of reversals, or of jumps, are left out only where at least this fraction of the rows is left.
+/// Rows of reversals are left out only where at least this fraction of the moving rows is left.
 const LEAST_KNOWN_PART: f64 = 0.6;
+/// Rows at jumps are left out only where at least this fraction of the rows is left. A torque that jumps in more rows than a
+/// planned motion has corners is noisy, and its jumps have both signs.
+const LEAST_STEADY_PART: f64 = 0.85;
 /// The torque jumps where a step from row to row differs from the mean of its neighbours by more than this many times the usual
 /// difference (in standard deviations, by the median).
 const JUMP: f64 = 6.0;
@@ -56,7 +59,8 @@ pub(super) fn turning(sense: &[f64], rests: &[bool]) -> Vec<bool> {
     let turns = |s: &f64| (s.abs() - 1.0).abs() > TURNING;
     let moves = |s: &f64, rests: &bool| !*rests && !s.is_nan();
     let moving = sense.iter().zip(rests).filter(|(s, rests)| moves(s, rests));
-    let (left, all) = moving.fold((0usize, 0usize), |(left, all), (s, _)| (left + usize::from(!turns(s)), all + 1));
+    let (left, all) =
+        moving.fold((0usize, 0usize), |(left, all), (s, _)| (left + usize::from(!turns(s)), all + 1));
     match (left as f64) < LEAST_KNOWN_PART * all as f64 {
         true => vec![false; sense.len()],
         false => sense.iter().map(turns).collect(),
@@ -76,7 +80,7 @@ pub(super) fn at_jumps(torque_nm: &[f64], half: usize) -> Vec<bool> {
         out[i.saturating_sub(half)..end].fill(true);
     }
     let left = out.iter().filter(|jumps| !**jumps).count();
-    if (left as f64) < LEAST_KNOWN_PART * out.len() as f64 { vec![false; out.len()] } else { out }
+    if (left as f64) < LEAST_STEADY_PART * out.len() as f64 { vec![false; out.len()] } else { out }
 }
 
 /// Standard deviation of a signal, in its unit.

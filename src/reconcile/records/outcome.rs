@@ -358,7 +358,8 @@ fn as_effect(campaign: &Campaign, finding: &Finding) -> Option<Effect> {
 fn held_out(joints: &[JointRecord]) -> Option<HeldOut> {
     let count: usize = joints.iter().map(|j| j.rows).sum();
     let mean = |of: fn(&JointRecord) -> f64| {
-        let sum: f64 = joints.iter().map(|j| j.rows as f64 * (of(j) / j.averaged_noise_rad.max(1e-12)).powi(2)).sum();
+        let sum: f64 =
+            joints.iter().map(|j| j.rows as f64 * (of(j) / j.averaged_noise_rad.max(1e-12)).powi(2)).sum();
         (sum / count as f64).sqrt()
     };
     let after = mean(|j| j.after_rad);
@@ -450,4 +451,21 @@ pub(crate) fn joined(mut other: Outcome, records: Outcome) -> Outcome {
     other.located.extend(records.located);
     other.records = records.records;
     other
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_hint_is_the_one_whose_factor_is_nearest() {
+        let hint = |factor: f64, ratio: f64| {
+            let causes = [(ratio, "ratio".to_string()), (1f64.to_degrees(), "radians".to_string())];
+            nearest_cause(factor, causes.into_iter())
+        };
+        // the ratio of 50 is within the margin of 57.3 too
+        assert_eq!(hint(57.0, 50.0).as_deref(), Some("radians"));
+        assert_eq!(hint(51.0, 50.0).as_deref(), Some("ratio"));
+        assert_eq!(hint(3.0, 100.0), None);
+    }
 }

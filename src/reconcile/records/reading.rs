@@ -262,7 +262,8 @@ impl Reader<'_> {
     fn unused(&self, time: usize, columns: &[Columns]) -> Option<String> {
         let of_joint = |c: &Columns| [Some(c.motor.0), c.link, c.torque.map(|t| t.0)];
         let used: Vec<usize> = columns.iter().flat_map(of_joint).flatten().chain([time]).collect();
-        let names = self.header.iter().enumerate().filter(|(i, _)| !used.contains(i)).map(|(_, n)| n.as_str());
+        let names =
+            self.header.iter().enumerate().filter(|(i, _)| !used.contains(i)).map(|(_, n)| n.as_str());
         let names: Vec<&str> = names.collect();
         (!names.is_empty()).then(|| format!("{}: columns that are not used: {}", self.file, names.join(", ")))
     }
@@ -283,7 +284,12 @@ impl Reader<'_> {
                 torque_nm: Vec::new(),
             }
         };
-        Record { file: self.file.clone(), t_s: Vec::new(), joints: columns.iter().map(signals).collect(), remarks: Vec::new() }
+        Record {
+            file: self.file.clone(),
+            t_s: Vec::new(),
+            joints: columns.iter().map(signals).collect(),
+            remarks: Vec::new(),
+        }
     }
 
     fn push(&mut self, out: &mut Record, columns: &[Columns], time: usize, cells: &csv::ByteRecord) {
