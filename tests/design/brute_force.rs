@@ -424,7 +424,8 @@ fn assert_smallest_relaxation(study_json: &Value) {
         let words = said.split(what).nth(1)?.split("down to ").nth(1)?;
         words.split(" %").next()?.parse::<f64>().ok().map(|percent| percent / 100.0)
     };
-    let (torque, speed) = (stated("torque on the joint"), stated("speed, acceleration and emergency deceleration"));
+    let (torque, speed) =
+        (stated("torque on the joint"), stated("speed, acceleration and emergency deceleration"));
     println!("{joint}: torque {by_torque:?}, said {torque:?}; speed {by_speed:?}, said {speed:?}");
     for (what, ours, theirs) in [("torque", by_torque, torque), ("speed", by_speed, speed)] {
         match (ours, theirs) {

@@ -23,6 +23,7 @@ mod positions_other_simulator;
 mod prismatic;
 mod record_simulator;
 mod records;
+mod records_known_rows;
 mod records_prescribed;
 mod scoring;
 mod together;

@@ -43,6 +43,9 @@ pub struct Test {
     pub torque_noise_nm: f64,
     /// The motor stops after this part of the rows.
     pub moving_part: f64,
+    /// Whether the motion goes from point to point with a trapezoid of the speed, instead of a sum of sines. The controller feeds
+    /// the jumps of the acceleration forward.
+    pub has_corners: bool,
 }
 
 impl Joint {
@@ -95,6 +98,26 @@ fn reference(t: f64, end: f64, waves: &[(f64, f64, f64)], amplitude: f64) -> f64
     amplitude * window * sum
 }
 
+/// Angle, speed and acceleration of moves from point to point, each with a trapezoid of the speed.
+fn corners(t: f64, amplitude: f64) -> [f64; 3] {
+    const LASTS_S: f64 = 1.4;
+    const RISES: f64 = 0.15;
+    let move_ = (t / LASTS_S).floor();
+    let end = |n: f64| if n < 0.0 { 0.0 } else { amplitude * (2.4 * n + 1.0).sin() };
+    let (from, to, u) = (end(move_ - 1.0), end(move_), t / LASTS_S - move_);
+    let peak = 1.0 / (1.0 - RISES);
+    let rising = |u: f64| [0.5 * peak * u * u / RISES, peak * u / RISES, peak / RISES];
+    let [x, w, a] = match u {
+        u if u < RISES => rising(u),
+        u if u > 1.0 - RISES => {
+            let [x, w, a] = rising(1.0 - u);
+            [1.0 - x, w, -a]
+        }
+        u => [peak * (u - 0.5 * RISES), peak, 0.0],
+    };
+    [from + (to - from) * x, (to - from) * w / LASTS_S, (to - from) * a / LASTS_S.powi(2)]
+}
+
 impl Joint {
     fn rates(&self, q: [f64; 4], bristle_rad: f64, motor_nm: f64) -> [f64; 4] {
         let spring = self.spring_nm(q[0] - q[2]) + self.stiffness_nm_per_rad * bristle_rad;
@@ -133,7 +156,12 @@ pub fn record(joint: &Joint, test: &Test, dice: &mut Dice) -> String {
         let t = i as f64 * h;
         let target = reference(t, moving, &waves, test.amplitude_rad);
         let speed = (reference(t + 1e-5, moving, &waves, test.amplitude_rad) - target) / 1e-5;
-        let feed = joint.gravity_nm * target.sin();
+        let (mut target, mut speed, mut acceleration) = (target, speed, 0.0);
+        if test.has_corners {
+            [target, speed, acceleration] = corners(t, test.amplitude_rad);
+        }
+        let whole_kgm2 = joint.motor_inertia_kgm2 + joint.link_inertia_kgm2;
+        let feed = joint.gravity_nm * target.sin() + whole_kgm2 * acceleration;
         let motor_nm = feed + gain * (target - q[0]) + damping * (speed - q[1]);
         fine.push((q[0], q[2], motor_nm));
         let step =

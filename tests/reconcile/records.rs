@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 /// A campaign with one record of a joint `j1` whose nominal stiffness is as given, `None` for a rigid one.
-fn campaign(joint: &Joint, test: &Test, nominal: Option<f64>, dice: &mut Dice) -> TempDir {
+pub(crate) fn campaign(joint: &Joint, test: &Test, nominal: Option<f64>, dice: &mut Dice) -> TempDir {
     let folder = tempfile::tempdir().expect("a folder");
     let arm = json!({"name": "one-joint", "effects": [], "chain": [
         {"type": "joint", "name": "j1", "axis": [0, 1, 0], "stiffness_nm_per_rad": nominal, "mass_kg": 1.0},
@@ -32,7 +32,7 @@ pub(crate) fn names(outcome: &Outcome) -> Vec<&str> {
     outcome.effects.iter().map(|f| f.effect.as_str()).collect()
 }
 
-fn test() -> Test {
+pub(crate) fn test() -> Test {
     Test {
         rows: 9000,
         step_s: 2e-3,
@@ -41,6 +41,7 @@ fn test() -> Test {
         resolution_rad: 5e-6,
         torque_noise_nm: 1.0,
         moving_part: 1.0,
+        has_corners: false,
     }
 }
 
@@ -90,7 +91,7 @@ fn intervals_of_random_joints_hold() {
 }
 
 /// A joint in the middle of what the random ones are.
-fn middling() -> Joint {
+pub(crate) fn middling() -> Joint {
     Joint { coulomb_nm: 12.0, viscous_nms_per_rad: 20.0, shift_s: 2.5e-3, ..Joint::random(&mut Dice(5)) }
 }
 
@@ -315,7 +316,7 @@ fn an_industrial_robot_shows_a_shift_of_three_milliseconds_and_no_compliance_on_
 
 /// The record of a campaign with each row changed by `change`, which gets the number of the row and its cells; a row for which it
 /// is false is left out.
-fn rewrite(folder: &Path, change: impl Fn(usize, &mut [f64]) -> bool) {
+pub(crate) fn rewrite(folder: &Path, change: impl Fn(usize, &mut [f64]) -> bool) {
     let path = folder.join("record.csv");
     let text = std::fs::read_to_string(&path).expect("text");
     let mut lines = text.lines();

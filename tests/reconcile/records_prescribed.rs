@@ -21,6 +21,8 @@ struct Prescribed {
     shift_s: f64,
     /// Whether the spring has three segments, of 35, 60 and 90 kN m/rad, with breaks at 40 and 85 N m.
     has_segments: bool,
+    /// Half width of a hysteresis of the spring, as a torque [N m] and as a twist [rad]; both 0 if there is none.
+    play: [f64; 2],
 }
 
 impl Prescribed {
@@ -39,6 +41,7 @@ impl Prescribed {
             sign: 1.0,
             shift_s: 0.0,
             has_segments: false,
+            play: [0.0; 2],
         }
     }
 
@@ -86,18 +89,31 @@ impl Prescribed {
         const STEP_S: f64 = 2e-3;
         const ROWS: usize = 12_000;
         let motion = self.motion(ROWS as f64 * STEP_S, dice);
+        // twist by the hysteresis from a row before the first to one after the last: the state of the spring's torque is dragged
+        let [width_nm, width_rad] = self.play;
+        let mut state = f64::NAN;
+        let lags: Vec<f64> = (0..ROWS + 2)
+            .map(|i| {
+                let [q, a] = motion((i as f64 - 1.0) * STEP_S);
+                let spring_nm = Self::LINK_KGM2 * a + self.gravity_nm * q.cos();
+                let start = if state.is_nan() { spring_nm } else { state };
+                state = start.clamp(spring_nm - width_nm, spring_nm + width_nm);
+                if width_nm > 0.0 { (state - spring_nm) * width_rad / width_nm } else { 0.0 }
+            })
+            .collect();
         let motor = |t: f64| {
             let [q, a] = motion(t);
+            let lag_rad = lags[(t / STEP_S).round() as usize + 1];
             let spring_nm = Self::LINK_KGM2 * a + self.gravity_nm * q.cos();
             let waves = [q.sin(), q.cos(), (2.0 * q).sin(), (2.0 * q).cos()];
             let error: f64 = waves.iter().zip(self.error_rad).map(|(w, e)| w * e).sum();
-            (q + self.twist_rad(spring_nm) + error, spring_nm)
+            (q + self.twist_rad(spring_nm) + lag_rad + error, spring_nm)
         };
         let mut out = String::from("t_s,j1_motor_deg,j1_link_deg,j1_motor_torque_nm\n");
         let mut sense = 0.0;
         for row in 0..ROWS {
             let t = row as f64 * STEP_S;
-            let [before, (angle, spring_nm), after] = [t - STEP_S, t, t + STEP_S].map(motor);
+            let [before, (angle, spring_nm), after] = [t - STEP_S, t, t + STEP_S].map(&motor);
             let speed = (after.0 - before.0) / (2.0 * STEP_S);
             let acceleration = (after.0 - 2.0 * angle + before.0) / STEP_S.powi(2);
             if speed.abs() > 1e-5 {
@@ -219,4 +235,31 @@ fn a_slow_vertical_axis_hides_its_compliance() {
     let stated = blind.records[0].of("compliance").expect("stated");
     assert_eq!(stated.state, State::NotIdentified, "{}", stated.words);
     assert!(!names(&blind).contains(&"joint_compliance"));
+}
+
+#[test]
+fn a_hysteresis_remembers_the_torque_while_the_joint_rests() {
+    // moves from point to point: the torque has its extremes where the joint reverses or rests
+    for (seed, half_width_rad) in [(600, 1e-4), (601, 2.4e-4), (602, 4e-4)] {
+        let joint = Prescribed { has_rests: true, play: [18.0, half_width_rad], ..Prescribed::plain() };
+        let outcome = joint.outcome(false, &mut Dice(seed));
+        assert_eq!(names(&outcome), ["hysteresis"], "{seed}");
+        let (width, low, high) = number(&outcome.records[0], "hysteresis").expect("a width");
+        assert!(low <= half_width_rad && half_width_rad <= high, "{width} ({low} to {high})");
+    }
+}
+
+#[test]
+fn segments_that_the_known_rows_do_not_reach_are_open() {
+    // the largest torque outside of reversals is below the second break of 85 N m
+    let joint = Prescribed { has_segments: true, has_rests: true, gravity_nm: 62.0, ..Prescribed::plain() };
+    let outcome = joint.outcome(false, &mut Dice(610));
+    let Some(stated) = outcome.records[0].found("torsion_curve") else { return };
+    for (name, truth) in
+        [("k1_nm_per_rad", 35e3), ("k2_nm_per_rad", 60e3), ("k3_nm_per_rad", 90e3), ("t2_nm", 85.0)]
+    {
+        let list = &stated.parameters.iter().find(|(n, _)| n == name).expect(name).1;
+        let (low, high) = (list[0].low.unwrap_or(0.0), list[0].high.unwrap_or(f64::INFINITY));
+        assert!(low <= truth && truth <= high, "{name} {truth}: {:?}", list[0]);
+    }
 }

@@ -1,5 +1,7 @@
 //! Tail probabilities of the chi-squared and normal distributions, and medians.
 
+pub(crate) use crate::reconcile::readings::median::median;
+
 /// Natural logarithm of the probability that a chi-squared variable of `dof` degrees of freedom exceeds `x`.
 pub(crate) fn ln_chi_squared_tail(x: f64, dof: f64) -> f64 {
     if x <= 0.0 {
@@ -76,16 +78,6 @@ fn ln_gamma(x: f64) -> f64 {
 
 /// The median of the magnitude of a standard normal deviate.
 pub(crate) const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_082;
-
-/// The median of the values, in their unit; 0 for an empty list.
-pub(crate) fn median(mut values: Vec<f64>) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    values.sort_by(f64::total_cmp);
-    let n = values.len();
-    if n % 2 == 1 { values[n / 2] } else { 0.5 * (values[n / 2 - 1] + values[n / 2]) }
-}
 
 #[cfg(test)]
 mod tests {

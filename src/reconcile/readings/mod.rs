@@ -5,6 +5,7 @@ pub(crate) mod cells;
 pub mod components;
 pub(crate) mod declared;
 pub(crate) mod keys;
+pub(crate) mod median;
 pub mod placement;
 pub mod record;
 pub mod record_spec;

@@ -4,6 +4,7 @@
 //! the shaft is multiplied by it. A record may have a hundred thousand rows, so only the columns that are used are
 //! converted to numbers.
 
+use super::median::median;
 use super::record_spec::RecordSpec;
 use crate::input::json::{Fault, InputError, closest};
 use csv::{ReaderBuilder, Trim};
@@ -50,6 +51,8 @@ pub struct Record {
     pub t_s: Vec<f64>,
     /// Joints that have a motor angle.
     pub joints: Vec<JointSignals>,
+    /// What the reader noticed: columns that are not used, times that may be in another unit.
+    pub(crate) remarks: Vec<String>,
 }
 
 /// Indices of the columns of a file with the signals of a joint. Motor angle and torque come with the factor that
@@ -60,6 +63,10 @@ struct Columns {
     link: Option<usize>,
     torque: Option<(usize, f64)>,
 }
+
+/// Rows of a moving joint that follow each other after more than this may have their time in another unit \[s\]: controllers
+/// write them after 0.25 to 20 ms.
+const LONGEST_STEP_S: f64 = 0.15;
 
 struct Reader<'a> {
     file: String,
@@ -153,6 +160,8 @@ impl Reader<'_> {
             }
         }
         self.finish(&mut out, &columns);
+        out.remarks.extend(self.unused(time, &columns));
+        out.remarks.extend(slow_rows(&out));
         Some(out)
     }
 
@@ -249,6 +258,16 @@ impl Reader<'_> {
         })
     }
 
+    /// Sentence on the columns of the file that are not used; `None` if all are.
+    fn unused(&self, time: usize, columns: &[Columns]) -> Option<String> {
+        let of_joint = |c: &Columns| [Some(c.motor.0), c.link, c.torque.map(|t| t.0)];
+        let used: Vec<usize> = columns.iter().flat_map(of_joint).flatten().chain([time]).collect();
+        let names =
+            self.header.iter().enumerate().filter(|(i, _)| !used.contains(i)).map(|(_, n)| n.as_str());
+        let names: Vec<&str> = names.collect();
+        (!names.is_empty()).then(|| format!("{}: columns that are not used: {}", self.file, names.join(", ")))
+    }
+
     fn empty(&self, columns: &[Columns]) -> Record {
         let signals = |c: &Columns| {
             let ratio = self.spec.ratio.of(&c.joint);
@@ -265,7 +284,12 @@ impl Reader<'_> {
                 torque_nm: Vec::new(),
             }
         };
-        Record { file: self.file.clone(), t_s: Vec::new(), joints: columns.iter().map(signals).collect() }
+        Record {
+            file: self.file.clone(),
+            t_s: Vec::new(),
+            joints: columns.iter().map(signals).collect(),
+            remarks: Vec::new(),
+        }
     }
 
     fn push(&mut self, out: &mut Record, columns: &[Columns], time: usize, cells: &csv::ByteRecord) {
@@ -336,6 +360,24 @@ impl Reader<'_> {
             }
         }
     }
+}
+
+/// Hint at times in milliseconds or microseconds where the rows follow each other so slowly that a record of a moving joint
+/// hardly has them.
+fn slow_rows(record: &Record) -> Option<String> {
+    let step_s = usual_step_s(&record.t_s);
+    (step_s > LONGEST_STEP_S).then(|| {
+        format!(
+            "{}: rows follow each other after {step_s} s: t_s must be in seconds, and these times may be in milliseconds or \
+             microseconds; time shifts, speeds and frictions are then wrong by this factor",
+            record.file
+        )
+    })
+}
+
+/// Usual (median) time between rows \[s\].
+pub(crate) fn usual_step_s(t_s: &[f64]) -> f64 {
+    median(t_s.windows(2).map(|w| w[1] - w[0]).collect())
 }
 
 /// Largest less smallest of the angles.

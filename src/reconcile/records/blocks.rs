@@ -43,21 +43,23 @@ pub(crate) struct Fitted {
 
 impl Blocks {
     /// Sums the products of every two of `width` columns, block by block. `fill` writes the columns of the row with
-    /// the given index. `block_of` gives the block of a row, or `None` for a row that is left out.
+    /// the given index, and returns whether the row is used. `block_of` gives the block of a row.
     pub(crate) fn new(
         rows: usize,
         width: usize,
-        block_of: impl Fn(usize) -> Option<usize>,
-        fill: impl Fn(usize, &mut [f64]),
+        block_of: impl Fn(usize) -> usize,
+        fill: impl Fn(usize, &mut [f64]) -> bool,
     ) -> Self {
-        let count = (0..rows).filter_map(&block_of).max().map_or(0, |b| b + 1);
+        let count = (0..rows).map(&block_of).max().map_or(0, |b| b + 1);
         let mut sums = vec![DMatrix::zeros(width, width); count];
         let mut numbers = vec![0usize; count];
         let mut row = vec![0.0; width];
         for i in 0..rows {
-            let Some(block) = block_of(i) else { continue };
             row.fill(0.0);
-            fill(i, &mut row);
+            if !fill(i, &mut row) {
+                continue;
+            }
+            let block = block_of(i);
             numbers[block] += 1;
             add(&mut sums[block], &row);
         }
@@ -115,7 +117,7 @@ impl Blocks {
             columns: columns.to_vec(),
             without,
             held_out,
-            rows: self.rows.iter().sum(),
+            rows: self.rows.iter().sum::<usize>().max(1),
         })
     }
 
@@ -248,7 +250,11 @@ mod tests {
         // y = 2 + 3 x, and the last of four blocks is off by 1
         let x = |i: usize| i as f64 / 40.0;
         let y = |i: usize| 2.0 + 3.0 * x(i) + if i >= 30 { 1.0 } else { 0.0 };
-        let blocks = Blocks::new(40, 3, |i| Some(i / 10), |i, row| row.copy_from_slice(&[1.0, x(i), y(i)]));
+        let fill = |i: usize, row: &mut [f64]| {
+            row.copy_from_slice(&[1.0, x(i), y(i)]);
+            true
+        };
+        let blocks = Blocks::new(40, 3, |i| i / 10, fill);
         let fit = blocks.fit(&[0, 1], 2, |_| None).expect("a fit");
         assert!((fit.held_out[3] - 10.0).abs() < 1e-6, "{:?}", fit.held_out);
         let slope = fit.coefficient(1);

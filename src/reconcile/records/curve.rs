@@ -12,10 +12,12 @@
 
 use super::blocks::{Blocks, Fitted};
 use super::friction::Friction;
-use super::intervals::is_positive;
-use super::twist::{CLEARLY, Group, Places, TwistModel, columns, fill};
+use super::intervals::{covering, half, is_positive, widened};
+use super::signals::Sample;
+use super::twist::{CLEARLY, Group, Places, TwistModel, columns, fill, fill_known};
 use crate::arm::effect::{hysteresis, lost_motion};
 use crate::reconcile::model::estimate::Estimate;
+use std::ops::Range;
 
 /// Break points T1 and T2 that are tried, as fractions of the largest spring torque.
 const BREAKS: [f64; 11] = [0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
@@ -28,10 +30,12 @@ const PLAYS: [f64; 8] = [0.005, 0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.3];
 const CLEARLY_OF_GRID: f64 = 3.0;
 /// A law is accepted only if it changes the twist by more than this fraction of the twist's root mean square. A
 /// smaller change may come from the simplicity of the model of friction.
-const MATERIAL: f64 = 0.02;
+pub(super) const LEAST_TWIST_CHANGE: f64 = 0.02;
 /// A law that is not accepted but would lower the error on held-out blocks to less than this fraction may be hidden in the
 /// record: a few blocks with most of the error can keep a true law from being clear.
 const HIDDEN: f64 = 0.5;
+/// Break points of three segments whose intervals are nearer to each other than this fraction of the second one are one break.
+const ONE_BREAK: f64 = 0.1;
 /// Number of Gauss-Newton steps by which the torques at which the laws change are improved.
 const ROUNDS: usize = 5;
 /// Largest change of a torque of a law in one Gauss-Newton step, as a fraction of this torque.
@@ -68,6 +72,8 @@ pub(crate) struct Curve {
     first: usize,
     /// Torque of the spring (the motor's torque without friction and rotor inertia), one per row \[N m\].
     pub spring_nm: Vec<f64>,
+    /// Friction that is held in all fits with a law; `None` where it is free.
+    pub held: Option<Held>,
 }
 
 /// Name of the three segments of a gear in `verdict.json`.
@@ -151,7 +157,10 @@ pub(crate) fn spring_torque(model: &TwistModel, fitted: &Fitted, friction: Optio
         Some((coulomb_nm, f)) => [-coulomb_nm, -f.load_part.map_or(0.0, |part| part.value)],
         None => [of_twist(p.sense()), of_twist(p.load_sense())],
     };
-    let (inertia, rate) = (of_twist(p.acceleration()), of_twist(p.rate()));
+    // a fit without a law takes a part of its loop for a filter of the torque
+    let has_laws = fitted.columns.iter().any(|c| *c >= p.further());
+    let rate = if has_laws || coulomb_nm.is_none() { of_twist(p.rate()) } else { 0.0 };
+    let inertia = of_twist(p.acceleration());
     let parts = [(p.torque(), 1.0), (p.acceleration(), inertia), (p.sense(), sense)];
     let parts = [parts.as_slice(), &[(p.load_sense(), load_part), (p.rate(), rate)]].concat();
     let mut row = vec![0.0; p.further() + 1];
@@ -161,15 +170,79 @@ pub(crate) fn spring_torque(model: &TwistModel, fitted: &Fitted, friction: Optio
         let sum: f64 = parts.iter().map(|(column, factor)| row[*column] * factor).sum();
         sum - viscous_nms_per_rad * model.rows.samples[i].speed_rad_s
     };
-    (0..model.rows.samples.len()).map(torque_nm).collect()
+    let mut out: Vec<f64> = (0..model.rows.samples.len()).map(torque_nm).collect();
+    bridge(model, &mut out);
+    out
+}
+
+/// Replaces the torque of the spring at rows where friction is not known. A hysteresis remembers these rows, so an error of
+/// friction there would remain after them. They get the torque of the load, which the gear carries and which needs no friction,
+/// plus its difference from the spring's torque, interpolated between the known rows before and after.
+fn bridge(model: &TwistModel, spring_nm: &mut [f64]) {
+    let samples = &model.rows.samples;
+    let mut row = 0;
+    while row < samples.len() {
+        let end = (row..samples.len()).find(|i| samples[*i].is_known()).unwrap_or(samples.len());
+        if end > row {
+            bridge_one(samples, row..end, spring_nm);
+        }
+        row = end + 1;
+    }
+}
+
+/// Bridges the rows `gap`, none of which is known.
+fn bridge_one(samples: &[Sample], gap: Range<usize>, spring_nm: &mut [f64]) {
+    let more = |i: usize| spring_nm[i] - samples[i].load_nm;
+    let before = gap.start.checked_sub(1).map(|i| (samples[i].record, more(i)));
+    let after = (gap.end < samples.len()).then(|| (samples[gap.end].record, more(gap.end)));
+    let length = (gap.end - gap.start + 1) as f64;
+    for i in gap.clone() {
+        let own = |end: Option<(usize, f64)>| end.filter(|(r, _)| *r == samples[i].record).map(|(_, x)| x);
+        let part = (i - gap.start + 1) as f64 / length;
+        let more_nm = match (own(before), own(after)) {
+            (Some(a), Some(b)) => a + part * (b - a),
+            (Some(one), None) | (None, Some(one)) => one,
+            (None, None) => continue,
+        };
+        spring_nm[i] = samples[i].load_nm + more_nm;
+    }
+}
+
+/// Coulomb friction and friction in proportion to the load, as far as the balance of torques is certain of it: the torque
+/// \[N m\], half of the width of its interval \[N m\], and the part of the load.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Held {
+    coulomb_nm: f64,
+    spread_nm: f64,
+    load_part: f64,
+}
+
+/// The friction that is held in all fits with a law; `None` where it is free. Friction on the motor's side is a part of that of
+/// the balance of torques. Where the fit of the twist asks for more, the loop of a hysteresis stands in for friction, and all
+/// of the friction acts on the motor's side.
+fn held(model: &TwistModel, friction: Option<&Friction>) -> Option<Held> {
+    let f = friction.filter(|f| f.clearly[0] && is_positive(&f.coulomb_nm))?;
+    let out = Held {
+        coulomb_nm: f.coulomb_nm.value,
+        spread_nm: half(&f.coulomb_nm),
+        load_part: f.load_part.map_or(0.0, |part| part.value),
+    };
+    let samples = &model.rows.samples;
+    let mean_load_nm = samples.iter().map(|s| s.load_nm.abs()).sum::<f64>() / samples.len() as f64;
+    let (p, fitted) = (model.places, &model.fitted);
+    let of_twist = |c: usize| -fitted.value(c) / fitted.value(p.torque());
+    let asked_nm = of_twist(p.sense()) + of_twist(p.load_sense()) * mean_load_nm;
+    (asked_nm > out.coulomb_nm + out.load_part * mean_load_nm).then_some(out)
 }
 
 /// Finds up to two torsion laws beyond a single compliance, one after the other, that predict held-out blocks clearly
 /// better. `None` if a fit is impossible.
 pub(crate) fn curve(model: &TwistModel, friction: Option<&Friction>) -> Option<Curve> {
     let spring_nm = spring_torque(model, &model.fitted, friction);
-    let first = model.places.further();
-    let own = columns(model.rows, &model.groups);
+    let (p, held) = (model.places, held(model, friction));
+    let first = p.further();
+    let is_free = |c: &usize| held.is_none() || ![p.sense(), p.load_sense()].contains(c);
+    let own: Vec<usize> = columns(model.rows, &model.groups).into_iter().filter(is_free).collect();
     let mut out = Curve {
         laws: Vec::new(),
         refused: Vec::new(),
@@ -179,6 +252,7 @@ pub(crate) fn curve(model: &TwistModel, friction: Option<&Friction>) -> Option<C
         steps: Vec::new(),
         first,
         spring_nm,
+        held,
     };
     let largest_nm = out.spring_nm.iter().fold(0.0f64, |m, t| m.max(t.abs()));
     for _ in 0..2 {
@@ -214,7 +288,7 @@ pub(crate) fn curve(model: &TwistModel, friction: Option<&Friction>) -> Option<C
     Some(out)
 }
 
-/// Whether a law changes the twist by more than [`MATERIAL`] of the twist's root mean square. `at` is the first
+/// Whether a law changes the twist by more than [`LEAST_TWIST_CHANGE`] of the twist's root mean square. `at` is the first
 /// column of the law, and `torque` the column whose coefficient is the compliance.
 fn is_material(fit: &Fitted, law: Law, at: usize, spring_nm: &[f64], torque: usize) -> bool {
     let squares: f64 = spring_nm.iter().map(|t| t * t).sum();
@@ -224,7 +298,7 @@ fn is_material(fit: &Fitted, law: Law, at: usize, spring_nm: &[f64], torque: usi
         Law::LostMotion(_) => fit.value(at).abs(),
         Law::Play(width) => fit.value(at).abs() * width,
     };
-    size_rad > MATERIAL * twist_rad
+    size_rad > LEAST_TWIST_CHANGE * twist_rad
 }
 
 /// Reason why the fitted coefficients of a law are physically impossible; `None` if they are possible. `first` is the
@@ -347,8 +421,12 @@ impl Curve {
             .collect();
         let target = self.first + 4 * laws.len();
         let sums = model.rows.sums(target + 1, |i, _, row| {
-            if !fill(model.rows, i, model.shift_s, row) {
+            if !fill_known(model.rows, i, model.shift_s, row) {
                 return false;
+            }
+            if let Some(held) = self.held {
+                let p = model.places;
+                row[p.torque()] -= held.coulomb_nm * row[p.sense()] + held.load_part * row[p.load_sense()];
             }
             for (k, law) in laws.iter().enumerate() {
                 let drag = plays[k].as_ref().map_or([0.0; 2], |p| [p[0][i], p[1][i]]);
@@ -425,6 +503,7 @@ impl Curve {
         let named = |name: &str, estimate: Estimate| (name.to_string(), vec![estimate]);
         let torque = places.torque();
         match law {
+            Law::Segments(t1, t2) if self.has_one_break(place, [t1, t2]) => self.one_break(place, t1, torque),
             Law::Segments(t1, t2) => vec![
                 named("k1_nm_per_rad", self.fitted.estimate(|c| 1.0 / (c(torque) + c(at) + c(at + 1)))),
                 named("k2_nm_per_rad", self.fitted.estimate(|c| 1.0 / (c(torque) + c(at + 1)))),
@@ -437,9 +516,46 @@ impl Curve {
                 named("torque_nm", self.fitted.estimate(|c| closing + c(at + 2) / c(at))),
             ],
             Law::Play(width) => {
-                vec![named("half_width_rad", self.fitted.estimate(|c| c(at) * width + c(at + 2)))]
+                // friction that is held too large takes as much from the loop
+                let by_friction = self.held.map_or(0.0, |h| h.spread_nm * self.fitted.value(torque));
+                let size = self.fitted.estimate(|c| c(at) * width + c(at + 2));
+                vec![named("half_width_rad", widened(size, libm::hypot(half(&size), by_friction)))]
             }
         }
+    }
+
+    /// Estimates of both break points `torques_nm` of the three segments with the index `place` among the laws \[N m\].
+    fn breaks(&self, place: usize, torques_nm: [f64; 2]) -> [Estimate; 2] {
+        let at = self.first + 4 * place;
+        [0, 1].map(|k| self.fitted.estimate(|c| torques_nm[k] + c(at + 2 + k) / c(at + k)))
+    }
+
+    /// Whether the intervals of both break points overlap. The known rows then show one break only, because they do not reach the
+    /// third segment.
+    fn has_one_break(&self, place: usize, torques_nm: [f64; 2]) -> bool {
+        let [first, second] = self.breaks(place, torques_nm);
+        let margin = ONE_BREAK * torques_nm[1];
+        first.high.zip(second.low).is_none_or(|(high, low)| high + margin >= low)
+    }
+
+    /// Parameters of three segments of which the record shows two: the third one is at least as stiff as the second, and begins
+    /// at a torque that the record does not show.
+    fn one_break(&self, place: usize, t1: f64, torque: usize) -> Vec<(String, Vec<Estimate>)> {
+        let at = self.first + 4 * place;
+        let (Law::Segments(_, t2), known) = (self.laws[place], self.spring_nm.iter()) else {
+            return Vec::new();
+        };
+        let largest_nm = known.fold(0.0f64, |m, t| m.max(t.abs()));
+        let [first, second] = self.breaks(place, [t1, t2]);
+        let upper = self.fitted.estimate(|c| 1.0 / c(torque));
+        let start = covering(first, second);
+        vec![
+            ("k1_nm_per_rad".into(), vec![self.fitted.estimate(|c| 1.0 / (c(torque) + c(at) + c(at + 1)))]),
+            ("k2_nm_per_rad".into(), vec![upper]),
+            ("k3_nm_per_rad".into(), vec![Estimate { high: None, ..upper }]),
+            ("t1_nm".into(), vec![start]),
+            ("t2_nm".into(), vec![Estimate { value: largest_nm, low: start.low, high: None }]),
+        ]
     }
 
     /// Twist of the spring according to the model, one per row \[rad\]: the compliance times the spring torque, plus

@@ -13,6 +13,7 @@
 
 use super::blocks::Fitted;
 use super::intervals::is_positive;
+use super::known::TURNING;
 use super::signals::{JointRows, Sample};
 use super::smooth::{averaged, slope, smooth};
 use super::twist::CLEARLY;
@@ -28,10 +29,6 @@ const FRICTION: usize = 3;
 /// standard errors. The number is smaller than for other columns, because the inertia of the link surely exists and is
 /// one column only.
 const SLIGHTLY: f64 = 1.0;
-/// A row enters the balance of torques only if the magnitude of the smoothed sign of the speed differs from one by at
-/// most this. Near a reversal the friction is not known, and where the sign of the speed changes smoothly although friction
-/// does not, Coulomb friction would come out too large.
-const TURNING: f64 = 0.05;
 /// Number of columns that the motion of one other joint adds to the balance of torques.
 const OTHER: usize = 8;
 
@@ -58,8 +55,8 @@ pub(crate) struct Friction {
     pub most_viscous_nms_per_rad: f64,
     /// Fraction of the variance of the motor's torque that neither load nor friction explains.
     pub left_share: f64,
-    /// The same fraction with the rows at reversals, where friction follows no formula.
-    pub left_share_with_reversals: f64,
+    /// The same fraction of the rows that enter the fit of the twist.
+    pub left_share_of_twist: f64,
 }
 
 /// Sine of the angle, and cosine minus 1. Both are zero at zero angle so that they do not compete with the offset.
@@ -77,8 +74,16 @@ struct Balance<'a> {
     shift_s: f64,
     others: Vec<Motion>,
     load_nm: Vec<f64>,
-    /// Whether the rows at reversals are used too.
-    has_reversals: bool,
+    used: Used,
+}
+
+/// Rows that a sum over the balance of torques has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Used {
+    /// Rows without a jump of the torque and away from reversals. Near a reversal the friction is not known.
+    Sure,
+    /// Rows that enter the fit of the twist.
+    OfTwist,
 }
 
 impl Balance<'_> {
@@ -112,10 +117,15 @@ impl Balance<'_> {
     }
 
     fn fill(&self, i: usize, sample: &Sample, row: &mut [f64]) -> bool {
-        // at a reversal the friction changes its sign somewhere between the rows, and no formula gives it
-        if !self.has_reversals && (sample.sense.abs() - 1.0).abs() > TURNING {
-            return false;
-        }
+        let is_used = match self.used {
+            Used::Sure => !sample.rests && !sample.jumps && (sample.sense.abs() - 1.0).abs() <= TURNING,
+            Used::OfTwist => sample.is_known(),
+        };
+        is_used && self.fill_any(i, sample, row)
+    }
+
+    /// Writes the columns of a row, whether it is used or not. Returns whether all of them are known.
+    fn fill_any(&self, i: usize, sample: &Sample, row: &mut [f64]) -> bool {
         let read = self.rows.link(sample, self.shift_s).zip(self.rows.accelerations(sample, self.shift_s));
         let Some(([q, _], [of_motor, of_link])) = read else { return false };
         let first = self.rows.record_count();
@@ -155,7 +165,7 @@ impl Balance<'_> {
         let rows = self.rows.samples.iter().enumerate();
         rows.map(|(i, sample)| {
             row.fill(0.0);
-            self.fill(i, sample, &mut row);
+            self.fill_any(i, sample, &mut row);
             let parts = fitted.columns.iter().zip(&fitted.values).filter(|(c, _)| !apart.contains(c));
             parts.map(|(c, v)| row[*c] * v).sum::<f64>() - rotor_kgm2 * row[motor]
         })
@@ -224,7 +234,7 @@ fn motions(rows: &JointRows, records: &[Record]) -> Vec<Motion> {
 
 /// Angle \[rad\], speed \[rad/s\] and acceleration \[rad/s²\] of another joint, averaged with the window of this joint.
 fn motion_of(t_s: &[f64], motor_rad: &[f64], half: usize) -> [Vec<f64>; 3] {
-    let [angle_rad] = averaged(t_s, half, [motor_rad]);
+    let ([angle_rad], _) = averaged(t_s, half, [motor_rad]);
     let speed_rad_s = slope(t_s, &angle_rad);
     [angle_rad, speed_rad_s, smooth(t_s, motor_rad, half).curvature]
 }
@@ -232,9 +242,8 @@ fn motion_of(t_s: &[f64], motor_rad: &[f64], half: usize) -> [Vec<f64>; 3] {
 /// Torque of the load that the gear of a joint carries, one per row \[N m\], from the balance of torques. A time shift of the
 /// link's readings changes it little and is not removed. `None` if the torque is not recorded or a fit is impossible.
 pub(crate) fn load_nm(rows: &JointRows, records: &[Record]) -> Option<Vec<f64>> {
-    let mut balance = balance(rows, records, 0.0)?;
+    let balance = balance(rows, records, 0.0)?;
     let best = balance.without_load_friction()?;
-    balance.has_reversals = true;
     Some(balance.load_of(&best))
 }
 
@@ -242,7 +251,7 @@ pub(crate) fn load_nm(rows: &JointRows, records: &[Record]) -> Option<Vec<f64>> 
 fn balance<'a>(rows: &'a JointRows, records: &[Record], shift_s: f64) -> Option<Balance<'a>> {
     let load_nm = vec![0.0; rows.samples.len()];
     let others = rows.has_torque.then(|| motions(rows, records))?;
-    Some(Balance { rows, shift_s, others, load_nm, has_reversals: false })
+    Some(Balance { rows, shift_s, others, load_nm, used: Used::Sure })
 }
 
 /// Finds the friction of a joint from the balance of its torques. `shift_s` is the delay of the link's readings
@@ -275,7 +284,7 @@ pub(crate) fn friction(rows: &JointRows, records: &[Record], shift_s: f64) -> Op
     let fastest = rows.samples.iter().fold(0.0f64, |m, s| m.max(s.speed_rad_s.abs()));
     let is_possible = chosen.value(speed) * fastest < largest_nm;
     let left_share = balance.left_share(&chosen.columns);
-    balance.has_reversals = true;
+    balance.used = Used::OfTwist;
     balance.load_nm = balance.load_of(&chosen);
     Some(Friction {
         coulomb_nm: chosen.coefficient(sense),
@@ -285,6 +294,6 @@ pub(crate) fn friction(rows: &JointRows, records: &[Record], shift_s: f64) -> Op
         is_possible,
         most_viscous_nms_per_rad: largest_nm / fastest.max(1e-12),
         left_share,
-        left_share_with_reversals: balance.left_share(&chosen.columns),
+        left_share_of_twist: balance.left_share(&chosen.columns),
     })
 }

@@ -2,9 +2,10 @@
 
 use super::blocks::Fitted;
 use super::compliance::{GRAVITY_OR_ERROR, compliance};
-use super::curve::{Curve, Law, TORSION_CURVE, curve};
+use super::curve::{Curve, LEAST_TWIST_CHANGE, Law, TORSION_CURVE, curve};
 use super::friction::{Friction, friction, load_nm};
 use super::intervals::{attenuated, covering, excludes_zero, half, is_positive, widened};
+use super::other_cause::{OtherCause, other_cause};
 use super::ringing::{joined, swings};
 use super::signals::JointRows;
 use super::twist::{Group, TwistModel, fill};
@@ -39,7 +40,7 @@ pub(crate) fn judge(records: &[Record], joint: &str) -> Option<JointRecord> {
     let wave = Wave::find(records, joint);
     let rows = gathered(records, joint, BLOCKS, &wave)?;
     let model = TwistModel::find(&rows)?;
-    let readings = rows.samples.len() as f64 / model.rows_per_reading / LONG_BLOCK;
+    let readings = rows.known_rows() as f64 / model.rows_per_reading / LONG_BLOCK;
     let blocks = (readings as usize).clamp(FEWEST_BLOCKS, BLOCKS);
     if blocks >= BLOCKS {
         return Some(Judged::new(&rows, &model, records).conclude());
@@ -67,16 +68,19 @@ struct Judged<'a> {
     least: f64,
     compliance: Stated,
     curve: Option<Curve>,
+    /// A cause that explains the records better than the transmission error of the output that the model has.
+    other_cause: Option<OtherCause>,
 }
 
 impl<'a> Judged<'a> {
     fn new(rows: &'a JointRows, model: &'a TwistModel<'a>, records: &'a [Record]) -> Self {
         let friction = balanced(rows, model, records);
-        let least = model.least_attenuation(friction.map_or(1.0, |f| f.left_share_with_reversals));
+        let least = model.least_attenuation(friction.map_or(1.0, |f| f.left_share_of_twist));
         let compliance = compliance(model, friction.map_or(1.0, |f| f.left_share), least);
         let is_found = compliance.state == State::Found && Curve::applies(model);
         let curve = if is_found { curve(model, friction.as_ref()) } else { None };
-        Self { rows, model, records, friction, least, compliance, curve }
+        let other_cause = other_cause(model);
+        Self { rows, model, records, friction, least, compliance, curve, other_cause }
     }
 
     /// The last fit of the twist: the one with torsion laws if any was found, otherwise the linear one.
@@ -126,11 +130,12 @@ impl<'a> Judged<'a> {
         JointRecord {
             joint: self.rows.joint.clone(),
             rotor_is_stated: self.rows.rotor_inertia_kgm2.is_some(),
-            rows: self.rows.samples.len(),
-            effective_rows: self.rows.samples.len() as f64 / self.model.rows_per_reading,
+            rows: self.rows.known_rows(),
+            effective_rows: self.rows.known_rows() as f64 / self.model.rows_per_reading,
             blocks: self.rows.blocks,
             range_rad: high - low,
             noise_rad: self.rows.noise_rad(),
+            averaged_noise_rad: self.rows.averaged_noise_rad(),
             before_rad: self.model.steps.first().map_or(0.0, |s| s.1),
             unshifted_rad: self.unshifted_rad(),
             after_rad: fitted.held_out_rms(),
@@ -138,6 +143,7 @@ impl<'a> Judged<'a> {
             trace: self.trace(),
             remarks: self.remarks(),
             undecided: self.undecided(),
+            unnamed: self.other_cause.as_ref().map(|c| c.sentence(&self.model.fitted)),
             stated,
         }
     }
@@ -157,6 +163,9 @@ impl<'a> Judged<'a> {
             return (0.0, 1.0);
         };
         let total = f.coulomb_nm;
+        if self.curve.as_ref().is_some_and(|c| c.held.is_some() && !c.laws.is_empty()) {
+            return ((1.0 - half(&total) / total.value).clamp(0.0, 1.0), 1.0);
+        }
         let part = self.fitted().estimate(|c| -c(p.sense()) / c(p.torque()) / total.value);
         let spread = half(&total) / total.value;
         let ends = (part.low.unwrap_or(0.0) - spread, part.high.unwrap_or(1.0) + spread);
@@ -180,10 +189,20 @@ impl<'a> Judged<'a> {
         };
         let (shift, words) = self.with_friction(plain);
         let shift = widened(shift, LEAST_STEP_PART * self.rows.step_s);
-        let is_clear = self.model.groups.contains(&Group::Shift) && excludes_zero(&shift);
+        let is_clear = self.model.groups.contains(&Group::Shift)
+            && excludes_zero(&shift)
+            && self.is_material(shift.value);
         let absent = "held-out blocks are not predicted better with a shift, or friction explains it as well";
         let state = if is_clear { State::Found } else { State::Absent };
         Stated::one(Group::Shift.what(), state, "seconds", shift, if is_clear { &words } else { absent })
+    }
+
+    /// Whether a time shift of `shift_s` changes the twist by more than [`LEAST_TWIST_CHANGE`] of the twist. The loop of twist against torque
+    /// that a smaller one makes may be one of friction, hysteresis or lost motion that does not follow its formula.
+    fn is_material(&self, shift_s: f64) -> bool {
+        let size_rad = shift_s.abs() * self.rows.rms_speed_rad_s();
+        let before_rad = self.model.steps.first().map_or(0.0, |s| s.1);
+        size_rad > LEAST_TWIST_CHANGE * before_rad
     }
 
     /// The time shift \[s\] corrected for viscous friction, and a sentence on the correction. `plain` is the time
@@ -193,8 +212,8 @@ impl<'a> Judged<'a> {
     fn with_friction(&self, plain: Estimate) -> (Estimate, String) {
         let c = self.bounded_compliance();
         let Some(f) = self.friction.filter(|f| f.is_possible && is_positive(&f.viscous_nms_per_rad)) else {
-            let possible = self.friction.filter(|f| f.is_possible);
-            let Some(f) = possible else { return (plain, String::new()) };
+            let Some(f) = self.friction else { return (plain, String::new()) };
+            // a viscous friction that is refused may still have any value up to the largest torque of the motor
             let most = |e: &Estimate| e.low.unwrap_or(0.0).abs().max(e.high.unwrap_or(0.0).abs());
             let reach = most(&c) * most(&f.viscous_nms_per_rad).min(f.most_viscous_nms_per_rad);
             let words = format!(
@@ -313,18 +332,24 @@ impl<'a> Judged<'a> {
                 None => Stated::none(what, State::Absent, "held-out blocks are not predicted better with it"),
             };
         }
+        if let Some(cause) = &self.other_cause {
+            return Stated::none(what, State::NotIdentified, cause.sentence(&self.model.fitted));
+        }
         let (low, high) = self.rows.range_rad();
         let columns = self.model.places.output();
+        let at_ends = self.errors_at_ends();
         let fits: Vec<&Fitted> =
             [Some(&self.model.fitted), beside.filter(|b| b.shows || b.is_held).map(|b| &b.at_compliance)]
                 .into_iter()
                 .flatten()
+                .chain(&at_ends)
                 .collect();
         // where the compliance may be that without the error, so may the error be the one beside that compliance
         let both =
             |of: &dyn Fn(&Fitted) -> Estimate| fits[1..].iter().fold(of(fits[0]), |a, f| covering(a, of(f)));
         let size = both(&|fitted| error_size(fitted, columns, low, high, 1.0));
         let mut each: Vec<Estimate> = columns.map(|c| both(&|fitted| fitted.estimate(|of| -of(c)))).to_vec();
+        let size = widen_error(size, &mut each);
         let mut words = String::new();
         if high - low < TELLING_RANGE_RAD {
             each.iter_mut().for_each(|e| (e.low, e.high) = (None, None));
@@ -339,6 +364,15 @@ impl<'a> Judged<'a> {
         Stated { what, state: State::Found, parameters, words }
     }
 
+    /// Fits of the transmission error of the output at both ends of the interval of the compliance, where the rotor's inertia is
+    /// not stated: a part of the error that follows gravity and the compliance then take each other's place.
+    fn errors_at_ends(&self) -> Vec<Fitted> {
+        let stiffness = self.compliance.parameters.first().and_then(|(_, list)| list.first());
+        let Some(k) = stiffness.filter(|_| self.rows.rotor_inertia_kgm2.is_none()) else { return Vec::new() };
+        let ends = [k.low, k.high].into_iter().flatten();
+        ends.filter_map(|k| self.model.with_compliance(1.0 / k)).collect()
+    }
+
     fn input_error(&self) -> Stated {
         let what = Group::Input.what();
         let Some(ratio) = self.rows.ratio.filter(|n| *n > 1.0) else {
@@ -349,7 +383,8 @@ impl<'a> Judged<'a> {
         }
         let columns = self.model.places.input();
         let size = error_size(&self.model.fitted, columns, 0.0, std::f64::consts::TAU / ratio, ratio);
-        let each = columns.map(|c| self.model.fitted.estimate(|of| -of(c))).to_vec();
+        let mut each = columns.map(|c| self.model.fitted.estimate(|of| -of(c))).to_vec();
+        let size = widen_error(size, &mut each);
         let parameters =
             vec![("peak_to_peak_rad".into(), vec![size]), ("sin_cos_sin2_cos2_rad".into(), each)];
         Stated { what, state: State::Found, parameters, words: String::new() }
@@ -421,7 +456,7 @@ impl<'a> Judged<'a> {
         let mut out = Vec::new();
         for i in (0..self.rows.samples.len()).step_by(every) {
             row.fill(0.0);
-            if !fill(self.rows, i, model.shift_s, &mut row) {
+            if self.rows.samples[i].rests || !fill(self.rows, i, model.shift_s, &mut row) {
                 continue;
             }
             let part = |c: &usize| row[*c] * fitted.value(*c);
@@ -468,6 +503,17 @@ fn error_size(fitted: &Fitted, columns: [usize; 4], low: f64, high: f64, ratio: 
         });
         most - least
     })
+}
+
+/// Widens the interval of the size of a transmission error, from peak to peak, and those of its amplitudes, to
+/// [`LEAST_LAW_PART`] of them: no gear has waves of one order only, and the link does not follow fast ones. An amplitude has the
+/// part of the largest one, because a small error of a phase is that large.
+fn widen_error(size: Estimate, amplitudes: &mut [Estimate]) -> Estimate {
+    let largest_rad = amplitudes.iter().fold(0.0f64, |m, e| m.max(e.value.abs()));
+    for amplitude in amplitudes {
+        *amplitude = widened(*amplitude, LEAST_LAW_PART * largest_rad);
+    }
+    widened(size, LEAST_LAW_PART * size.value)
 }
 
 fn law_stated(curve: &Curve, law: Law, model: &TwistModel) -> Stated {

@@ -3,7 +3,7 @@
 //!
 //! - The rows come from [`readings::record`](super::readings::record).
 //! - `smooth` computes slopes and curvatures. `signals` gathers the rows of one joint and divides them into blocks of
-//!   time. `wave` removes a transmission error within a turn of the motor before signals are differentiated.
+//!   time, and `known` says at which rows torque and friction are known. `wave` removes a transmission error within a turn of the motor before signals are differentiated.
 //! - `blocks` fits columns to rows, with intervals and held-out errors by blocks.
 //! - `twist` chooses the terms of the twist, `friction` balances the torques, `curve` looks for torsion laws beyond a
 //!   single compliance, and `ringing` for free vibration.
@@ -16,6 +16,8 @@ pub(crate) mod curve;
 pub(crate) mod friction;
 pub(crate) mod intervals;
 pub(crate) mod judge;
+pub(crate) mod known;
+pub(crate) mod other_cause;
 pub(crate) mod outcome;
 pub(crate) mod ringing;
 pub(crate) mod signals;

@@ -26,7 +26,7 @@ use serde_json::json;
 /// error with an offset and the time shift alone. The sum of squares is then 2.5 % of that.
 const LEFT: f64 = 0.158;
 /// A joint is also explained if the root mean square error of its twist on held-out blocks is at most this many times
-/// the noise of the twist from row to row.
+/// the noise that the average over rows leaves in the twist. The errors are those of averages.
 const NOISY: f64 = 1.5;
 /// Where a time shift is most of the recorded twist, a joint is also explained if its error is at most this \[rad\], and at most
 /// [`LEFT`] of the error with an offset alone: encoders at the output are not more accurate than 20 seconds of arc.
@@ -67,6 +67,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     }
     let (verdict, mut reasons) = verdict(&joints, &findings, &stiffnesses);
     reasons.extend(stiffnesses.iter().filter_map(|s| s.remark.clone()));
+    reasons.extend(campaign.records.iter().flat_map(|r| r.remarks.clone()));
     reasons.extend(joints.iter().flat_map(|j| j.remarks.iter().map(|r| format!("{}: {r}", j.joint))));
     let (effects, suspects) = verdict.named_and_suspected(findings.clone(), Vec::new());
     let calibrated: Vec<Calibrated> = stiffnesses.iter().filter_map(|s| s.calibrated.clone()).collect();
@@ -101,8 +102,11 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
 
 /// Whether the error of a joint's twist on held-out blocks is noise, or a small part of the twist.
 fn is_explained(joint: &JointRecord) -> bool {
+    if joint.unnamed.is_some() {
+        return false;
+    }
     let of_encoders = ENCODER_RAD.min(LEFT * joint.before_rad);
-    joint.after_rad <= (LEFT * joint.unshifted_rad).max(NOISY * joint.noise_rad).max(of_encoders)
+    joint.after_rad <= (LEFT * joint.unshifted_rad).max(NOISY * joint.averaged_noise_rad).max(of_encoders)
 }
 
 /// Whether the joint is explained and the records leave nothing open.
@@ -113,10 +117,10 @@ fn is_settled(joint: &JointRecord) -> bool {
 /// Ending of a sentence on a joint whose error of the twist, although small, is more than noise; empty if it is
 /// noise.
 fn left_beyond_noise(joint: &JointRecord) -> String {
-    match joint.after_rad > NOISY * joint.noise_rad {
+    match joint.after_rad > NOISY * joint.averaged_noise_rad {
         true => format!(
-            ", of which the noise of a row explains {:.4}: little is left, but not only noise",
-            1e3 * joint.noise_rad
+            ", of which noise explains {:.4}: little is left, but not only noise",
+            1e3 * joint.averaged_noise_rad
         ),
         false => String::new(),
     }
@@ -145,15 +149,16 @@ fn verdict(
     }
     let open: Vec<&JointRecord> = joints.iter().filter(|j| !is_explained(j)).collect();
     if !open.is_empty() {
-        let left = open.iter().map(|j| {
-            format!(
-                "{}: {:.4} of {:.4} mrad of the twist are left on held-out blocks{}, and the noise of a row is {:.4} mrad",
+        let left = open.iter().map(|j| match &j.unnamed {
+            Some(cause) => format!("{}: {cause}", j.joint),
+            None => format!(
+                "{}: {:.4} of {:.4} mrad of the twist are left on held-out blocks{}, of which noise explains {:.4} mrad",
                 j.joint,
                 1e3 * j.after_rad,
                 1e3 * j.unshifted_rad,
                 if j.unshifted_rad < j.before_rad { " after the time shift" } else { "" },
-                1e3 * j.noise_rad
-            )
+                1e3 * j.averaged_noise_rad
+            ),
         });
         return (Verdict::Unexplained, left.collect());
     }
@@ -280,17 +285,26 @@ fn stiffness(campaign: &Campaign, joint: &JointRecord) -> Stiffness {
     Stiffness { calibrated: Some(calibrated), factor, remark, finding: None }
 }
 
-/// Hint at a wrong unit where the joint is too stiff by about its ratio or by the degrees of a radian.
+/// Hint at a wrong unit where the joint is too stiff by about its ratio or by the degrees of a radian. If both are near, the
+/// nearer one is named.
 fn stiff_by_unit(campaign: &Campaign, joint: &str, factor: f64) -> Option<String> {
-    let is_near = |by: f64| (libm::log(factor / by)).abs() < NEAR;
     let own = campaign.records.iter().flat_map(|r| &r.joints).find(|j| j.joint == joint);
-    if let Some(ratio) = own.and_then(|j| j.ratio).filter(|n| *n > 2.0 && is_near(*n)) {
-        return Some(format!(
+    let of_ratio = own.and_then(|j| j.ratio).filter(|n| *n > 2.0).map(|ratio| {
+        let words = format!(
             "; this is about its ratio of {ratio}: if the torque is at the output, state \"torque_at\": \"output\""
-        ));
-    }
-    is_near(1f64.to_degrees())
-        .then(|| "; this is about 57.3: angles must be in degrees, and these may be in radians".into())
+        );
+        (ratio, words)
+    });
+    let of_radians = "; this is about 57.3: angles must be in degrees, and these may be in radians";
+    nearest_cause(factor, of_ratio.into_iter().chain([(1f64.to_degrees(), of_radians.into())]))
+}
+
+/// Of the causes, each with the factor that it gives, the words of the one whose factor is nearest to `factor`; `None` if it is
+/// not within [`NEAR`].
+fn nearest_cause(factor: f64, causes: impl Iterator<Item = (f64, String)>) -> Option<String> {
+    let off = |by: f64| libm::log(factor / by).abs();
+    let nearest = causes.min_by(|a, b| off(a.0).total_cmp(&off(b.0)))?;
+    (off(nearest.0) < NEAR).then_some(nearest.1)
 }
 
 /// Compliance of the nominal joint, with the effects of its arm file, as twist over torque (secant) at `torque_nm`
@@ -342,7 +356,8 @@ fn as_effect(campaign: &Campaign, finding: &Finding) -> Option<Effect> {
 fn held_out(joints: &[JointRecord]) -> Option<HeldOut> {
     let count: usize = joints.iter().map(|j| j.rows).sum();
     let mean = |of: fn(&JointRecord) -> f64| {
-        let sum: f64 = joints.iter().map(|j| j.rows as f64 * (of(j) / j.noise_rad.max(1e-12)).powi(2)).sum();
+        let sum: f64 =
+            joints.iter().map(|j| j.rows as f64 * (of(j) / j.averaged_noise_rad.max(1e-12)).powi(2)).sum();
         (sum / count as f64).sqrt()
     };
     let after = mean(|j| j.after_rad);
@@ -364,8 +379,8 @@ fn located(joints: &[JointRecord]) -> Vec<Located> {
     let each = joints.iter().map(|j| Located {
         part: format!("record, {}", j.joint),
         count: j.rows,
-        rms_before: j.before_rad / j.noise_rad.max(1e-12),
-        rms_after: j.after_rad / j.noise_rad.max(1e-12),
+        rms_before: j.before_rad / j.averaged_noise_rad.max(1e-12),
+        rms_after: j.after_rad / j.averaged_noise_rad.max(1e-12),
     });
     all.into_iter().chain(each).collect()
 }
@@ -434,4 +449,21 @@ pub(crate) fn joined(mut other: Outcome, records: Outcome) -> Outcome {
     other.located.extend(records.located);
     other.records = records.records;
     other
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_hint_is_the_one_whose_factor_is_nearest() {
+        let hint = |factor: f64, ratio: f64| {
+            let causes = [(ratio, "ratio".to_string()), (1f64.to_degrees(), "radians".to_string())];
+            nearest_cause(factor, causes.into_iter())
+        };
+        // the ratio of 50 is within the margin of 57.3 too
+        assert_eq!(hint(57.0, 50.0).as_deref(), Some("radians"));
+        assert_eq!(hint(51.0, 50.0).as_deref(), Some("ratio"));
+        assert_eq!(hint(3.0, 100.0), None);
+    }
 }

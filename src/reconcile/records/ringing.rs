@@ -6,8 +6,9 @@
 //! Gauss-Newton together with the decay rate.
 
 use super::blocks::{rows_per_reading, student_quantile};
-use super::smooth::{half_width, noise, slope_noise, smooth, usual_step_s};
+use super::smooth::{half_width, noise, slope_noise, smooth};
 use crate::reconcile::model::estimate::Estimate;
+use crate::reconcile::readings::record::usual_step_s;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 

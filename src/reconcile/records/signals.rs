@@ -1,8 +1,10 @@
 //! Signals of one joint from all records: smoothed, differentiated, and divided into blocks of time.
 
 use super::blocks::Blocks;
-use super::smooth::{averaged, half_width, noise, slope, slope_noise, smooth, usual_step_s, value_noise};
+use super::known::{at_jumps, rests, turning};
+use super::smooth::{averaged, half_width, noise, slope, slope_noise, smooth};
 use super::wave::Wave;
+use crate::reconcile::readings::record::usual_step_s;
 use crate::reconcile::readings::record::{JointSignals, Record};
 
 /// Fraction of the largest speed below which the sign of the speed changes smoothly, because real friction does not
@@ -11,13 +13,6 @@ const SLOW_PART: f64 = 0.002;
 /// Largest ratio of the root mean square accelerations on the two sides of a gear. If the ratio is larger, the larger
 /// acceleration is not a motion of the joint but an error of the gear or its sensor.
 const RESTLESS: f64 = 1.2;
-/// A joint rests at rows where the magnitude of the smoothed sign of its speed is below this for longer than the window of
-/// the torque. At a reversal it is below for about half of the window.
-const RESTING: f64 = 0.5;
-/// A rest ends where the magnitude of the smoothed sign of the speed reaches this again.
-const MOVING: f64 = 0.98;
-/// Rows at rest are left out only where at least this fraction of the record's rows is left.
-const LEAST_MOVING_PART: f64 = 0.2;
 /// Smallest number of blocks of a record, so that the result for a record does not depend on one block.
 const FEWEST_BLOCKS: usize = 4;
 
@@ -40,12 +35,27 @@ pub(crate) struct Sample {
     pub acceleration_rad_s2: f64,
     /// Sign of the motor's speed, from -1 to 1.
     pub sense: f64,
+    /// Whether the friction is unknown because the joint rests. A hysteresis remembers the torque of these rows too.
+    pub rests: bool,
+    /// Whether the friction is unknown because the joint reverses.
+    pub turns: bool,
+    /// Whether the torque jumps between two rows of the window, so that its average is not known.
+    pub jumps: bool,
+    /// Torque of the load that the gear carries \[N m\]; 0 until [`JointRows::take_load`].
+    pub load_nm: f64,
     /// Sign of the motor's speed times the magnitude of the load's torque \[N m\]; 0 until [`JointRows::take_load`].
     pub load_sense_nm: f64,
     /// Torque of the motor at the output \[N m\]; 0 if it is not recorded.
     pub torque_nm: f64,
     /// Rate of change of the motor's torque at the output \[N m/s\].
     pub torque_rate_nm_s: f64,
+}
+
+impl Sample {
+    /// Whether torque and friction are known at this row. Other rows enter no fit of the twist.
+    pub(crate) fn is_known(&self) -> bool {
+        !self.rests && !self.turns && !self.jumps
+    }
 }
 
 /// Signals of one record, row by row.
@@ -60,8 +70,10 @@ struct Signals {
     half: usize,
     /// Standard deviation of the noise of the twist from row to row, before averaging \[rad\].
     noise_rad: f64,
-    /// Standard deviation of the noise that averaging leaves in the torque \[N m\].
+    /// Standard deviation of the noise of the torque from row to row, before averaging \[N m\].
     torque_noise_nm: f64,
+    /// Part of the noise of single rows that the average leaves.
+    gain: f64,
 }
 
 /// Rows of one joint from all records.
@@ -128,8 +140,9 @@ impl JointRows {
     fn rms_accelerations(&self) -> [f64; 2] {
         let of_link = |s: &Sample| self.records[s.record].link_acceleration_rad_s2[s.row];
         let mean = |of: &dyn Fn(&Sample) -> f64| {
-            let sum: f64 = self.samples.iter().map(|s| of(s).powi(2)).sum();
-            (sum / self.samples.len().max(1) as f64).sqrt()
+            let moving = self.samples.iter().filter(|s| !s.rests);
+            let (sum, count) = moving.fold((0.0, 0usize), |(sum, n), s| (sum + of(s).powi(2), n + 1));
+            (sum / count.max(1) as f64).sqrt()
         };
         [mean(&|s| s.acceleration_rad_s2), mean(&of_link)]
     }
@@ -158,7 +171,7 @@ impl JointRows {
         let sign = senses(&motor.slope, slope_noise(t_s, &calm_motor_rad, half));
         let none = vec![0.0; t_s.len()];
         let torque_nm = if self.has_torque { &signals.torque_nm } else { &none };
-        let [motor_rad, link_rad, calm_motor_rad, calm_link_rad, torque, sense] = averaged(
+        let ([motor_rad, link_rad, calm_motor_rad, calm_link_rad, torque, sense], gain) = averaged(
             t_s,
             half,
             [&signals.motor_rad, &signals.link_rad, &calm_motor_rad, &calm_link_rad, torque_nm, &sign],
@@ -174,26 +187,30 @@ impl JointRows {
             step_s: usual_step_s(t_s),
             half,
             noise_rad: twist_noise_rad(t_s, signals),
-            torque_noise_nm: noise(t_s, torque_nm) * value_noise(half),
+            torque_noise_nm: noise(t_s, torque_nm),
+            gain,
         };
         let record = self.records.len();
         let rests = if self.has_torque { rests(&sense, half) } else { vec![false; t_s.len()] };
+        let turns = if self.has_torque { turning(&sense, &rests) } else { vec![false; t_s.len()] };
+        let jumps = if self.has_torque { at_jumps(torque_nm, half) } else { vec![false; t_s.len()] };
         let moving_rows = rests.iter().filter(|rests| !**rests).count();
         let mut moved = 0;
         for row in 0..t_s.len() {
-            if rests[row] {
-                continue;
-            }
-            moved += 1;
+            moved += usize::from(!rests[row]);
             let sample = Sample {
                 record,
                 row,
-                block: self.blocks + (moved - 1) * blocks / moving_rows,
+                block: self.blocks + moved.saturating_sub(1) * blocks / moving_rows,
                 angle_rad: signals.motor_rad[row],
                 input_waves: std::array::from_fn(|k| input_waves[k][row]),
                 speed_rad_s: speed_rad_s[row],
                 acceleration_rad_s2: motor.curvature[row],
                 sense: sense[row],
+                rests: rests[row],
+                turns: turns[row],
+                jumps: jumps[row],
+                load_nm: 0.0,
                 load_sense_nm: 0.0,
                 torque_nm: torque[row],
                 torque_rate_nm_s: torque_rate_nm_s[row],
@@ -212,11 +229,25 @@ impl JointRows {
         self.records[record].half
     }
 
-    /// Takes the torque of the load that the gear carries at each row, `load_nm`, for load-dependent friction.
+    /// Takes the torque of the load that the gear carries at each row, `load_nm`, for load-dependent friction and for the
+    /// torque of the spring where friction is not known.
     pub(crate) fn take_load(&mut self, load_nm: &[f64]) {
         for (sample, load_nm) in self.samples.iter_mut().zip(load_nm) {
+            sample.load_nm = *load_nm;
             sample.load_sense_nm = sample.sense * load_nm.abs();
         }
+    }
+
+    /// Root mean square of the motor's speed at the output over the known rows \[rad/s\].
+    pub(crate) fn rms_speed_rad_s(&self) -> f64 {
+        let known = self.samples.iter().filter(|s| s.is_known());
+        let sum: f64 = known.map(|s| s.speed_rad_s.powi(2)).sum();
+        (sum / self.known_rows().max(1) as f64).sqrt()
+    }
+
+    /// Number of rows at which torque and friction are known.
+    pub(crate) fn known_rows(&self) -> usize {
+        self.samples.iter().filter(|s| s.is_known()).count()
     }
 
     /// Number of records.
@@ -263,9 +294,15 @@ impl JointRows {
         (squares / self.records.len() as f64).sqrt()
     }
 
-    /// Standard deviation of the noise of the smoothed torque \[N m\].
-    pub(crate) fn torque_noise_nm(&self) -> f64 {
-        let squares: f64 = self.records.iter().map(|r| r.torque_noise_nm.powi(2)).sum();
+    /// Standard deviation of the noise that the average leaves in the twist \[rad\].
+    pub(crate) fn averaged_noise_rad(&self) -> f64 {
+        let squares: f64 = self.records.iter().map(|r| (r.gain * r.noise_rad).powi(2)).sum();
+        (squares / self.records.len() as f64).sqrt()
+    }
+
+    /// Standard deviation of the noise that the average leaves in the torque \[N m\].
+    pub(crate) fn averaged_torque_noise_nm(&self) -> f64 {
+        let squares: f64 = self.records.iter().map(|r| (r.gain * r.torque_noise_nm).powi(2)).sum();
         (squares / self.records.len() as f64).sqrt()
     }
 
@@ -278,17 +315,8 @@ impl JointRows {
     /// Sums of the products of every two of `width` columns over all rows, one matrix per block. `fill` writes the
     /// columns of a row and returns whether the row is used.
     pub(crate) fn sums(&self, width: usize, fill: impl Fn(usize, &Sample, &mut [f64]) -> bool) -> Blocks {
-        // a row that cannot be filled is replaced by zeros
-        Blocks::new(
-            self.samples.len(),
-            width,
-            |i| Some(self.samples[i].block),
-            |i, row| {
-                if !fill(i, &self.samples[i], row) {
-                    row.fill(0.0);
-                }
-            },
-        )
+        let block_of = |i: usize| self.samples[i].block;
+        Blocks::new(self.samples.len(), width, block_of, |i, row| fill(i, &self.samples[i], row))
     }
 }
 
@@ -317,7 +345,7 @@ fn input_waves(t_s: &[f64], signals: &JointSignals, half: usize) -> [Vec<f64>; 4
             column.push(value);
         }
     }
-    averaged(t_s, half, waves.each_ref().map(Vec::as_slice))
+    averaged(t_s, half, waves.each_ref().map(Vec::as_slice)).0
 }
 
 /// Sine and cosine less 1 of an angle, then of twice this angle. All are zero at zero angle so that they do not compete with
@@ -325,26 +353,4 @@ fn input_waves(t_s: &[f64], signals: &JointSignals, half: usize) -> [Vec<f64>; 4
 pub(crate) fn waves_of(angle_rad: f64) -> [f64; 4] {
     let (sin, cos) = libm::sincos(angle_rad);
     [sin, cos - 1.0, 2.0 * sin * cos, cos * cos - sin * sin - 1.0]
-}
-
-/// Whether the joint rests, row by row. Friction is not known while it rests: it may hold any torque up to that of Coulomb
-/// friction, of either sign, and the sign of the speed says nothing of it. `sense` is the smoothed sign of the speed, and
-/// `half` the half width of its window \[rows\]. A reversal is no rest. Nothing rests in a record that hardly moves.
-fn rests(sense: &[f64], half: usize) -> Vec<bool> {
-    let mut out = vec![false; sense.len()];
-    let mut row = 0;
-    while row < sense.len() {
-        // a value near an end or a gap is NaN and compares as neither
-        let run = sense[row..].iter().take_while(|s| s.abs() < RESTING).count();
-        if run > 2 * half + 1 {
-            // the smoothed sign differs from the sign up to half a window before and after the rest
-            let before = sense[..row].iter().rev().take_while(|s| s.abs() < MOVING).count().max(half);
-            let after = sense[row + run..].iter().take_while(|s| s.abs() < MOVING).count().max(half);
-            let end = (row + run + after).min(sense.len());
-            out[row.saturating_sub(before)..end].fill(true);
-        }
-        row += run.max(1);
-    }
-    let moving = out.iter().filter(|rests| !**rests).count();
-    if (moving as f64) < LEAST_MOVING_PART * sense.len() as f64 { vec![false; sense.len()] } else { out }
 }

@@ -8,6 +8,7 @@
 //! of [`averaged`] (the Peano kernel of the curvature). Columns that stand in one equation with an acceleration are
 //! averaged with the same weights. The equation then holds exactly however fast the acceleration changes within a window.
 
+use crate::reconcile::readings::record::usual_step_s;
 use nalgebra::{Matrix4, Vector4};
 
 /// Half widths of the smoothing window that are tried \[rows\].
@@ -30,11 +31,6 @@ pub(crate) struct Smooth {
     pub slope: Vec<f64>,
     /// Second derivative with respect to time \[unit of the signal per s²\].
     pub curvature: Vec<f64>,
-}
-
-/// Usual (median) time between rows \[s\].
-pub(crate) fn usual_step_s(t_s: &[f64]) -> f64 {
-    crate::reconcile::fit::stats::median(t_s.windows(2).map(|w| w[1] - w[0]).collect())
 }
 
 /// Standard deviation of the noise of a signal from row to row, from its fourth divided differences, in the unit of the
@@ -126,11 +122,19 @@ fn whole_windows(t_s: &[f64], half: usize) -> impl Iterator<Item = usize> {
 }
 
 /// Averages of several signals around each row, with the weights by which the curvature that [`smooth`] finds averages the
-/// second derivative. Rows near an end or a gap are NaN.
-pub(crate) fn averaged<const N: usize>(t_s: &[f64], half: usize, signals: [&[f64]; N]) -> [Vec<f64>; N] {
+/// second derivative. Rows near an end or a gap are NaN. The second value is the gain of noise: the standard deviation that
+/// noise of single rows has after the average, `sqrt(sum w^2)`, as a root mean square over the rows.
+pub(crate) fn averaged<const N: usize>(
+    t_s: &[f64],
+    half: usize,
+    signals: [&[f64]; N],
+) -> ([Vec<f64>; N], f64) {
     let mut out: [Vec<f64>; N] = std::array::from_fn(|_| vec![f64::NAN; t_s.len()]);
+    let (mut squares, mut count) = (0.0, 0usize);
     for i in whole_windows(t_s, half) {
         let Some(weights) = curvature_kernel(&t_s[i - half..=i + half], half) else { continue };
+        squares += weights.iter().map(|w| w * w).sum::<f64>();
+        count += 1;
         for (out, signal) in out.iter_mut().zip(signals) {
             let window = &signal[i - half..=i + half];
             // less the middle, so that a large angle costs no digits
@@ -138,7 +142,7 @@ pub(crate) fn averaged<const N: usize>(t_s: &[f64], half: usize, signals: [&[f64
             out[i] = window[half] + sum;
         }
     }
-    out
+    (out, (squares / count.max(1) as f64).sqrt())
 }
 
 /// Weights of the rows at the times `t_s` with which the curvature of the cubic fitted to them averages the second
@@ -206,7 +210,7 @@ mod tests {
         let x: Vec<f64> = t.iter().map(|t| 0.5 * (t - jump_s).max(0.0).powi(2)).collect();
         let second: Vec<f64> = t.iter().map(|t| if *t > jump_s { 1.0 } else { 0.0 }).collect();
         let curvature = smooth(&t, &x, 16).curvature;
-        let [average] = averaged(&t, 16, [&second]);
+        let ([average], _) = averaged(&t, 16, [&second]);
         let pairs = curvature.iter().zip(&average).filter(|(c, _)| !c.is_nan());
         // the jump lies between two rows: half a row of a window of 32, times its largest weight
         let worst = pairs.map(|(c, a)| (c - a).abs()).fold(0.0, f64::max);
@@ -220,6 +224,17 @@ mod tests {
         let noisy = |(t, e): (&f64, f64)| libm::sin(9.0 * t) + 1e-6 * e;
         let x: Vec<f64> = t.iter().zip(deviates(t.len())).map(noisy).collect();
         assert!((noise(&t, &x) / 1e-6 - 1.0).abs() < 0.05, "{}", noise(&t, &x));
+    }
+
+    #[test]
+    fn an_average_leaves_its_gain_of_the_noise() {
+        let t: Vec<f64> = (0..20_000).map(|i| 0.001 * i as f64).collect();
+        for half in [3, 8, 24] {
+            let ([average], gain) = averaged(&t, half, [&deviates(t.len())]);
+            let known: Vec<f64> = average.into_iter().filter(|x| !x.is_nan()).collect();
+            let left = (known.iter().map(|x| x * x).sum::<f64>() / known.len() as f64).sqrt();
+            assert!((left / gain - 1.0).abs() < 0.05, "{half}: {left} for {gain}");
+        }
     }
 
     #[test]

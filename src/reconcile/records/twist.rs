@@ -36,7 +36,7 @@ pub(crate) const CLEARLY: f64 = 2.0;
 const CLEARLY_MANY: f64 = 2.5;
 /// A transmission error of the output is named only if it lowers the root mean square error on held-out blocks to
 /// less than this fraction.
-const MATERIAL: f64 = 0.8;
+const LARGEST_ERROR_RATIO: f64 = 0.8;
 /// Errors up to this multiple of the noise of the sensors are noise.
 const STILL_NOISE: f64 = 1.15;
 /// Errors beyond this multiple of the noise of the sensors are certainly more than noise.
@@ -146,7 +146,7 @@ impl Group {
             Group::Shift | Group::Compliance => clearly > CLEARLY,
             // the four waves can also fit other small errors of the model under gravity, so more is asked of them
             Group::Output => {
-                clearly > CLEARLY_MANY && with.held_out_rms() < MATERIAL * without.held_out_rms()
+                clearly > CLEARLY_MANY && with.held_out_rms() < LARGEST_ERROR_RATIO * without.held_out_rms()
             }
             Group::Input => clearly > CLEARLY_MANY,
         }
@@ -228,6 +228,11 @@ pub(crate) fn fill(rows: &JointRows, i: usize, shift_s: f64, row: &mut [f64]) ->
     true
 }
 
+/// Writes the columns of the row with index `i` as [`fill`] does. Returns `false` also where torque or friction is not known.
+pub(crate) fn fill_known(rows: &JointRows, i: usize, shift_s: f64, row: &mut [f64]) -> bool {
+    rows.samples[i].is_known() && fill(rows, i, shift_s, row)
+}
+
 /// Indices of the columns of the twist model that a fit uses: the constant offset of each record, then the columns of
 /// the terms in `groups` (time shift, compliance with friction, transmission errors).
 pub(crate) fn columns(rows: &JointRows, groups: &[Group]) -> Vec<usize> {
@@ -254,7 +259,7 @@ impl<'a> TwistModel<'a> {
     pub(crate) fn find(rows: &'a JointRows) -> Option<Self> {
         let places = Places { records: rows.record_count() };
         let shift_s = time_shift_s(rows)?;
-        let sums = rows.sums(places.further() + 1, |i, _, row| fill(rows, i, shift_s, row));
+        let sums = rows.sums(places.further() + 1, |i, _, row| fill_known(rows, i, shift_s, row));
         let smooth = if rows.has_torque { vec![Group::Shift, Group::Compliance] } else { vec![Group::Shift] };
         let target = places.further();
         let fitted = sums.fit(&columns(rows, &smooth), target, |_| None)?;
@@ -282,7 +287,7 @@ impl<'a> TwistModel<'a> {
         let mut row = vec![0.0; self.places.further() + 1];
         let error = |i: usize| {
             row.fill(0.0);
-            let is_filled = fill(self.rows, i, self.shift_s, &mut row);
+            let is_filled = fill_known(self.rows, i, self.shift_s, &mut row);
             let modelled: f64 =
                 self.fitted.columns.iter().zip(&self.fitted.values).map(|(c, v)| row[*c] * v).sum();
             is_filled.then(|| row[row.len() - 1] - modelled)
@@ -419,10 +424,11 @@ impl<'a> TwistModel<'a> {
         self.at_compliance(others, without).is_some_and(|fit| group.pays(&fit, without))
     }
 
-    /// Whether the errors of a fit on held-out blocks are below `times` the noise of the angles and of the torque.
+    /// Whether the errors of a fit on held-out blocks are below `times` the noise that the average leaves of the angles and of
+    /// the torque.
     fn leaves_noise_only(&self, fitted: &Fitted, times: f64) -> bool {
-        let by_torque_rad = fitted.value(self.places.torque()) * self.rows.torque_noise_nm();
-        fitted.held_out_rms() < times * libm::hypot(self.rows.noise_rad(), by_torque_rad)
+        let by_torque_rad = fitted.value(self.places.torque()) * self.rows.averaged_torque_noise_nm();
+        fitted.held_out_rms() < times * libm::hypot(self.rows.averaged_noise_rad(), by_torque_rad)
     }
 
     /// Whether the compliance shows in the fit `fitted` by the groups `groups`, and the rotor's inertia is not stated.
@@ -440,7 +446,7 @@ impl<'a> TwistModel<'a> {
         let elastic = [p.torque(), p.acceleration(), p.sense(), p.load_sense(), p.rate()];
         let target = p.further();
         let sums = self.rows.sums(target + 1, |i, _, row| {
-            let is_filled = fill(self.rows, i, self.shift_s, row);
+            let is_filled = fill_known(self.rows, i, self.shift_s, row);
             let known: f64 = elastic.iter().map(|c| row[*c] * without.value(*c)).sum();
             row[target] -= known;
             is_filled
@@ -448,6 +454,19 @@ impl<'a> TwistModel<'a> {
         let free: Vec<Group> = groups.iter().copied().filter(|g| *g != Group::Compliance).collect();
         let free = [free.as_slice(), &[Group::Output]].concat();
         sums.fit(&columns(self.rows, &free), target, |c| self.prior(c))
+    }
+
+    /// Fit of the twist in which the compliance is `rad_per_nm` \[rad/(N m)\] and all other coefficients are free. `None` if a fit
+    /// is impossible.
+    pub(crate) fn with_compliance(&self, rad_per_nm: f64) -> Option<Fitted> {
+        let (torque, target) = (self.places.torque(), self.places.further());
+        let sums = self.rows.sums(target + 1, |i, _, row| {
+            let is_filled = fill_known(self.rows, i, self.shift_s, row);
+            row[target] -= rad_per_nm * row[torque];
+            is_filled
+        });
+        let free: Vec<usize> = self.fitted.columns.iter().copied().filter(|c| *c != torque).collect();
+        sums.fit(&free, target, |c| self.prior(c))
     }
 
     /// What the records say of a transmission error of the output beside the compliance; `None` where there is neither that
@@ -534,7 +553,7 @@ fn time_shift_s(rows: &JointRows) -> Option<f64> {
     let target = places.further();
     let mut shift_s = 0.0;
     for _ in 0..ROUNDS {
-        let sums = rows.sums(target + 1, |i, _, row| fill(rows, i, shift_s, row));
+        let sums = rows.sums(target + 1, |i, _, row| fill_known(rows, i, shift_s, row));
         let next_s = sums.fit(&columns(rows, &groups), target, |_| None)?.value(places.shift());
         let step_s = next_s - shift_s;
         shift_s = next_s;

@@ -113,6 +113,9 @@ pub struct JointRecord {
     pub range_rad: f64,
     /// Standard deviation of the noise of the twist from row to row \[rad\].
     pub noise_rad: f64,
+    /// Standard deviation of the noise that the average over neighbouring rows leaves in the twist \[rad\]. The errors below are
+    /// those of such averages.
+    pub(crate) averaged_noise_rad: f64,
     /// Root mean square error of the twist on held-out blocks with an offset alone as model \[rad\].
     pub before_rad: f64,
     /// The same error with an offset and the time shift as model, if a time shift was found; otherwise with the offset alone
@@ -126,6 +129,8 @@ pub struct JointRecord {
     pub steps: Vec<Step>,
     /// Twist against torque, thinned for the picture.
     pub trace: Vec<Traced>,
+    /// A cause that explains the records better than every effect of the library, as a sentence.
+    pub(crate) unnamed: Option<String>,
     /// What the records leave open, such as a transmission error that they cannot tell from the twist by gravity. Then the
     /// data are insufficient.
     pub undecided: Vec<String>,
