@@ -132,6 +132,7 @@ fn what_a_joint_holds_while_another_one_ramps_is_said() {
     // a wrist that turns faster needs a stronger drive, which holds the reaction too
     let mut strong = study.clone();
     strong["chain"][2]["drives"] = json!({"gears": ["CSG-40-100"], "motor_models": ["ILM85x26"]});
+    strong["chain"][2]["max_speed_rad_s"] = json!(2);
     let text = said(&strong);
     assert!(
         text.contains(

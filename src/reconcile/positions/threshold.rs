@@ -179,7 +179,7 @@ mod tests {
     #[test]
     fn an_end_lies_where_the_likelihood_has_fallen_enough() {
         let at = |threshold_nm: f64, fall: f64| Tried { threshold_nm, size: 1.0, deviation: 0.1, fall };
-        let mut tried = [at(1.0, 7.68), at(10.0, 0.0), at(100.0, 0.96), at(1000.0, 1.0)];
+        let mut tried = [at(1.0, 4.0 * FALL), at(10.0, 0.0), at(100.0, 0.5 * FALL), at(1000.0, 1.0)];
         let found = threshold(&mut tried, 10.0);
         // a parabola has a quarter of its fall half of the way
         assert!((found.low.expect("bounded") - 10.0 * libm::pow(0.1, 0.5)).abs() < 1e-12);

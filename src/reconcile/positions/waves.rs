@@ -186,8 +186,8 @@ mod tests {
         let [found, turned] = wave(&sizes, &[1e-8, 1e-8], mean);
         assert!((found.value - size).abs() < 1e-12 && (turned.value - phase).abs() < 1e-12);
         // equal deviations of both coefficients are a circle about the wave
-        assert!((found.high.expect("bounded") - size - 1.96 * 1e-8 / mean).abs() < 1e-12);
-        assert!((turned.high.expect("bounded") - phase - 1.96 * 1e-8 / (mean * size)).abs() < 1e-12);
+        assert!((found.high.expect("bounded") - size - Z_95 * 1e-8 / mean).abs() < 1e-12);
+        assert!((turned.high.expect("bounded") - phase - Z_95 * 1e-8 / (mean * size)).abs() < 1e-12);
         let stated = as_parameters(Waves::Twice, &sizes, mean);
         assert_eq!((stated[0].0.as_str(), stated[1].1[0]), ("twice", 0.0));
         assert!((stated[0].1[0] - size).abs() < 1e-12 && (stated[1].1[1] - phase).abs() < 1e-12);
