@@ -70,7 +70,7 @@ impl Positions {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let from_level = self.fitted.geometry.level_to_instrument();
         let gravity = &self.fitted.geometry.gravity;
-        let equations = normal(&all, &self.numbers, &self.fitted, &mut |sample, _, columns| {
+        let equations = normal(&all, &self.numbers, &self.fitted, &|sample, _, columns| {
             for &candidate in unnamed {
                 sample.deflection.per_compliance(candidate, gravity, |by| columns.push(from_level * by));
             }
