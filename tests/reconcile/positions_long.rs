@@ -2,7 +2,7 @@
 
 use crate::positions_maker::{Made, SLIGHT_RAD_PER_NM, Truth, in_poses};
 use armwright::catalog::Catalogs;
-use armwright::reconcile::{Campaign, Finding, Outcome, Verdict, reconcile};
+use armwright::reconcile::{Campaign, Outcome, Verdict, reconcile};
 
 /// Number of rows of a campaign that is searched on all of its rows, and nine times as many.
 const SHORT: usize = 1_000;
@@ -18,7 +18,7 @@ fn with_threads(threads: usize, work: impl FnOnce() -> Outcome + Send) -> Outcom
 }
 
 fn labels(outcome: &Outcome) -> Vec<String> {
-    let mut out: Vec<String> = outcome.effects.iter().map(Finding::label).collect();
+    let mut out: Vec<String> = outcome.effects.iter().map(|f| f.label()).collect();
     out.sort();
     out
 }

@@ -117,14 +117,16 @@ pub(crate) fn calibrated(campaign: &Campaign) -> Calibrated {
 /// of sessions: those that remain, and those that are needed in addition to effects that were found without sessions.
 /// The model with the best score is kept.
 pub(crate) fn analyze(campaign: &Campaign) -> Positions {
-    let calibrated = Positions::in_declared_sessions(campaign);
+    let mut calibrated = Positions::in_declared_sessions(campaign);
     let mut found = calibrated.clone();
+    calibrated.forget_deflections();
     found.tell_sessions(campaign);
     found.rigid = found.fitted.clone();
     found.find_effects(campaign);
     let mut reviewed = found.clone();
     let is_other = reviewed.drop_needless_sessions();
     if is_other || found.has_doubtful_session(campaign) {
+        calibrated.recall_deflections(campaign);
         let mut late = calibrated.clone();
         late.find_effects(campaign);
         late.tell_sessions(campaign);
@@ -259,18 +261,23 @@ impl Positions {
     /// Places the arm, and then frees one group of the geometry's numbers after the other, with a fit after each.
     fn calibrate(&mut self, campaign: &Campaign) {
         let spec = &campaign.statement.positions;
-        let mut few = self.few(campaign);
-        match &few {
-            Some((_, few)) => align::align(&self.tree, spec, &few.samples, &mut self.fitted.geometry),
-            None => align::align(&self.tree, spec, &self.samples, &mut self.fitted.geometry),
+        let starts = self.starts(campaign);
+        if starts.is_empty() {
+            align::align(&self.tree, spec, &self.samples, &mut self.fitted.geometry);
+        } else {
+            // the deflection of all rows is computed once, for the geometry that a part of them has
+            self.fitted = starts[starts.len() - 1].clone();
+            self.refresh(campaign);
         }
         // one group after the other, because a fit of all numbers from a bad start can end anywhere
-        let groups = number_groups(&self.tree, spec, self.points.len());
-        let last = groups.len().saturating_sub(1);
-        for (at, (name, group)) in groups.into_iter().enumerate() {
+        for (at, (name, group)) in number_groups(&self.tree, spec, self.points.len()).into_iter().enumerate()
+        {
             self.numbers.extend(group);
-            match &mut few {
-                Some((rows, few)) => self.fit_from(few, rows, campaign, at == 0 || at == last),
+            match starts.get(at) {
+                Some(start) => {
+                    self.fitted = start.clone();
+                    self.refit();
+                }
                 None => self.settle_geometry(campaign),
             }
             self.stage(name.into(), Vec::new());

@@ -20,7 +20,7 @@ use crate::arm::load::Payload;
 use crate::arm::structure::{FrameCompliance, Piece, Structure};
 use crate::arm::{Arm, BASE, JointModel, LinkModel};
 use crate::mechanics::chain::{Chain, Item, Posed};
-use crate::mechanics::hanging::hanging_tip_m;
+use crate::mechanics::hanging::beyond_linear_m;
 use crate::mechanics::{Twist, angular, displacement_at, linear};
 use crate::reconcile::model::exact::{seen_from_tool, with_tool};
 use crate::reconcile::readings::campaign::Campaign;
@@ -344,7 +344,7 @@ impl<'a> Loads<'a> {
         let angles = row.pose_deg.iter().filter(|_| varies);
         Deflection {
             waves: angles.map(|angle| transmission_waves(angle.to_radians())).collect(),
-            known_m: self.known_of(&hung, row).statics().tip_displacement_m,
+            known_m: self.known_of(&hung, row).displaced().0,
             known_slopes_m: [Vector3::zeros(); 2],
             swings: hung.own.swings(&unit, &self.slots).into(),
             slots: Arc::clone(&self.slots),
@@ -354,7 +354,7 @@ impl<'a> Loads<'a> {
     /// Displacement of a point under gravity by the compliances that the arm file already has, in the level frame
     /// \[m\].
     pub(crate) fn known_m(&self, row: &PositionRow, point: usize) -> Vector3<f64> {
-        self.known_of(&self.hung(row, point), row).statics().tip_displacement_m
+        self.known_of(&self.hung(row, point), row).displaced().0
     }
 
     /// What the linear displacement of [`known_m`](Self::known_m) lacks: displacement of the point as the arm hangs, with
@@ -363,13 +363,11 @@ impl<'a> Loads<'a> {
     pub(crate) fn second_order_m(&self, row: &PositionRow, point: usize) -> Vector3<f64> {
         let hung = self.hung(row, point);
         let payload = seen_from_tool(&row.payload, &hung.own.point_m);
-        let hanging_m = hanging_tip_m(|deflections| {
+        beyond_linear_m(|deflections| {
             let mut posed = hung.own.known.pose_with(&hung.pose_rad, &payload, Vector3::zeros(), deflections);
             hung.load_trunk(&mut posed, self.trunk[1]);
             posed
-        });
-        let straight = self.known_of(&hung, row);
-        hanging_m - straight.tip_m - straight.statics().tip_displacement_m
+        })
     }
 
     /// The arm as it is in the file, in the pose and with the payload of `row`, without deflection.

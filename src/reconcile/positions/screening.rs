@@ -11,11 +11,16 @@
 //! the other rows are spread evenly; and for each joint the rows with its least and its greatest angle are there. A row stays in its
 //! fold, so that poses which are held out of a fit to all rows were held out of the screening's fits too.
 
+use super::align::align;
 use super::analysis::Positions;
-use super::fitted::{Sample, readings};
+use super::fitted::{Fitted, Sample, readings};
+use super::kinematics::number_groups;
+use super::loads::Deflection;
 use super::transmission::EFFECT as TRANSMISSION;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::rows::PositionRow;
+use nalgebra::Vector3;
+use std::sync::Arc;
 
 /// A campaign with more rows is long. Shorter ones are searched on all rows.
 pub(super) const LONG: usize = 5_000;
@@ -115,17 +120,34 @@ impl Positions {
         }
     }
 
-    /// Fits the geometry of a long campaign: first to its part `few`, which has the rows `rows`, and from there to all. The
-    /// deflections of all rows are computed again for the geometry of the part if `refreshes` is true.
-    pub(super) fn fit_from(&mut self, few: &mut Self, rows: &Campaign, campaign: &Campaign, refreshes: bool) {
-        few.fitted = self.fitted.clone();
-        few.numbers = self.numbers.clone();
-        few.settle_geometry(rows);
-        self.fitted = few.fitted.clone();
-        if refreshes {
+    /// The fits of the geometry to a part of the rows of a long campaign, after each group of numbers that is freed; none if the
+    /// campaign is not long.
+    pub(super) fn starts(&self, campaign: &Campaign) -> Vec<Fitted> {
+        let Some((rows, mut few)) = self.few(campaign) else { return Vec::new() };
+        let spec = &campaign.statement.positions;
+        align(&few.tree, spec, &few.samples, &mut few.fitted.geometry);
+        let groups = number_groups(&few.tree, spec, few.points.len()).into_iter();
+        let fits = groups.map(|(_, group)| {
+            few.numbers.extend(group);
+            few.settle_geometry(&rows);
+            few.fitted.clone()
+        });
+        fits.collect()
+    }
+
+    /// Frees the memory of the deflections of a long campaign.
+    pub(super) fn forget_deflections(&mut self) {
+        if self.is_long() {
+            let none = Arc::new(Deflection::known(Vector3::zeros()));
+            self.samples.iter_mut().for_each(|sample| sample.deflection = Arc::clone(&none));
+        }
+    }
+
+    /// Computes the deflections again that were [forgotten](Self::forget_deflections).
+    pub(super) fn recall_deflections(&mut self, campaign: &Campaign) {
+        if self.is_long() {
             self.refresh(campaign);
         }
-        self.refit();
     }
 
     /// Replaces the model of a long campaign by that with the effects which a part of the rows shows, if all rows confirm them.
@@ -146,7 +168,11 @@ impl Positions {
             named_dependences: few.named_dependences,
             ..self.clone()
         };
-        self.take_if_confirmed(campaign, next, added.join(" + "));
+        // all rows need much memory: those of this model are computed again if it stays
+        self.forget_deflections();
+        if !self.take_if_confirmed(campaign, next, added.join(" + ")) {
+            self.recall_deflections(campaign);
+        }
     }
 
     /// The names of all effects of this model.
