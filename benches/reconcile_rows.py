@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How `armwright reconcile` grows with the rows of a campaign: processor time and peak memory.
+"""How `armwright reconcile` grows with the rows of a campaign: processor time, wall time and peak memory.
 
     cargo build --release
     python3 benches/reconcile_rows.py target/release/armwright [--kinds positions,static] [--rows 100,...,100000]
@@ -11,8 +11,8 @@ in random poses, with noise.
   tool offset, joint offsets and geometry are free; the real arm's links differ by half a millimetre and a bearing tilts.
 - `static`: displacements under five loads in each pose; a bearing tilts.
 
-Of each row of the table: processor seconds of all threads, peak resident memory, and the exponent from the size before.
-Below it the exponent fitted to all sizes from 1000 rows on, in logarithms, by least squares.
+Of each row of the table: processor seconds of all threads, wall seconds, peak resident memory, and the exponent of the processor
+time from the size before. Below it the exponent fitted to all sizes from 1000 rows on, in logarithms, by least squares.
 """
 
 import argparse
@@ -24,6 +24,7 @@ import random
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -116,15 +117,17 @@ def make(binary, folder, kind, count):
 
 
 def reconciled(binary, folder, limit_s):
-    """Processor seconds and peak memory in MB of one reconciliation; and its verdict."""
+    """Processor and wall seconds and peak memory in MB of one reconciliation; and its verdict."""
+    begin_s = time.monotonic()
     process = subprocess.Popen([binary, "reconcile", folder, "--out", folder / "out"], stdout=subprocess.DEVNULL)
     _, status, used = os.wait4(process.pid, 0)
+    wall_s = time.monotonic() - begin_s
     if status != 0:
         sys.exit(f"reconcile failed in {folder}")
     verdict = json.loads((folder / "out/verdict.json").read_text())
     effects = [f"{effect['effect']}@{effect['at']}" for effect in verdict["effects"]]
     seconds = used.ru_utime + used.ru_stime
-    return seconds, used.ru_maxrss / 1024.0, f"{verdict['verdict']} {' '.join(effects)}", seconds > limit_s
+    return seconds, wall_s, used.ru_maxrss / 1024.0, f"{verdict['verdict']} {' '.join(effects)}", seconds > limit_s
 
 
 def exponent(points):
@@ -143,16 +146,16 @@ def main():
     parser.add_argument("--limit-s", type=float, default=600.0, help="no larger campaign of a kind after one that took longer")
     args = parser.parse_args()
     binary = args.binary.resolve()
-    print(f"{'kind':10} {'rows':>7} {'seconds':>9} {'MB':>7} {'exponent':>8}  verdict")
+    print(f"{'kind':10} {'rows':>7} {'seconds':>9} {'wall':>7} {'MB':>7} {'exponent':>8}  verdict")
     for kind in args.kinds.split(","):
         points = []
         for count in map(int, args.rows.split(",")):
             with tempfile.TemporaryDirectory() as folder:
                 make(binary, Path(folder), kind, count)
-                seconds, megabytes, verdict, is_over = reconciled(binary, Path(folder), args.limit_s)
+                seconds, wall_s, megabytes, verdict, is_over = reconciled(binary, Path(folder), args.limit_s)
             points.append((count, seconds))
             step = f"{exponent(points[-2:]):8.2f}" if len(points) > 1 else " " * 8
-            print(f"{kind:10} {count:7} {seconds:9.2f} {megabytes:7.0f} {step}  {verdict}", flush=True)
+            print(f"{kind:10} {count:7} {seconds:9.2f} {wall_s:7.2f} {megabytes:7.0f} {step}  {verdict}", flush=True)
             if is_over:
                 break
         fitted = [point for point in points if point[0] >= FITTED_FROM]

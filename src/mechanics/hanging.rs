@@ -35,28 +35,62 @@ impl Chain {
 /// and with the deflections that it is given. If the deflections do not settle, because the arm would buckle or turn
 /// over, the result is the position by linear statics.
 pub(crate) fn hanging_tip_m<'a>(posed: impl Fn(Deflections) -> Posed<'a>) -> Vector3<f64> {
-    let straight = posed(Deflections::default());
-    let statics = straight.statics();
-    let linear_m = straight.tip_m + statics.tip_displacement_m;
-    if statics.tip_displacement_m.norm() < SMALL_M {
-        return linear_m;
+    let Hanging { tip_m, .. } = Hanging::new(posed);
+    tip_m
+}
+
+/// What the linear displacement of the tip lacks: its position as the arm hangs, less the position of the linear statics \[m\].
+pub(crate) fn beyond_linear_m<'a>(posed: impl Fn(Deflections) -> Posed<'a>) -> Vector3<f64> {
+    let Hanging { tip_m, straight_tip_m, displacement_m } = Hanging::new(posed);
+    tip_m - straight_tip_m - displacement_m
+}
+
+/// The tip of an arm as it hangs.
+struct Hanging {
+    /// Position of the tip \[m\].
+    tip_m: Vector3<f64>,
+    /// Position of the tip without deflection, and its displacement by the linear statics \[m\].
+    straight_tip_m: Vector3<f64>,
+    displacement_m: Vector3<f64>,
+}
+
+impl Hanging {
+    fn new<'a>(posed: impl Fn(Deflections) -> Posed<'a>) -> Self {
+        let straight = posed(Deflections::default());
+        let straight_tip_m = straight.tip_m;
+        let (displacement_m, strains) = straight.displaced();
+        let is_small = displacement_m.norm() < SMALL_M;
+        let at_rest_m =
+            if is_small { None } else { resting_tip_m(posed, straight_tip_m, straight.hung(strains)) };
+        let tip_m = at_rest_m.unwrap_or(straight_tip_m + displacement_m);
+        Self { tip_m, straight_tip_m, displacement_m }
     }
-    let mut hanging = straight;
+}
+
+/// Position of the tip at rest \[m\], if it is at `tip_m` first and then moves by the deflections `first`; `None` if it does not
+/// come to rest.
+fn resting_tip_m<'a>(
+    posed: impl Fn(Deflections) -> Posed<'a>,
+    mut tip_m: Vector3<f64>,
+    first: Deflections,
+) -> Option<Vector3<f64>> {
+    let mut deflections = first;
     for _ in 0..MOST_ROUNDS {
-        let next = posed(hanging.deflections());
-        let moved_m = (next.tip_m - hanging.tip_m).norm();
-        hanging = next;
+        let next = posed(deflections);
+        let moved_m = (next.tip_m - tip_m).norm();
+        tip_m = next.tip_m;
         if moved_m < RESTS_M {
-            return hanging.tip_m;
+            return Some(tip_m);
         }
+        deflections = next.hung(next.displaced().1);
     }
-    linear_m
+    None
 }
 
 impl Posed<'_> {
-    /// The deflections of all elements under weight and load, in this pose.
-    fn deflections(&self) -> Deflections {
-        let strains: Vec<f64> = self.statics().deformations.into_iter().flatten().collect();
+    /// The deflections of all elements with these strain coordinates.
+    fn hung(&self, strains: Vec<Vec<f64>>) -> Deflections {
+        let strains: Vec<f64> = strains.into_iter().flatten().collect();
         Deflections::of(self.with_passive(&DVector::from_vec(strains)).as_slice().to_vec())
     }
 }

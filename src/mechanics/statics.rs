@@ -122,6 +122,28 @@ impl Posed<'_> {
         out
     }
 
+    /// The tip displacement \[m\] and the strain coordinates of all elements, base to tip: those of
+    /// [`statics`](Self::statics), which also has what bearings, guides and roots of links bear.
+    pub(crate) fn displaced(&self) -> (Vector3<f64>, Vec<Vec<f64>>) {
+        let mut wrench = self.tip_load();
+        let transferred = self.transferred();
+        let (mut shares_m, mut strains) = (Vec::new(), Vec::new());
+        for item in self.items.iter().rev() {
+            match item {
+                Item::Body(body) => wrench += body.weight(),
+                Item::Load(load) => wrench += load,
+                Item::Elastic(element) => {
+                    let strained = element.strained(&transferred, &wrench);
+                    shares_m.push(displacement_at(&strained.motion, &self.tip_m));
+                    strains.push(strained.strains);
+                    element.own.iter().for_each(|own| wrench += own.weight);
+                }
+            }
+        }
+        strains.reverse();
+        (shares_m.iter().rev().sum(), strains)
+    }
+
     /// Force and moment at the tip, as a wrench about the world's origin.
     pub(crate) fn tip_load(&self) -> Wrench {
         force_wrench(&self.tip_force_n, &self.tip_m) + stack(&Vector3::zeros(), &self.tip_moment_nm)
@@ -137,45 +159,26 @@ impl Posed<'_> {
         wrench: &mut Wrench,
         out: &mut Statics,
     ) {
-        let mut motion = Twist::zeros();
-        let (deflections, tangents) = match &element.compliance {
+        let Strained { forces, strains, motion } = element.strained(transferred, wrench);
+        let tangents = match &element.compliance {
             Compliance::Joint(law) => {
-                // a driving joint also holds the torque that the linkage transfers from its passive joint
-                let mut torque_nm = element.twists[0].dot(wrench) + element.torque_nm;
-                let mut passive_twist = Twist::zeros();
-                for passive in transferred.iter().filter(|c| c.driver == element.name) {
-                    passive_twist += passive.twist;
-                    torque_nm += passive.torque_nm;
-                }
-                let angle_rad = law.rising_angle_rad(torque_nm);
-                motion += passive_twist * angle_rad;
-                out.joint_torques_nm.push((element.name.clone(), torque_nm));
+                out.joint_torques_nm.push((element.name.clone(), forces[0]));
                 let axis = angular(&element.twists[0]);
                 out.bearing_loads.push(JointLoad::of(wrench, &axis, &element.at_m));
-                (vec![angle_rad], vec![law.tangent_compliance_rad_per_nm(torque_nm)])
+                vec![law.tangent_compliance_rad_per_nm(forces[0])]
             }
             Compliance::Slide { m_per_n, frame } => {
-                let force_n = element.twists[0].dot(wrench);
-                out.joint_forces_n.push((element.name.clone(), force_n));
+                out.joint_forces_n.push((element.name.clone(), forces[0]));
                 out.guide_loads.push(GuideLoad::of(&element.name, wrench, frame, &element.at_m));
-                (vec![m_per_n * force_n], vec![*m_per_n])
+                vec![*m_per_n]
             }
             Compliance::Lift(lift) => {
-                let moments_nm: Vec<f64> = element.twists.iter().map(|twist| twist.dot(wrench)).collect();
-                let each = |of: &dyn Fn(f64) -> f64| moments_nm.iter().map(|nm| of(*nm)).collect::<Vec<_>>();
-                (each(&|nm| lift.angle_rad(nm)), each(&|nm| lift.tangent_compliance_rad_per_nm(nm)))
+                forces.iter().map(|nm| lift.tangent_compliance_rad_per_nm(*nm)).collect()
             }
-            Compliance::Linear(compliances) => {
-                let work = |i: usize| element.own.as_ref().map_or(0.0, |own| own.weight_work[i]);
-                let coordinates = element.twists.iter().zip(compliances).enumerate();
-                let deflections =
-                    coordinates.map(|(i, (twist, c))| c * (twist.dot(wrench) + work(i))).collect();
-                (deflections, compliances.clone())
-            }
+            Compliance::Linear(compliances) => compliances.clone(),
         };
-        motion += element.twists.iter().zip(&deflections).map(|(twist, q)| twist * *q).sum::<Twist>();
         out.shares_m.push((element.name.clone(), displacement_at(&motion, &self.tip_m)));
-        out.deformations.push(deflections);
+        out.deformations.push(strains);
         out.tangent_compliances.push(tangents);
         // the work of a link's own weight is already counted above; from here on this weight loads everything inboard
         if let Some(own) = &element.own {
@@ -187,6 +190,74 @@ impl Posed<'_> {
                 force_n: to_section * linear(wrench),
                 moment_nm: to_section * moment,
             });
+        }
+    }
+}
+
+/// An elastic element under a load.
+struct Strained {
+    /// Torque or force on each strain coordinate \[N m or N\].
+    forces: Vec<f64>,
+    /// Value of each strain coordinate.
+    strains: Vec<f64>,
+    /// Motion of everything outboard.
+    motion: Twist,
+}
+
+impl ElasticElement {
+    /// The deflection of the element under `wrench`, the load of everything outboard. `transferred` are the torques that linkages
+    /// put on driving joints.
+    fn strained(&self, transferred: &[Transferred], wrench: &Wrench) -> Strained {
+        let mut motion = Twist::zeros();
+        let mut forces: Vec<f64> = self.twists.iter().map(|twist| twist.dot(wrench)).collect();
+        let strains: Vec<f64> = match &self.compliance {
+            Compliance::Joint(law) => {
+                // a driving joint also holds the torque that the linkage transfers from its passive joint
+                forces[0] += self.torque_nm;
+                let mut passive_twist = Twist::zeros();
+                for passive in transferred.iter().filter(|c| c.driver == self.name) {
+                    passive_twist += passive.twist;
+                    forces[0] += passive.torque_nm;
+                }
+                let angle_rad = law.rising_angle_rad(forces[0]);
+                motion += passive_twist * angle_rad;
+                vec![angle_rad]
+            }
+            Compliance::Slide { m_per_n, .. } => vec![m_per_n * forces[0]],
+            Compliance::Lift(lift) => forces.iter().map(|nm| lift.angle_rad(*nm)).collect(),
+            Compliance::Linear(compliances) => {
+                let work = |i: usize| self.own.as_ref().map_or(0.0, |own| own.weight_work[i]);
+                forces.iter_mut().enumerate().for_each(|(i, force)| *force += work(i));
+                forces.iter().zip(compliances).map(|(force, c)| c * force).collect()
+            }
+        };
+        motion += self.twists.iter().zip(&strains).map(|(twist, q)| twist * *q).sum::<Twist>();
+        Strained { forces, strains, motion }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::file::read_arm_document;
+    use crate::arm::load::Payload;
+    use crate::arm::{JointModel, LinkModel};
+    use crate::catalog::Catalogs;
+    use crate::input::Document;
+    use crate::mechanics::chain::Chain;
+
+    #[test]
+    fn the_displacement_alone_has_the_bits_of_the_whole_statics() {
+        let text = include_str!("../../examples/measured-arm/arm.json");
+        let document = Document::parse("arm.json", text).expect("JSON");
+        let arm = read_arm_document(document, &Catalogs::default()).expect("a sound arm");
+        let chain = Chain::new(&arm.structure(JointModel::ThreeSegment), LinkModel::Full);
+        let payload = Payload { mass_kg: 5.0, ..Payload::default() };
+        for k in 0..5 {
+            let pose_rad: Vec<f64> = (0..6).map(|j| 0.3 * f64::from(k) - 0.2 * f64::from(j)).collect();
+            let posed = chain.pose_rad(&pose_rad, &payload, Vector3::new(1.0, -20.0, 3.0));
+            let whole = posed.statics();
+            assert_eq!(posed.displaced(), (whole.tip_displacement_m, whole.deformations));
         }
     }
 }

@@ -122,12 +122,12 @@ fn too_many_readings_are_refused() {
     let file = here.path().join("static.csv");
     let mut text = std::fs::read_to_string(&file).expect("readings").trim_end().to_string();
     let row = text.lines().last().expect("a row").split_once(',').expect("cells").1.to_string();
-    for k in 0..20_001 {
+    for k in 0..100_001 {
         let _ = write!(text, "\nmore{k},{row}");
     }
     std::fs::write(&file, text).expect("written");
     let (code, said) = armwright(here.path(), &["reconcile", ".", "--out", "out"]);
-    assert!(code == 3 && said.contains("and the limit is 20000"), "{code} {}", &said[..said.len().min(400)]);
+    assert!(code == 3 && said.contains("and the limit is 100000"), "{code} {}", &said[..said.len().min(400)]);
 }
 
 #[test]

@@ -18,6 +18,7 @@ mod nominal_positions;
 mod other_simulator;
 mod positions;
 mod positions_laws;
+mod positions_long;
 mod positions_maker;
 mod positions_other_simulator;
 mod prismatic;

@@ -3,7 +3,7 @@
 
 use super::align;
 use super::dependence::Dependence;
-use super::fit::fit;
+use super::fit::{STEPS_TO_FOLD, fit, fit_within};
 use super::fitted::{Fitted, Sample};
 use super::kinematics::{Geometry, Number, Pose, number_groups};
 use super::loads::{CompliantPlace, Loads, candidates};
@@ -19,7 +19,7 @@ use crate::reconcile::fit::stats::median;
 use crate::reconcile::model::estimate::Finding;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::components::Components;
-use crate::reconcile::readings::rows::pose_key;
+use crate::reconcile::readings::rows::{PositionRow, pose_key};
 use crate::reconcile::verdict::stage::Stage;
 use nalgebra::{Rotation3, Vector3};
 use rayon::prelude::*;
@@ -71,6 +71,8 @@ pub(crate) struct Positions {
     pub(super) sessions: Vec<Boundary>,
     /// Error of each row's position after the last stage, as predicted by a fit without the row's fold \[m\].
     pub(super) held_out: Vec<Vector3<f64>>,
+    /// Number of rows on which effects were screened; `None` if all rows were searched.
+    pub(super) screened: Option<usize>,
 }
 
 /// Arms whose geometry alone is calibrated, without a search for effects.
@@ -115,14 +117,16 @@ pub(crate) fn calibrated(campaign: &Campaign) -> Calibrated {
 /// of sessions: those that remain, and those that are needed in addition to effects that were found without sessions.
 /// The model with the best score is kept.
 pub(crate) fn analyze(campaign: &Campaign) -> Positions {
-    let calibrated = Positions::in_declared_sessions(campaign);
+    let mut calibrated = Positions::in_declared_sessions(campaign);
     let mut found = calibrated.clone();
+    calibrated.forget_deflections();
     found.tell_sessions(campaign);
     found.rigid = found.fitted.clone();
     found.find_effects(campaign);
     let mut reviewed = found.clone();
     let is_other = reviewed.drop_needless_sessions();
     if is_other || found.has_doubtful_session(campaign) {
+        calibrated.recall_deflections(campaign);
         let mut late = calibrated.clone();
         late.find_effects(campaign);
         late.tell_sessions(campaign);
@@ -172,6 +176,7 @@ impl Positions {
             points,
             sessions: Vec::new(),
             held_out: Vec::new(),
+            screened: None,
         }
     }
 
@@ -238,8 +243,10 @@ impl Positions {
         out
     }
 
-    /// Adds compliances and transmission errors to the model, one by one, as long as one is worth its price.
-    fn find_effects(&mut self, campaign: &Campaign) {
+    /// Adds compliances and transmission errors to the model, one by one, as long as one is worth its price. In a long campaign
+    /// it begins with those that a part of the rows shows.
+    pub(super) fn find_effects(&mut self, campaign: &Campaign) {
+        self.take_screened(campaign);
         // What follows a joint's angle can hide a compliance, so the search starts again after each one that is found.
         loop {
             for class in CLASSES {
@@ -254,18 +261,36 @@ impl Positions {
     /// Places the arm, and then frees one group of the geometry's numbers after the other, with a fit after each.
     fn calibrate(&mut self, campaign: &Campaign) {
         let spec = &campaign.statement.positions;
-        align::align(&self.tree, spec, &self.samples, &mut self.fitted.geometry);
+        let starts = self.starts(campaign);
+        if starts.is_empty() {
+            align::align(&self.tree, spec, &self.samples, &mut self.fitted.geometry);
+        } else {
+            // the deflection of all rows is computed once, for the geometry that a part of them has
+            self.fitted = starts[starts.len() - 1].clone();
+            self.refresh(campaign);
+        }
         // one group after the other, because a fit of all numbers from a bad start can end anywhere
-        for (name, group) in number_groups(&self.tree, spec, self.points.len()) {
+        for (at, (name, group)) in number_groups(&self.tree, spec, self.points.len()).into_iter().enumerate()
+        {
             self.numbers.extend(group);
-            // the deflection depends slightly on the geometry, so two rounds are needed
-            for _ in 0..2 {
-                self.refresh(campaign);
-                self.refit();
+            match starts.get(at) {
+                Some(start) => {
+                    self.fitted = start.clone();
+                    self.refit();
+                }
+                None => self.settle_geometry(campaign),
             }
             self.stage(name.into(), Vec::new());
         }
         self.free_tolerances(campaign);
+    }
+
+    /// Fits the geometry. The deflection depends slightly on it, so two rounds are needed.
+    pub(super) fn settle_geometry(&mut self, campaign: &Campaign) {
+        for _ in 0..2 {
+            self.refresh(campaign);
+            self.refit();
+        }
     }
 
     /// This model without those of its numbers for which `is_gone` is true. It is not fitted again.
@@ -336,7 +361,10 @@ impl Positions {
                 let (own, rest): (Vec<(usize, &Sample)>, Vec<_>) =
                     self.samples.iter().enumerate().partition(|(_, s)| s.group % HANDS == hand);
                 let rest: Vec<&Sample> = rest.into_iter().map(|(_, s)| s).collect();
-                let again = fit(&rest, &self.numbers, &fitted.effects, fitted);
+                let again = match self.is_long() {
+                    true => fit_within(STEPS_TO_FOLD, &rest, &self.numbers, &fitted.effects, fitted),
+                    false => fit(&rest, &self.numbers, &fitted.effects, fitted),
+                };
                 own.into_iter().map(|(i, s)| (i, again.error(s))).collect()
             })
             .collect();
@@ -375,27 +403,31 @@ pub(super) fn samples(
         .map(|row| points.iter().position(|p| *p == Point::of(row)).unwrap_or_default())
         .collect();
     let loads = Loads::new(campaign, tree, geometry, candidates);
-    let mut poses: HashMap<Vec<u64>, usize> = HashMap::new();
-    let rows = campaign.positions.iter().zip(points);
+    let rows = campaign.positions.par_iter().zip(points).zip(groups(campaign));
     rows.enumerate()
-        .map(|(index, (row, point))| {
-            let known = poses.len();
-            let group = *poses.entry(pose_key(&row.pose_deg)).or_insert(known);
-            Sample {
-                pose: Arc::new(Pose::new(row.pose_deg.iter().map(|a| a.to_radians()).collect())),
-                arm: row.arm,
-                point,
-                station: 0,
-                part: row.row as f64 / last_row,
-                index,
-                group,
-                measured_m: Vector3::from(row.measured.map(|read| read.map_or(0.0, |read| read.value_mm)))
-                    / 1e3,
-                precision: precision(&row.measured),
-                deflection: Arc::new(loads.deflection(row, point)),
-                nominal_m: Vec::new(),
-                second_order_m: Vector3::zeros(),
-            }
+        .map(|(index, ((row, point), group))| Sample {
+            pose: Arc::new(Pose::new(row.pose_deg.iter().map(|a| a.to_radians()).collect())),
+            arm: row.arm,
+            point,
+            station: 0,
+            part: row.row as f64 / last_row,
+            index,
+            group,
+            measured_m: Vector3::from(row.measured.map(|read| read.map_or(0.0, |read| read.value_mm))) / 1e3,
+            precision: precision(&row.measured),
+            deflection: Arc::new(loads.deflection(row, point)),
+            nominal_m: Arc::default(),
+            second_order_m: Vector3::zeros(),
         })
         .collect()
+}
+
+/// The number of the pose of each row, counted over different poses.
+fn groups(campaign: &Campaign) -> Vec<usize> {
+    let mut poses: HashMap<Vec<u64>, usize> = HashMap::new();
+    let group = |row: &PositionRow| {
+        let known = poses.len();
+        *poses.entry(pose_key(&row.pose_deg)).or_insert(known)
+    };
+    campaign.positions.iter().map(group).collect()
 }

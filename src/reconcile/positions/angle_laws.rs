@@ -106,7 +106,7 @@ impl Positions {
         let without = self.without_transmission(joint);
         let laws = AngleLaw::all();
         let counts: Vec<usize> = laws.iter().map(|law| law.at(0.0).len()).collect();
-        let gains = without.linear_gains(&without.fitted, &counts, true, &mut |sample, placer, columns| {
+        let gains = without.linear_gains(&without.fitted, &counts, true, &|sample, placer, columns| {
             laws.iter().for_each(|law| without.push_columns(law, joint, sample, placer, columns));
         });
         let mut order: Vec<(&AngleLaw, f64)> = laws.iter().zip(gains).collect();
@@ -154,7 +154,7 @@ impl Positions {
         let mut fitted = self.fitted.clone();
         for _ in 0..STEPS {
             let all: Vec<&Sample> = samples.iter().collect();
-            let normal = normal(&all, &self.numbers, &fitted, &mut |sample, placer, columns| {
+            let normal = normal(&all, &self.numbers, &fitted, &|sample, placer, columns| {
                 self.push_columns(law, joint, sample, placer, columns);
             });
             let own: Vec<usize> = (0..normal.own + sizes.len()).collect();

@@ -9,6 +9,7 @@ use super::moved::{Boundary, Kind, Moved};
 use super::sessions::telling_part;
 use crate::reconcile::fit::stats::median;
 use crate::reconcile::readings::campaign::Campaign;
+use rayon::prelude::*;
 
 /// A jump of the measured points of at least this size is too large to come from a reflector that was put back
 /// \[mm\].
@@ -207,8 +208,9 @@ impl Positions {
         let without = Self { fitted: fitted.clone(), ..self.clone() };
         let missing = self.fitted.ln_likelihood - tie - without.fitted.ln_likelihood;
         let whole = without.whole()?;
-        let best = kinds.iter().filter_map(|&moved| {
-            let (first, gain) = without.best_first(moved, &whole)?;
+        let firsts: Vec<_> = kinds.par_iter().map(|&moved| without.best_first(moved, &whole)).collect();
+        let best = kinds.iter().zip(firsts).filter_map(|(&moved, first)| {
+            let (first, gain) = first?;
             // a robust fit gains at most a few times what the linearized one promises
             (3.0 * gain > missing).then(|| without.split(moved, first, kinds.len()))
         });

@@ -19,6 +19,7 @@ use super::fit::fit;
 use super::fitted::{Fitted, Sample, readings};
 use super::kinematics::{Geometry, Number, number_groups};
 use super::points::points;
+use super::screening::LONG;
 use crate::reconcile::readings::campaign::{Campaign, PositionsSpec};
 use crate::report::number::significant;
 use nalgebra::Vector3;
@@ -106,7 +107,7 @@ impl Asked<'_> {
     }
 
     fn full(&self, made: Vec<Change>) -> Tried {
-        let (fitted, numbers) = self.fitted(&made, self.groups.len(), usize::MAX);
+        let (fitted, numbers) = self.fitted(&made, self.groups.len(), LONG);
         // the logarithm of the likelihood falls by that of the scale for every reading
         let part = fitted.improbability(&numbers) / readings(&self.samples).max(1) as f64;
         let is_far = fitted.is_far_from_nominal(&numbers);

@@ -12,6 +12,9 @@ use super::rows::normal_of_fit;
 use super::springs::{Best, best_springs};
 
 const MOST_STEPS: usize = 40;
+/// Number of steps from a fit to all rows of a long campaign to the fit without one fold of them. Both are closer together than
+/// the standard deviations, and each step leaves a small part of the distance.
+pub(super) const STEPS_TO_FOLD: usize = 3;
 /// Largest number of times that a step is halved because the fit is worse after it.
 const MOST_HALVINGS: i32 = 10;
 /// Largest rotation of a frame (base or mounting) in one step of a fit \[rad\].
@@ -67,6 +70,17 @@ impl Fitted {
 /// Fits the geometry's `numbers` and the compliances of the candidates with the indices `effects` to the samples
 /// (measured positions). The fit starts from the model `start`.
 pub(crate) fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], start: &Fitted) -> Fitted {
+    fit_within(MOST_STEPS, samples, numbers, effects, start)
+}
+
+/// The same with at most `steps` Gauss-Newton steps.
+pub(super) fn fit_within(
+    steps: usize,
+    samples: &[&Sample],
+    numbers: &[Number],
+    effects: &[usize],
+    start: &Fitted,
+) -> Fitted {
     let mut here = start.clone();
     here.compliances = effects
         .iter()
@@ -87,7 +101,7 @@ pub(crate) fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], st
     // best fit.
     let mut merit = f64::NEG_INFINITY;
     let mut last: Option<Best> = None;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..steps {
         let before = here.clone();
         let best = step(samples, &misses, numbers, &mut here);
         let step = best.as_ref().map_or(vec![0.0; numbers.len()], |b| b.step[..numbers.len()].to_vec());

@@ -5,10 +5,13 @@ use super::kinematics::{Geometry, Placer, Placing, Pose};
 use super::loads::Deflection;
 use crate::mechanics::lanes::LANES;
 use nalgebra::Vector3;
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Degrees of freedom ν of the Student distribution of the errors.
 pub(crate) const NU: f64 = 4.0;
+/// Number of samples whose errors one thread computes.
+const PORTION: usize = 4096;
 
 /// One measured position (sample), with its pose and its deflection.
 #[derive(Debug, Clone)]
@@ -35,7 +38,7 @@ pub(crate) struct Sample {
     /// How this position deflects under gravity: the known deflection, and what each candidate would add.
     pub deflection: Arc<Deflection>,
     /// Change of the known deflection per unit of each dependence of it, in the level frame \[m\].
-    pub nominal_m: Vec<Vector3<f64>>,
+    pub nominal_m: Arc<[Vector3<f64>]>,
     /// What the linear displacement by the whole model lacks, in the level frame \[m\]. It is that of the model before the
     /// present fit.
     pub second_order_m: Vector3<f64>,
@@ -145,7 +148,7 @@ impl Fitted {
     pub(crate) fn displacement(&self, sample: &Sample) -> Vector3<f64> {
         let gravity = &self.geometry.gravity;
         let [by_x, by_y] = &sample.deflection.known_slopes_m;
-        let dependent = self.geometry.dependences.iter().zip(&sample.nominal_m);
+        let dependent = self.geometry.dependences.iter().zip(sample.nominal_m.iter());
         let known_m = dependent.fold(sample.deflection.known_m, |sum, (x, by)| sum + by * *x);
         let linear_m = known_m + by_x * gravity.x + by_y * gravity.y + self.displaced_m(sample, gravity);
         linear_m + sample.second_order_m
@@ -179,15 +182,25 @@ impl Fitted {
 
 /// Errors of the samples with the model `fitted`, each coordinate multiplied by its weight for the fit.
 pub(crate) fn misses(samples: &[&Sample], fitted: &Fitted) -> Vec<Miss> {
+    let order = by_arm(samples);
+    let portions = order.par_chunks(PORTION).map(|portion| misses_of(portion, samples, fitted));
+    let portions: Vec<Vec<Miss>> = portions.collect();
+    let mut out = vec![Miss { scaled_m: Vector3::zeros(), readings: 0.0 }; samples.len()];
+    order.iter().zip(portions.into_iter().flatten()).for_each(|(&i, miss)| out[i] = miss);
+    out
+}
+
+/// The errors of those samples that have the indices `portion`, arm by arm.
+fn misses_of(portion: &[usize], samples: &[&Sample], fitted: &Fitted) -> Vec<Miss> {
     let mut placer = EightPlacer::new(&fitted.geometry);
     let from_level = fitted.geometry.level_to_instrument();
-    let mut out = vec![Miss { scaled_m: Vector3::zeros(), readings: 0.0 }; samples.len()];
-    for eight in eights(&by_arm(samples), samples) {
+    let mut out = Vec::with_capacity(portion.len());
+    for eight in eights(portion, samples) {
         let asked: Vec<Placing> = eight.iter().map(|&i| samples[i].placing()).collect();
         for (&i, rigid_m) in eight.iter().zip(placer.place_m(&asked)) {
             let sample = samples[i];
             let displaced_m = from_level * fitted.displacement(sample);
-            out[i] = sample.miss(&sample.error(rigid_m + displaced_m + fitted.drifted_m(sample)));
+            out.push(sample.miss(&sample.error(rigid_m + displaced_m + fitted.drifted_m(sample))));
         }
     }
     out

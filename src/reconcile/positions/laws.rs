@@ -8,7 +8,7 @@
 
 use super::analysis::Positions;
 use super::fit::fit;
-use super::fitted::{Fitted, Sample, readings};
+use super::fitted::{Fitted, Sample};
 use super::kinematics::{Number, Placer};
 use super::law::{Book, Law};
 use super::normal::Factor;
@@ -147,15 +147,14 @@ impl Positions {
         let without = self.without_group(group);
         let counts: Vec<usize> = book.laws.iter().map(Law::count).collect();
         let from_level = without.fitted.geometry.level_to_instrument();
-        let gains = without.linear_gains(&without.fitted, &counts, true, &mut |sample, placer, columns| {
+        let gains = without.linear_gains(&without.fitted, &counts, true, &|sample, placer, columns| {
             book.laws.iter().for_each(|law| book.push_columns(law, sample, placer, &from_level, columns));
         });
         let missing = self.fitted.ln_likelihood - without.fitted.ln_likelihood;
         let mut order: Vec<(&Law, f64)> = book.laws.iter().zip(gains).collect();
         order.sort_by(|a, b| b.1.total_cmp(&a.1));
         order.truncate(FULL_FITS);
-        // a robust fit gains at most a few times what the linearized one promises
-        order.retain(|(_, gain)| 2.0 * without.promised(*gain) > missing);
+        order.retain(|(_, gain)| without.keeps_its_promise(*gain, missing));
         let named_price = self.price_of_group(group);
         let judged = order.into_par_iter().filter_map(|(law, _)| {
             let rise = without.with_law(book, law)? - self.fitted.ln_likelihood;
@@ -163,13 +162,6 @@ impl Positions {
             (worth > 0.0 && rise > TIE).then(|| (law.clone(), worth))
         });
         judged.collect::<Vec<_>>().into_iter().max_by(|a, b| a.1.total_cmp(&b.1))
-    }
-
-    /// The rise of the logarithm of the likelihood that a fall of half of chi-squared by `gain` promises. Chi-squared is the
-    /// number of readings at the fitted scale of the errors, and the scale falls with it.
-    fn promised(&self, gain: f64) -> f64 {
-        let count = readings(&self.samples) as f64;
-        -0.5 * count * libm::log((1.0 - 2.0 * gain / count).max(f64::MIN_POSITIVE))
     }
 
     /// The logarithm of the likelihood of this model with the law `law`. Its amplitudes are found by Gauss-Newton steps, with
@@ -184,7 +176,7 @@ impl Positions {
                 book.push_columns(law, sample, placer, &from_level, out);
             };
             let all: Vec<&Sample> = samples.iter().collect();
-            let normal = normal(&all, &self.numbers, &fitted, &mut |s, p, out| columns_of(s, p, out));
+            let normal = normal(&all, &self.numbers, &fitted, &|s, p, out| columns_of(s, p, out));
             let own: Vec<usize> = (0..normal.own + sizes.len()).collect();
             let step = Factor::new(&normal.curvature, &own)?.solve(&normal.gradient);
             sizes.iter_mut().zip(step.iter().skip(normal.own)).for_each(|(size, step)| *size += step);

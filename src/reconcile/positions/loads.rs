@@ -19,9 +19,8 @@ use crate::arm::joint_law::{Curve, JointLaw};
 use crate::arm::load::Payload;
 use crate::arm::structure::{FrameCompliance, Piece, Structure};
 use crate::arm::{Arm, BASE, JointModel, LinkModel};
-use crate::mechanics::chain::Chain;
-use crate::mechanics::chain::{Item, Posed};
-use crate::mechanics::hanging::hanging_tip_m;
+use crate::mechanics::chain::{Chain, Item, Posed};
+use crate::mechanics::hanging::beyond_linear_m;
 use crate::mechanics::{Twist, angular, displacement_at, linear};
 use crate::reconcile::model::direct::{seen_from_tool, with_tool};
 use crate::reconcile::readings::campaign::Campaign;
@@ -57,10 +56,10 @@ pub(crate) struct Deflection {
     /// gravity \[m\].
     pub known_slopes_m: [Vector3<f64>; 2],
     /// The rotations of all candidates, those of the first candidate first.
-    swings: Vec<Swing>,
+    swings: Arc<[Swing]>,
     slots: Arc<[Slot]>,
     /// For each driven joint, sine and cosine of its angle and of twice its angle.
-    waves: Vec<[f64; 4]>,
+    waves: Arc<[[f64; 4]]>,
 }
 
 /// One rotation by which a candidate can deflect: how it moves the point, and the torque about it.
@@ -76,7 +75,7 @@ struct Swing {
 /// rotations, and the number of its compliances. A candidate that is no spring shares the rotations of the spring at its
 /// place.
 #[derive(Debug, Clone, Copy)]
-struct Slot {
+pub(super) struct Slot {
     first: usize,
     swings: usize,
     compliances: usize,
@@ -88,8 +87,8 @@ struct Slot {
 impl Deflection {
     /// A deflection with the known displacement `known_m` and without candidates.
     pub(crate) fn known(known_m: Vector3<f64>) -> Self {
-        let known_slopes_m = [Vector3::zeros(); 2];
-        Self { known_m, known_slopes_m, swings: Vec::new(), slots: Arc::new([]), waves: Vec::new() }
+        let (known_slopes_m, swings, slots, waves) = Default::default();
+        Self { known_m, known_slopes_m, swings, slots, waves }
     }
 
     /// Number of compliances of a candidate.
@@ -102,11 +101,16 @@ impl Deflection {
         self.slots[candidate].shape.is_proportional()
     }
 
-    /// This deflection, with the threshold `nm` of the candidate \[N m\] (the torque scale of its play, or the preload).
-    pub(crate) fn with_threshold(&self, candidate: usize, nm: f64) -> Self {
+    /// The candidates of this deflection, with the threshold `nm` of one of them \[N m\] (torque scale of play, or preload).
+    pub(super) fn slots_with_threshold(&self, candidate: usize, nm: f64) -> Arc<[Slot]> {
         let mut slots = self.slots.to_vec();
         slots[candidate].shape = slots[candidate].shape.with_threshold(nm);
-        Self { slots: slots.into(), ..self.clone() }
+        slots.into()
+    }
+
+    /// This deflection with the candidates `slots`, which differ in their thresholds only.
+    pub(super) fn with_slots(&self, slots: &Arc<[Slot]>) -> Self {
+        Self { slots: Arc::clone(slots), ..self.clone() }
     }
 
     /// The largest torque about an axis of a candidate under gravity along -z, without its sign \[N m\].
@@ -340,9 +344,9 @@ impl<'a> Loads<'a> {
         let angles = row.pose_deg.iter().filter(|_| varies);
         Deflection {
             waves: angles.map(|angle| transmission_waves(angle.to_radians())).collect(),
-            known_m: self.known_of(&hung, row).statics().tip_displacement_m,
+            known_m: self.known_of(&hung, row).displaced().0,
             known_slopes_m: [Vector3::zeros(); 2],
-            swings: hung.own.swings(&unit, &self.slots),
+            swings: hung.own.swings(&unit, &self.slots).into(),
             slots: Arc::clone(&self.slots),
         }
     }
@@ -350,7 +354,7 @@ impl<'a> Loads<'a> {
     /// Displacement of a point under gravity by the compliances that the arm file already has, in the level frame
     /// \[m\].
     pub(crate) fn known_m(&self, row: &PositionRow, point: usize) -> Vector3<f64> {
-        self.known_of(&self.hung(row, point), row).statics().tip_displacement_m
+        self.known_of(&self.hung(row, point), row).displaced().0
     }
 
     /// What the linear displacement of [`known_m`](Self::known_m) lacks: displacement of the point as the arm hangs, with
@@ -359,13 +363,11 @@ impl<'a> Loads<'a> {
     pub(crate) fn second_order_m(&self, row: &PositionRow, point: usize) -> Vector3<f64> {
         let hung = self.hung(row, point);
         let payload = seen_from_tool(&row.payload, &hung.own.point_m);
-        let hanging_m = hanging_tip_m(|deflections| {
+        beyond_linear_m(|deflections| {
             let mut posed = hung.own.known.pose_with(&hung.pose_rad, &payload, Vector3::zeros(), deflections);
             hung.load_trunk(&mut posed, self.trunk[1]);
             posed
-        });
-        let straight = self.known_of(&hung, row);
-        hanging_m - straight.tip_m - straight.statics().tip_displacement_m
+        })
     }
 
     /// The arm as it is in the file, in the pose and with the payload of `row`, without deflection.

@@ -13,6 +13,7 @@
 //! - `shape` says how a candidate that is no spring depends on its torque, `shaped` lists them, `threshold` refines torque scales and preloads,
 //!   `waves` finds stiffnesses that vary with the angle. `drift` finds a drift in the place of sessions. `law` lists physics
 //!   that is no effect, and `laws` lets it compete with effects (`angle_laws`: errors of a joint's angle).
+//! - `screening` chooses the rows of a long campaign on which effects are screened.
 //! - `setups` brings the positions of several campaigns into one frame.
 //! - `conventions` asks whether the file was written by another convention (`convention_changes`), `far_geometry` whether
 //!   calibration went further than its prior expects, `structure` tests the errors that are left,
@@ -44,6 +45,7 @@ pub(crate) mod outcome;
 pub(crate) mod points;
 pub(crate) mod predict;
 pub(crate) mod rows;
+mod screening;
 pub(crate) mod search;
 pub(crate) mod second_order;
 pub(crate) mod sessions;

@@ -69,8 +69,9 @@ impl Positions {
     }
 
     /// Fits with one more effect on the nominal deflection each, with the index of the effect. All are screened with the
-    /// linearized model, and the most promising are fitted in full.
-    pub(super) fn best_dependences(&self) -> Vec<(usize, Fitted)> {
+    /// linearized model, and the most promising are fitted in full, if they may raise the logarithm of the likelihood by
+    /// `asked`.
+    pub(super) fn best_dependences(&self, asked: f64) -> Vec<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let is_open =
             |k: &usize| self.dependences[*k].effect().is_some() && !self.named_dependences.contains(k);
@@ -79,11 +80,14 @@ impl Positions {
             return Vec::new();
         }
         let from_level = self.fitted.geometry.level_to_instrument();
-        let gains = self.linear_gains(&self.fitted, &vec![1; open.len()], true, &mut |sample, _, columns| {
+        let gains = self.linear_gains(&self.fitted, &vec![1; open.len()], true, &|sample, _, columns| {
             columns.extend(open.iter().map(|k| from_level * sample.nominal_m[*k]));
         });
-        let mut order: Vec<(usize, f64)> =
-            open.into_iter().zip(gains).filter(|(_, gain)| *gain > 0.0).collect();
+        let mut order: Vec<(usize, f64)> = open
+            .into_iter()
+            .zip(gains)
+            .filter(|(_, gain)| *gain > 0.0 && self.may_rise(*gain, asked))
+            .collect();
         order.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         order.truncate(FULL_FITS);
         let with = |(k, _): (usize, f64)| {
@@ -127,18 +131,21 @@ impl Positions {
     /// Names and places of effects on the nominal deflection that would fit as well in the place of an effect of the
     /// model. `without` is the fit without this effect.
     pub(super) fn dependences_instead(&self, without: &Fitted) -> Vec<(String, String)> {
+        let missing = self.missing(without);
         let without = Self { fitted: without.clone(), ..self.clone() };
-        self.as_good(without.best_dependences())
+        self.as_good(without.best_dependences(missing))
     }
 
     /// Effects that would fit as well in the place of the effect number `k` on the nominal deflection.
     pub(super) fn instead_of_dependence(&self, k: usize) -> Vec<(String, String)> {
         let without = self.without_dependence(k);
-        let springs = without.best_additions(&without.fitted, |c| self.candidates[c].count() == 1);
+        let missing = self.missing(&without.fitted);
+        let has_one = |c: usize| self.candidates[c].count() == 1;
+        let springs = without.best_additions(&without.fitted, has_one, |_| missing);
         let as_good = springs.into_iter().filter(|(_, f)| f.ln_likelihood > self.fitted.ln_likelihood - TIE);
         let name = |c: &CompliantPlace| (c.effect.to_string(), c.at.clone());
         let springs: Vec<(String, String)> = as_good.map(|(c, _)| name(&self.candidates[c])).collect();
-        let others = without.best_dependences().into_iter().filter(|(other, _)| *other != k).collect();
+        let others = without.best_dependences(missing).into_iter().filter(|(other, _)| *other != k).collect();
         [self.as_good(others), springs].concat()
     }
 

@@ -149,6 +149,7 @@ impl Positions {
     /// and geometry that moved far, joints that stood still, and another convention of the file.
     fn remarks(&self, campaign: &Campaign, adjusted: &[Calibrated]) -> Vec<String> {
         let mut out = self.session_sentences(campaign);
+        out.extend(self.screening_sentence());
         out.extend(caution::beyond_tolerance(self.tolerances(), adjusted));
         out.extend(self.moved_zeros());
         out.extend(self.moved_geometry());

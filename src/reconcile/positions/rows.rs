@@ -4,8 +4,9 @@
 //! A fit asks for these equations in every step, without further columns. [`normal_of_fit`] computes them for eight
 //! samples at a time.
 //!
-//! The computing time grows in proportion to the number of samples. The memory is fixed: the rows of the equations are
-//! computed in blocks, and only their products are kept.
+//! The computing time grows in proportion to the number of samples. The memory is small: the rows of the equations are
+//! computed in blocks, and only their products are kept. Many samples are divided into portions of fixed size, which
+//! threads share; the sums of the portions are added in their order.
 
 use super::eight_places::{EightPlacer, Slope};
 use super::fitted::{Fitted, Miss, Sample, by_arm, eights};
@@ -14,6 +15,7 @@ use super::normal::Normal;
 use crate::mechanics::lanes::LANES;
 use crate::mechanics::product::Panels;
 use nalgebra::{DMatrix, DVector, Rotation3, Vector3};
+use rayon::prelude::*;
 
 /// Prior standard deviation of a compliance \[rad/(N m)\]. It is far larger than the compliance of any real part.
 /// Without a prior, a compliance that no weight loads could take any value.
@@ -21,12 +23,15 @@ const PRIOR_RAD_PER_NM: f64 = 0.1;
 /// Number of samples (measured positions) whose rows of the equations are computed together. The rows then stay in
 /// the processor's cache until their products are taken.
 const BLOCK: usize = 64;
+/// Number of samples whose products are summed up by one thread. It is a fixed number, so that the sums do not depend on the
+/// number of threads.
+const PORTION: usize = 80 * BLOCK;
 /// Number of rows for which a block has room. The last eight samples of a block may be fewer.
 const HEIGHT: usize = 3 * (BLOCK + LANES);
 
 /// A function that appends further columns to the equations: derivatives of a sample's position with respect to
 /// whatever the caller tests \[m per unit\]. These columns belong to no number of the model.
-pub(crate) type Further<'a> = &'a mut dyn FnMut(&Sample, &Placer, &mut Vec<Vector3<f64>>);
+pub(crate) type Further<'a> = &'a (dyn Fn(&Sample, &Placer, &mut Vec<Vector3<f64>>) + Sync);
 
 /// A model of positions, linearized about the values of its numbers.
 pub(crate) struct Linearized<'a> {
@@ -97,18 +102,22 @@ fn slope_beyond_geometry(
 /// Builds the normal equations of all samples, linearized about the model `here`. `further` adds columns that belong
 /// to no number of the model.
 pub(crate) fn normal(samples: &[&Sample], numbers: &[Number], here: &Fitted, further: Further) -> Normal {
-    let mut linearized = Linearized::new(here, numbers);
-    let mut products: Option<Products> = None;
-    for block in by_arm(samples).chunks(BLOCK) {
-        for (k, &i) in block.iter().enumerate() {
-            let error = linearized.at(samples[i], further);
-            let columns = &linearized.columns;
-            products.get_or_insert_with(|| Products::new(columns.len())).put(k, columns, &error);
+    let portions = by_arm(samples);
+    let portions = portions.par_chunks(PORTION).map(|portion| {
+        let mut linearized = Linearized::new(here, numbers);
+        let mut products: Option<Products> = None;
+        for block in portion.chunks(BLOCK) {
+            for (k, &i) in block.iter().enumerate() {
+                let error = linearized.at(samples[i], further);
+                let columns = &linearized.columns;
+                products.get_or_insert_with(|| Products::new(columns.len())).put(k, columns, &error);
+            }
+            products.iter_mut().for_each(|p| p.add(block.len()));
         }
-        products.iter_mut().for_each(|p| p.add(block.len()));
-    }
-    let own = numbers.len() + here.compliances.iter().map(Vec::len).sum::<usize>();
-    products.unwrap_or_else(|| Products::new(own)).into_normal(numbers, here)
+        products
+    });
+    let portions: Vec<Option<Products>> = portions.collect();
+    joined(portions.into_iter().flatten(), numbers, here)
 }
 
 /// Builds the normal equations of a fit, without further columns. `misses` are the errors of the samples with the model
@@ -119,19 +128,38 @@ pub(crate) fn normal_of_fit(
     numbers: &[Number],
     here: &Fitted,
 ) -> Normal {
-    let own = numbers.len() + here.compliances.iter().map(Vec::len).sum::<usize>();
-    let mut products = Products::new(own);
-    let mut rows = EightRows::new(here, numbers);
-    for block in by_arm(samples).chunks(BLOCK) {
-        let mut first = 0;
-        for eight in eights(block, samples) {
-            let own: Vec<(&Sample, &Miss)> = eight.iter().map(|&i| (samples[i], &misses[i])).collect();
-            rows.put(&own, first, &mut products);
-            first += eight.len();
+    let portions = by_arm(samples);
+    let portions = portions.par_chunks(PORTION).map(|portion| {
+        let mut products = Products::new(width(numbers, here));
+        let mut rows = EightRows::new(here, numbers);
+        for block in portion.chunks(BLOCK) {
+            let mut first = 0;
+            for eight in eights(block, samples) {
+                let own: Vec<(&Sample, &Miss)> = eight.iter().map(|&i| (samples[i], &misses[i])).collect();
+                rows.put(&own, first, &mut products);
+                first += eight.len();
+            }
+            products.add(block.len());
         }
-        products.add(block.len());
-    }
-    products.into_normal(numbers, here)
+        products
+    });
+    let portions: Vec<Products> = portions.collect();
+    joined(portions.into_iter(), numbers, here)
+}
+
+/// Number of numbers and compliances of the model `here`.
+fn width(numbers: &[Number], here: &Fitted) -> usize {
+    numbers.len() + here.compliances.iter().map(Vec::len).sum::<usize>()
+}
+
+/// The normal equations with the sums of all portions, added in their order.
+fn joined(portions: impl Iterator<Item = Products>, numbers: &[Number], here: &Fitted) -> Normal {
+    let sums = portions.reduce(|mut sums, portion| {
+        sums.curvature += portion.curvature;
+        sums.gradient += portion.gradient;
+        sums
+    });
+    sums.unwrap_or_else(|| Products::new(width(numbers, here))).into_normal(numbers, here)
 }
 
 /// Computes the rows of the equations for up to eight samples of one arm at a time.
@@ -269,8 +297,7 @@ impl Products {
             curvature[(i, i)] += precision;
             gradient[i] -= precision * moved;
         }
-        let own = numbers.len() + here.compliances.iter().map(Vec::len).sum::<usize>();
-        Normal { curvature, gradient, own }
+        Normal { curvature, gradient, own: width(numbers, here) }
     }
 }
 
@@ -309,7 +336,7 @@ mod tests {
             measured_m: Vector3::new(0.1, 0.2, 0.3) * k as f64,
             precision: Vector3::new(1.0, 0.5, 1.0),
             deflection: Arc::new(Deflection::known(Vector3::new(0.0, 0.0, -1e-3 * k as f64))),
-            nominal_m: Vec::new(),
+            nominal_m: Arc::default(),
             second_order_m: Vector3::zeros(),
         };
         (Geometry::nominal(&Tree::new(&campaign), 1), (0..11).map(sample).collect())
@@ -326,7 +353,7 @@ mod tests {
         let samples: Vec<&Sample> = samples.iter().collect();
         let drifted = misses(&samples, &here);
         let [alone, eight] = [
-            normal(&samples, &numbers, &here, &mut |_, _, _| {}),
+            normal(&samples, &numbers, &here, &|_, _, _| {}),
             normal_of_fit(&samples, &drifted, &numbers, &here),
         ];
         assert_eq!((&alone.curvature, &alone.gradient), (&eight.curvature, &eight.gradient));

@@ -36,7 +36,7 @@ impl Positions {
             let candidate = &self.candidates[c];
             candidate.rotation == class && candidate.shape.waves().is_none()
         };
-        let springs = self.best_additions(base, is_of_class).into_iter();
+        let springs = self.best_additions(base, is_of_class, |c| self.least_rise(base, c)).into_iter();
         let springs = springs.map(|(c, f)| {
             let gain =
                 f.ln_likelihood - self.prices(&f.effects) - (base.ln_likelihood - self.prices(&base.effects));
@@ -44,7 +44,7 @@ impl Positions {
         });
         // a mass or a modulus deflects the arm as springs do, so it competes with the first of them
         let others = match class {
-            ElasticRotation::AboutAxis => self.best_dependences(),
+            ElasticRotation::AboutAxis => self.best_dependences(self.dependence_price()),
             _ => Vec::new(),
         };
         let price = self.dependence_price();
@@ -208,19 +208,21 @@ impl Positions {
     }
 
     /// Fits of the model `base` with one more effect each, for candidates for which `allowed` is true. All of these
-    /// are screened with the linearized model, and the [`FULL_FITS`] most promising are fitted in full. Each fit
-    /// comes with the index of the candidate that was added.
+    /// are screened with the linearized model, and the [`FULL_FITS`] most promising are fitted in full, if they may raise
+    /// the logarithm of the likelihood by as much as `asked` says. Each fit comes with the index of the candidate that was
+    /// added.
     pub(super) fn best_additions(
         &self,
         base: &Fitted,
         allowed: impl Fn(usize) -> bool,
+        asked: impl Fn(usize) -> f64,
     ) -> Vec<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let is_in = |c: usize| base.effects.iter().any(|e| self.is_same(*e, c));
         let is_open = |c: &usize| self.considered[*c] && allowed(*c) && !is_in(*c) && self.can_vary(base, *c);
         let open: Vec<usize> = (0..self.candidates.len()).filter(is_open).collect();
         let mut gains = self.gains(base, open);
-        gains.retain(|(_, gain)| *gain > 0.0);
+        gains.retain(|(c, gain)| *gain > 0.0 && self.may_rise(*gain, asked(*c)));
         let worth = |(c, gain): &(usize, f64)| gain - self.price_of(*c);
         gains.sort_by(|a, b| worth(b).total_cmp(&worth(a)).then(a.0.cmp(&b.0)));
         // of all torque scales, preloads or waves of one effect only the best is kept
@@ -242,6 +244,19 @@ impl Positions {
         models.into_par_iter().map(|(c, effects)| (c, fit(&all, &self.numbers, &effects, base))).collect()
     }
 
+    /// The least rise of the logarithm of the likelihood with which the candidate `added` may improve the model `base`: its
+    /// price, less those of the effects that it contains and may replace.
+    pub(super) fn least_rise(&self, base: &Fitted, added: usize) -> f64 {
+        let contained = |e: &&usize| self.tree.contains(&self.candidates[added], &self.candidates[**e]);
+        self.price_of(added) - base.effects.iter().filter(contained).map(|e| self.price_of(*e)).sum::<f64>()
+    }
+
+    /// The rise of the logarithm of the likelihood from `without`, a fit without some effect of the model, from which on
+    /// something else in the place of this effect fits as well.
+    pub(super) fn missing(&self, without: &Fitted) -> f64 {
+        self.fitted.ln_likelihood - TIE - without.ln_likelihood
+    }
+
     /// The sets of effects to fit if the candidate `added` joins the model `base`. The first set contains the model's
     /// effects and the added one. The second leaves out those effects that the added one contains, because in their
     /// presence the added effect would be close to zero.
@@ -261,7 +276,7 @@ impl Positions {
         }
         let from_level = base.geometry.level_to_instrument();
         let counts: Vec<usize> = open.iter().map(|c| self.candidates[*c].count()).collect();
-        let gains = self.linear_gains(base, &counts, false, &mut |sample, _, columns| {
+        let gains = self.linear_gains(base, &counts, false, &|sample, _, columns| {
             for &candidate in &open {
                 sample.deflection.per_compliance(candidate, &base.geometry.gravity, |by| {
                     columns.push(from_level * by);
@@ -320,7 +335,7 @@ impl Positions {
         let own = self.fitted.effects[position];
         let numbers = |c: usize| self.candidates[c].numbers();
         let is_other = |c: usize| !self.is_same(c, own) && numbers(c) <= numbers(own);
-        let mut tried = self.best_additions(without, is_other);
+        let mut tried = self.best_additions(without, is_other, |_| self.missing(without));
         tried.retain(|(_, f)| f.ln_likelihood > self.fitted.ln_likelihood - TIE);
         tried
     }

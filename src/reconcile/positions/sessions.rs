@@ -24,6 +24,7 @@ use super::points::Point;
 use super::rows::{Linearized, normal};
 use super::structure::squares;
 use nalgebra::{DMatrix, DVector, Vector3};
+use rayon::prelude::*;
 
 /// Smallest number of positions that a session must have on either side of its boundary.
 const FEWEST: usize = 5;
@@ -55,9 +56,11 @@ impl Positions {
         while found < MOST {
             let kinds = self.kinds(tools_free, base_free);
             let Some(whole) = self.whole() else { break };
-            let splits = kinds.iter().filter_map(|&moved| {
-                let (first, _) = self.best_first(moved, &whole)?;
-                Some(self.split(moved, first, kinds.len()))
+            let firsts: Vec<_> = kinds.par_iter().map(|&moved| self.best_first(moved, &whole)).collect();
+            let splits = kinds.iter().zip(firsts).filter_map(|(&moved, first)| {
+                let (first, gain) = first?;
+                let price = self.session_price(moved.numbers().len(), kinds.len());
+                self.may_rise(gain, price).then(|| self.split(moved, first, kinds.len()))
             });
             let Some(best) = splits.filter(|s| s.gain > 0.0).max_by(|a, b| a.gain.total_cmp(&b.gain)) else {
                 break;
@@ -108,7 +111,7 @@ impl Positions {
 
     pub(super) fn whole(&self) -> Option<Whole> {
         let all: Vec<&Sample> = self.samples.iter().collect();
-        let normal = normal(&all, &self.numbers, &self.fitted, &mut |_, _, _| {});
+        let normal = normal(&all, &self.numbers, &self.fitted, &|_, _, _| {});
         let own: Vec<usize> = (0..normal.own).collect();
         Some(Whole { factor: Factor::new(&normal.curvature, &own)?, gradient: normal.gradient })
     }
@@ -130,7 +133,7 @@ impl Positions {
                     best = Some((sample.index, gain));
                 }
             }
-            let error = linearized.at(sample, &mut |sample, placer, columns| {
+            let error = linearized.at(sample, &|sample, placer, columns| {
                 placer.slopes(sample.placing(), &own, columns);
             });
             earlier.add(&linearized.columns, &error);

@@ -41,7 +41,7 @@ impl Positions {
     pub(crate) fn lack_of_fit(&self, campaign: &Campaign) -> LackOfFit {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let asker = Asker::new(self, campaign);
-        let normal = normal(&all, &self.numbers, &self.fitted, &mut |s, _, out| asker.columns(s, out));
+        let normal = normal(&all, &self.numbers, &self.fitted, &|s, _, out| asker.columns(s, out));
         let own: Vec<usize> = (0..normal.own).collect();
         let mut structures = Vec::new();
         let mut at = normal.own;

@@ -5,6 +5,10 @@
 //! width with it and leaves a structure in the errors. The intervals are those of the profile likelihood: at each threshold `s`
 //! the likelihood falls from its best value `L(s)` like a parabola in the half width `h`, so the interval of `h` is the union
 //! of `h(s) ± σ(s) √(2 (1.92 - (L_max - L(s))))` over all `s`.
+//!
+//! In a long campaign the rows on which effects are screened have refined the threshold already. The likelihood of all rows is
+//! close to a parabola in the logarithm of the threshold there, so that a few fits find its vertex, and only the nearest
+//! thresholds on both sides are tried for the interval.
 
 use super::analysis::Positions;
 use super::fitted::Sample;
@@ -27,6 +31,10 @@ const RATIOS: [f64; 8] = [1.05, 1.12, 1.25, 1.5, 2.0, 3.0, 6.0, 20.0];
 /// Parts of the way, in the logarithm of the threshold, from the best one to each end of its interval at which the size is
 /// computed for its own interval.
 const PARTS: [f64; 4] = [0.3, 0.6, 0.85, 0.97];
+/// Distances between the logarithms of the thresholds through which a parabola is laid, first and second time.
+const WIDTHS: [f64; 2] = [0.1, 0.03];
+/// The vertex of a parabola is taken for true up to this many times the distance of its points.
+const FARTHEST: f64 = 3.0;
 /// A threshold above this multiple of the largest torque is that of a spring.
 const MOST: f64 = 3.0;
 
@@ -55,7 +63,10 @@ impl Positions {
             let Some(from_nm) = self.threshold_nm(position) else { continue };
             let most_nm = MOST * self.largest_torque_nm(position);
             let [low, high] = [from_nm / BRACKET, (from_nm * BRACKET).min(most_nm)].map(libm::log);
-            let best = self.golden_section(position, low, high);
+            let best = match self.is_long() {
+                true => self.at_the_vertex(position, libm::log(from_nm), high),
+                false => self.golden_section(position, low, high),
+            };
             if best.fitted.ln_likelihood > self.fitted.ln_likelihood {
                 *self = best;
             }
@@ -83,6 +94,24 @@ impl Positions {
         if is_better(&left.1, &right.1) { left.1 } else { right.1 }
     }
 
+    /// The model with the best threshold of effect number `position`, by parabolas through the likelihoods of three thresholds
+    /// about the logarithm `ln_nm` \[ln(N m)\]. No logarithm is above `high`.
+    fn at_the_vertex(&self, position: usize, mut ln_nm: f64, high: f64) -> Self {
+        let at = |ln: f64| self.with_threshold(position, libm::exp(ln));
+        let mut best = at(ln_nm);
+        for width in WIDTHS {
+            let (below, above) = rayon::join(|| at(ln_nm - width), || at((ln_nm + width).min(high)));
+            let fits = [&below, &best, &above].map(|model| model.fitted.ln_likelihood);
+            let vertex = (ln_nm + width * vertex(fits).clamp(-FARTHEST, FARTHEST)).min(high);
+            let own = [(ln_nm - width, below), ((ln_nm + width).min(high), above), (vertex, at(vertex))];
+            let better = |a: (f64, Self), b: (f64, Self)| {
+                if b.1.fitted.ln_likelihood > a.1.fitted.ln_likelihood { b } else { a }
+            };
+            (ln_nm, best) = own.into_iter().fold((ln_nm, best), better);
+        }
+        best
+    }
+
     /// Torque scale or preload of effect number `position` \[N m\]; `None` if it has none.
     fn threshold_nm(&self, position: usize) -> Option<f64> {
         self.candidates[self.fitted.effects[position]].shape.threshold_nm()
@@ -99,8 +128,11 @@ impl Positions {
         let mut out = self.clone();
         let own = self.fitted.effects[position];
         out.candidates[own].shape = out.candidates[own].shape.with_threshold(nm);
+        let slots = out.samples.first().map(|sample| sample.deflection.slots_with_threshold(own, nm));
         let changed = |sample: &mut Sample| {
-            sample.deflection = Arc::new(sample.deflection.with_threshold(own, nm));
+            // all samples have the same candidates
+            let slots = slots.iter();
+            slots.for_each(|slots| sample.deflection = Arc::new(sample.deflection.with_slots(slots)));
         };
         out.samples.iter_mut().for_each(changed);
         out.refit();
@@ -114,13 +146,11 @@ impl Positions {
         let best_nm = self.threshold_nm(position)?;
         let (size, deviation) = (self.fitted.compliances[position][0], self.fitted.deviations[position][0]);
         let most_nm = MOST * self.largest_torque_nm(position);
-        let ratios = RATIOS.iter().flat_map(|ratio| [*ratio, 1.0 / ratio]);
-        let far_nm: Vec<f64> = ratios.map(|ratio| ratio * best_nm).filter(|nm| *nm < most_nm).collect();
         let fitted_deviation = self.with_threshold(position, best_nm).fitted.deviations[position][0];
         // compliances without a name widen the interval at every threshold by the same factor
         let widened = (deviation / fitted_deviation).max(1.0);
         let mut tried = vec![Tried { threshold_nm: best_nm, size, deviation, fall: 0.0 }];
-        tried.extend(self.tried(position, far_nm, widened));
+        tried.extend(self.tried_outward(position, best_nm, most_nm, widened));
         let Estimate { low, high, .. } = threshold(&mut tried, best_nm);
         let ends_nm = [low, high].into_iter().flatten();
         let near = |end_nm: f64| PARTS.map(|part| best_nm * libm::pow(end_nm / best_nm, part));
@@ -129,6 +159,27 @@ impl Positions {
         let (low, high) = ends.fold((size, size), |(low, high), (a, b)| (low.min(a), high.max(b)));
         let size = Estimate { value: size, low: Some(low), high: Some(high).filter(|h| h.is_finite()) };
         Some([size, threshold(&mut tried, best_nm)])
+    }
+
+    /// The model with thresholds at all ratios to the best one, `best_nm`, up to `most_nm`. In a long campaign only those up to the
+    /// first on each side at which the likelihood has fallen enough.
+    fn tried_outward(&self, position: usize, best_nm: f64, most_nm: f64, widened: f64) -> Vec<Tried> {
+        let nm = |ratio: &f64| {
+            [*ratio, 1.0 / ratio].map(|ratio| ratio * best_nm).into_iter().filter(|nm| *nm < most_nm)
+        };
+        if !self.is_long() {
+            return self.tried(position, RATIOS.iter().flat_map(nm).collect(), widened);
+        }
+        let mut out: Vec<Tried> = Vec::new();
+        for ratio in &RATIOS {
+            let is_open = |nm: &f64| {
+                let own = |t: &&Tried| (t.threshold_nm > best_nm) == (*nm > best_nm);
+                out.iter().filter(own).all(|t| t.fall < FALL)
+            };
+            let open: Vec<f64> = nm(ratio).filter(is_open).collect();
+            out.extend(self.tried(position, open, widened));
+        }
+        out
     }
 
     /// The model with each of the thresholds `thresholds_nm` of effect number `position`. Compliances without a name widen the
@@ -147,6 +198,13 @@ impl Positions {
         });
         tried.collect()
     }
+}
+
+/// Where the parabola through three values has its vertex, for places at -1, 0 and 1. If it has none that is a maximum: far to
+/// the side of the greater value.
+fn vertex([left, middle, right]: [f64; 3]) -> f64 {
+    let bent = left - 2.0 * middle + right;
+    if bent < 0.0 { 0.5 * (left - right) / bent } else { f64::INFINITY.copysign(right - left) }
 }
 
 /// The threshold with its interval \[N m\]: between a threshold that is likely enough and one that is not, the root of the fall
@@ -175,6 +233,13 @@ fn threshold(tried: &mut [Tried], best_nm: f64) -> Estimate {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_vertex_of_a_parabola_is_found_from_three_of_its_values() {
+        let parabola = |x: f64| 3.0 - 2.0 * (x - 0.4).powi(2);
+        assert!((vertex([-1.0, 0.0, 1.0].map(parabola)) - 0.4).abs() < 1e-12);
+        assert_eq!(vertex([3.0, 2.0, 1.0]), f64::NEG_INFINITY);
+    }
 
     #[test]
     fn an_end_lies_where_the_likelihood_has_fallen_enough() {

@@ -27,7 +27,7 @@ impl Positions {
             return None;
         }
         let price = self.transmission_price();
-        let tried = self.best_transmissions().into_iter();
+        let tried = self.best_transmissions(price).into_iter();
         let gains = tried.map(|(j, f)| (f.ln_likelihood - self.fitted.ln_likelihood - price, (j, f)));
         gains.filter(|(gain, _)| *gain > 0.0).max_by(|a, b| a.0.total_cmp(&b.0))
     }
@@ -48,19 +48,21 @@ impl Positions {
     }
 
     /// Fits in which one more joint has a transmission error, each with the index of this joint. All joints are
-    /// screened with the linearized model, and the most promising are fitted in full.
-    pub(super) fn best_transmissions(&self) -> Vec<(usize, Fitted)> {
+    /// screened with the linearized model, and the most promising are fitted in full, if they may raise the logarithm of the
+    /// likelihood by `asked`.
+    pub(super) fn best_transmissions(&self, asked: f64) -> Vec<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let open: Vec<usize> =
             (0..self.tree.driven.len()).filter(|j| !self.transmissions.contains(j)).collect();
         let further: Vec<Number> = open.iter().flat_map(|&j| numbers(j)).collect();
         let counts = vec![numbers(0).count(); open.len()];
-        let gains = self.linear_gains(&self.fitted, &counts, true, &mut |sample, placer, columns| {
+        let gains = self.linear_gains(&self.fitted, &counts, true, &|sample, placer, columns| {
             placer.slopes(sample.placing(), &further, columns);
         });
         let mut order: Vec<(usize, f64)> = open.into_iter().zip(gains).collect();
         order.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
         order.truncate(FULL_FITS);
+        order.retain(|(_, gain)| self.may_rise(*gain, asked));
         let with = |(joint, _): (usize, f64)| {
             let all_numbers: Vec<Number> = self.numbers.iter().cloned().chain(numbers(joint)).collect();
             (joint, fit(&all, &all_numbers, &self.fitted.effects, &self.fitted))
@@ -80,7 +82,8 @@ impl Positions {
     /// Indices of the other driven joints whose transmission error, in place of that of `joint`, would fit the
     /// positions as well.
     pub(crate) fn transmission_competitors(&self, joint: usize) -> Vec<usize> {
-        let tried = self.without_transmission(joint).best_transmissions().into_iter();
+        let without = self.without_transmission(joint);
+        let tried = without.best_transmissions(self.missing(&without.fitted)).into_iter();
         tried
             .filter(|(j, f)| *j != joint && f.ln_likelihood > self.fitted.ln_likelihood - TIE)
             .map(|(j, _)| j)

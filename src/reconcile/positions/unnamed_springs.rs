@@ -16,7 +16,7 @@ use super::shape::Shape;
 use crate::arm::BASE;
 use crate::arm::effect::kind::ElasticRotation;
 use crate::arm::structure::Piece;
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 impl Positions {
     /// Widens the standard deviations of the model's numbers by the uncertainty that comes from compliances outside
@@ -70,7 +70,7 @@ impl Positions {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let from_level = self.fitted.geometry.level_to_instrument();
         let gravity = &self.fitted.geometry.gravity;
-        let equations = normal(&all, &self.numbers, &self.fitted, &mut |sample, _, columns| {
+        let equations = normal(&all, &self.numbers, &self.fitted, &|sample, _, columns| {
             for &candidate in unnamed {
                 sample.deflection.per_compliance(candidate, gravity, |by| columns.push(from_level * by));
             }
@@ -88,11 +88,78 @@ impl Positions {
         let pull = equations.gradient.rows(own, count) - moves.transpose() * equations.gradient.rows(0, own);
         let seen = Cholesky::new(seen)?;
         // no compliance is negative
-        let likely = seen.solve(&(pull * (per / usual))).map(|c| c.max(0.0) * usual);
+        let likely = match self.is_long() {
+            true => none_negative(&seen, &(pull * (per / usual))) * usual,
+            false => seen.solve(&(pull * (per / usual))).map(|c| c.max(0.0) * usual),
+        };
         let variance = |row: usize| {
             let row = moves.row(row).transpose();
             row.dot(&seen.solve(&row)) * usual.powi(2) + row.dot(&likely).powi(2)
         };
         Some((0..own).map(variance).collect())
+    }
+}
+
+/// The vector `x` without a negative entry at which `½ xᵀ A x - bᵀ x` is least, for a positive definite matrix `A` (the active
+/// sets of Lawson and Hanson). Setting the negative entries of `A⁻¹ b` to zero gives another vector: two compliances that the
+/// readings hardly tell apart have large values of either sign there, and the positive one alone explains nothing.
+fn none_negative(a: &Cholesky<f64, Dyn>, b: &DVector<f64>) -> DVector<f64> {
+    let a = a.l() * a.l().transpose();
+    let mut x = DVector::zeros(b.len());
+    let mut free: Vec<usize> = Vec::new();
+    for _ in 0..3 * b.len() {
+        let slope = b - &a * &x;
+        let held = (0..b.len()).filter(|i| !free.contains(i));
+        let Some(next) = held.max_by(|i, j| slope[*i].total_cmp(&slope[*j])) else { return x };
+        if slope[next] <= 1e-9 * b.amax() {
+            return x;
+        }
+        free.push(next);
+        while let Some(best) = best_of_free(&a, b, &free) {
+            // the part of the way to the best point on which each entry stays positive
+            let part = |i: usize| if best[i] < 0.0 { x[i] / (x[i] - best[i]) } else { 1.0 };
+            let parts: Vec<f64> = (0..x.len()).map(part).collect();
+            let reach = free.iter().map(|i| parts[*i]).fold(1.0, f64::min);
+            x += (&best - &x) * reach;
+            if reach >= 1.0 {
+                break;
+            }
+            free.retain(|i| parts[*i] > reach);
+            (0..x.len()).filter(|i| !free.contains(i)).for_each(|i| x[i] = 0.0);
+        }
+    }
+    x
+}
+
+/// The least point of the same function if all entries but `free` are zero.
+fn best_of_free(a: &DMatrix<f64>, b: &DVector<f64>, free: &[usize]) -> Option<DVector<f64>> {
+    let own = DMatrix::from_fn(free.len(), free.len(), |i, j| a[(free[i], free[j])]);
+    let found = Cholesky::new(own)?.solve(&DVector::from_fn(free.len(), |i, _| b[free[i]]));
+    let mut out = DVector::zeros(b.len());
+    free.iter().zip(found.iter()).for_each(|(i, x)| out[*i] = *x);
+    Some(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_xoshiro::Xoshiro256PlusPlus;
+    use rand_xoshiro::rand_core::{Rng, SeedableRng};
+
+    #[test]
+    fn the_best_vector_without_a_negative_entry_is_the_best_of_all_active_sets() {
+        let mut dice = Xoshiro256PlusPlus::seed_from_u64(11);
+        let mut next = || (dice.next_u64() >> 11) as f64 / (1u64 << 53) as f64 - 0.5;
+        for _ in 0..50 {
+            let root = DMatrix::from_fn(6, 5, |_, _| next());
+            let a = &root * root.transpose() * 100.0 + DMatrix::identity(6, 6);
+            let b = DVector::from_fn(6, |_, _| 10.0 * next());
+            let value = |x: &DVector<f64>| 0.5 * x.dot(&(&a * x)) - b.dot(x);
+            let sets = (0..64usize).map(|set| (0..6).filter(|i| set >> i & 1 == 1).collect::<Vec<_>>());
+            let points = sets.filter_map(|free| best_of_free(&a, &b, &free)).filter(|x| x.min() >= 0.0);
+            let least = points.map(|x| value(&x)).fold(f64::INFINITY, f64::min);
+            let found = none_negative(&Cholesky::new(a.clone()).expect("definite"), &b);
+            assert!(found.min() >= 0.0 && (value(&found) - least).abs() < 1e-9 * least.abs(), "{found}");
+        }
     }
 }

@@ -24,7 +24,8 @@ impl Positions {
     pub(super) fn add_periodic(&mut self, campaign: &Campaign) -> bool {
         let uneven = self.best_transmission(campaign);
         let base = &self.fitted;
-        let tried = self.best_additions(base, |c| self.candidates[c].shape.waves().is_some()).into_iter();
+        let varies = |c: usize| self.candidates[c].shape.waves().is_some();
+        let tried = self.best_additions(base, varies, |c| self.least_rise(base, c)).into_iter();
         let gain = |f: &Fitted| {
             f.ln_likelihood - self.prices(&f.effects) - (base.ln_likelihood - self.prices(&base.effects))
         };
@@ -115,8 +116,9 @@ impl Positions {
         if self.candidates[self.fitted.effects[position]].shape.waves().is_none() {
             return Vec::new();
         }
+        let missing = self.missing(without);
         let without = Self { fitted: without.clone(), ..self.clone() };
-        let tried = without.best_transmissions().into_iter();
+        let tried = without.best_transmissions(missing).into_iter();
         let good = tried.filter(|(_, f)| f.ln_likelihood > self.fitted.ln_likelihood - TIE);
         good.map(|(j, _)| (transmission::EFFECT.to_string(), self.tree.driven[j].clone())).collect()
     }
@@ -124,7 +126,8 @@ impl Positions {
     /// Joints whose stiffness, if it varied, would fit as well as the transmission error of the driven joint `joint`.
     pub(super) fn waves_instead(&self, joint: usize) -> Vec<(String, String)> {
         let without = self.without_transmission(joint);
-        let tried = without.best_additions(&without.fitted, |c| self.candidates[c].shape.waves().is_some());
+        let varies = |c: usize| self.candidates[c].shape.waves().is_some();
+        let tried = without.best_additions(&without.fitted, varies, |_| self.missing(&without.fitted));
         let is_good =
             |f: &Fitted| f.ln_likelihood > self.fitted.ln_likelihood - TIE && self.has_possible_waves(f);
         let good = tried.into_iter().filter(|(_, f)| is_good(f));

@@ -229,9 +229,8 @@ impl Statement {
     }
 }
 
-/// Largest number of readings of a channel. The number is limited because a fit goes through all of them for each
-/// candidate.
-const MOST_READINGS: usize = 20_000;
+/// Largest number of readings of a channel: those for which time and memory were measured (docs/speed.md).
+const MOST_READINGS: usize = 100_000;
 
 impl Campaign {
     /// Reads a campaign folder.

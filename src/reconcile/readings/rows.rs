@@ -393,14 +393,10 @@ fn check_duplicates(table: &Table, coarse: &HashSet<usize>) {
 /// Reports angles that are probably in radians: in five or more different poses, no angle exceeds 3.2 (half a turn in
 /// radians).
 fn check_angles<'a>(table: &Table, motions: &[Motion], poses: impl Iterator<Item = &'a [f64]>) {
-    let mut distinct: Vec<&[f64]> = Vec::new();
-    for pose in poses {
-        if !distinct.contains(&pose) {
-            distinct.push(pose);
-        }
-    }
-    let angles = distinct.iter().flat_map(|p| p.iter().zip(motions)).filter(|(_, m)| **m == Motion::Turns);
+    let poses: Vec<&[f64]> = poses.collect();
+    let angles = poses.iter().flat_map(|p| p.iter().zip(motions)).filter(|(_, m)| **m == Motion::Turns);
     let largest = angles.fold(0.0f64, |most, (angle, _)| most.max(angle.abs()));
+    let distinct: HashSet<Vec<u64>> = poses.iter().map(|pose| pose_key(pose)).collect();
     if distinct.len() >= 5 && largest > 0.3 && largest < 3.2 {
         table.fault(
             Some(1),

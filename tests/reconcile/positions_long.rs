@@ -1,0 +1,82 @@
+//! Long campaigns of absolute positions: effects are screened on a part of the rows, and everything else is from all rows.
+
+use crate::positions_maker::{Made, SLIGHT_RAD_PER_NM, Truth, in_poses};
+use armwright::catalog::Catalogs;
+use armwright::reconcile::{Campaign, Outcome, Verdict, reconcile};
+
+/// Number of rows of a campaign that is searched on all of its rows, and nine times as many.
+const SHORT: usize = 1_000;
+const LONG: usize = 9_000;
+
+fn reconciled(rows: usize, truth: &dyn Fn(&Made, &[f64; 3], usize) -> Truth) -> Outcome {
+    let folder = in_poses(rows).write(truth);
+    reconcile(&Campaign::read(folder.path(), &Catalogs::default()).unwrap_or_else(|e| panic!("{e}")))
+}
+
+fn with_threads(threads: usize, work: impl FnOnce() -> Outcome + Send) -> Outcome {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads").install(work)
+}
+
+fn labels(outcome: &Outcome) -> Vec<String> {
+    let mut out: Vec<String> = outcome.effects.iter().map(|f| f.label()).collect();
+    out.sort();
+    out
+}
+
+/// Low end, value and high end of the stiffness of an effect.
+fn interval(outcome: &Outcome, label: &str) -> [f64; 3] {
+    let finding = outcome.effects.iter().find(|f| f.label() == label).expect("found");
+    let estimate = finding.parameters[0].1[0];
+    [estimate.low.expect("bounded"), estimate.value, estimate.high.expect("bounded")]
+}
+
+fn says_that_it_was_screened(outcome: &Outcome) -> bool {
+    outcome.reasons.iter().any(|reason| reason.contains("of 9000 positions") && reason.contains("screened"))
+}
+
+#[test]
+fn nine_times_the_rows_name_the_same_effects_with_intervals_a_third_as_wide() {
+    let short = reconciled(SHORT, &Made::sagging);
+    let long = with_threads(2, || reconciled(LONG, &Made::sagging));
+    assert_eq!(long.verdict, Verdict::Explained, "{}", long.to_text());
+    assert_eq!(labels(&long), labels(&short), "{}", long.to_text());
+    assert!(says_that_it_was_screened(&long) && !says_that_it_was_screened(&short), "{:?}", long.reasons);
+    let made = in_poses(LONG);
+    for finding in &long.effects {
+        let [[low, value, high], [few_low, few_value, few_high]] =
+            [&long, &short].map(|outcome| interval(outcome, &finding.label()));
+        let truth = made.stiffness_nm_per_rad(&finding.at, &finding.effect).expect("one that the arm has");
+        assert!(low < truth && truth < high, "{}: {truth} in {low} to {high}", finding.label());
+        let part = (high - low) / value / ((few_high - few_low) / few_value);
+        assert!((part - 1.0 / 3.0).abs() < 0.05, "{}: {part}", finding.label());
+    }
+    assert_eq!(long.residuals.len(), 3 * LONG, "residuals of all rows");
+    assert!(long.residuals.iter().all(|r| r.held_out.is_some()), "all rows were held out");
+    let alone = with_threads(1, || reconciled(LONG, &Made::sagging));
+    let [alone, long] = [alone, long].map(|outcome| {
+        let folder = tempfile::tempdir().expect("a folder");
+        outcome.write(folder.path()).expect("written");
+        let bytes = |name: &str| std::fs::read(folder.path().join(name)).expect(name);
+        ["verdict.json", "residuals.csv", "arm.corrected.json"].map(bytes)
+    });
+    assert!(alone == long, "one thread and two write the same bytes");
+}
+
+#[test]
+fn an_effect_that_only_all_rows_show_is_found() {
+    let few = reconciled(4_000, &Made::hardly_tilting);
+    assert_eq!(few.verdict, Verdict::NoGap, "{}", few.to_text());
+    let all = reconciled(16_000, &Made::hardly_tilting);
+    assert_eq!(all.verdict, Verdict::Explained, "{}", all.to_text());
+    assert_eq!(labels(&all), ["base_compliance@base"], "{}", all.to_text());
+    let [low, _, high] = interval(&all, "base_compliance@base");
+    assert!(low < 1.0 / SLIGHT_RAD_PER_NM && 1.0 / SLIGHT_RAD_PER_NM < high, "{low} to {high}");
+}
+
+/// A session needs five rows on either side. Of the seven before this boundary the screening takes about three.
+#[test]
+fn a_session_that_the_screened_rows_cannot_show_is_found() {
+    let outcome = reconciled(LONG, &Made::put_back_soon);
+    let found = outcome.reasons.iter().any(|r| r.contains("tip sat 3.2") && r.contains("before row 8"));
+    assert!(found, "{}", outcome.to_text());
+}
