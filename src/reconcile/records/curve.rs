@@ -35,7 +35,7 @@ pub(super) const LEAST_TWIST_CHANGE: f64 = 0.02;
 /// record: a few blocks with most of the error can keep a true law from being clear.
 const HIDDEN: f64 = 0.5;
 /// Break points of three segments whose intervals are nearer to each other than this fraction of the second one are one break.
-const ONE_BREAK: f64 = 0.1;
+const ONE_BREAK: f64 = 0.2;
 /// Number of Gauss-Newton steps by which the torques at which the laws change are improved.
 const ROUNDS: usize = 5;
 /// Largest change of a torque of a law in one Gauss-Newton step, as a fraction of this torque.
@@ -359,7 +359,17 @@ impl Curve {
             });
             // refitted with this law alone on the grid, so that its columns follow directly behind those of the laws
             // found before
-            let best = tried.min_by(|a, b| a.1.held_out_rms().total_cmp(&b.1.held_out_rms()));
+            // the rotor's inertia of a fit that lacks the curve can make the best segments soften, which the inertia that follows
+            // does not; segments that stiffen go first
+            let torque = model.places.torque();
+            let softens = |(law, fit): &(Law, Fitted)| {
+                let at = self.shapes_of(*law, known, &single);
+                matches!(law, Law::Segments(..))
+                    && (fit.value(torque) <= 0.0 || at.iter().any(|c| fit.value(*c) < 0.0))
+            };
+            let order = |law: &(Law, Fitted)| (softens(law), law.1.held_out_rms());
+            let best =
+                tried.min_by(|a, b| order(a).0.cmp(&order(b).0).then(order(a).1.total_cmp(&order(b).1)));
             let Some((law, _)) = best else { continue };
             let laws = [self.laws.as_slice(), &[law]].concat();
             let (sums, target) = self.sums(model, &laws);
