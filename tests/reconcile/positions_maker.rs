@@ -83,7 +83,7 @@ const LOST_NM: f64 = 2.0;
 /// A base that tilts alike about x and y \[rad/(N m)\].
 pub const EVEN_RAD_PER_NM: f64 = 6e-6;
 /// A base that tilts so little that four thousand rows do not show it \[rad/(N m)\].
-pub const SLIGHT_RAD_PER_NM: f64 = 3e-8;
+pub const SLIGHT_RAD_PER_NM: f64 = 5e-8;
 
 impl Made {
     /// Nothing yields.
