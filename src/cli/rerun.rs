@@ -97,7 +97,6 @@ pub(super) fn rerun(
     let (mut found, mut kept) = (Vec::new(), Files::new());
     for (asked, folder) in [(&nominal, "nominal"), (&corrected, "corrected")] {
         let results = dir.join("study").join(folder);
-        let supplements = &SupplementArgs::default();
         let keep = &|files: &[(String, Vec<u8>)]| keep(&[kept.clone(), placed(files, folder)?].concat());
         let (record, unfinished) = (None, &unfinished_in(dir, folder));
         let settings = SearchSettings {
@@ -107,7 +106,7 @@ pub(super) fn rerun(
             keep,
             unfinished,
             how,
-            supplements,
+            supplements: &SupplementArgs::default(),
             record,
             log,
         };

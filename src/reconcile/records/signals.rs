@@ -161,6 +161,18 @@ impl JointRows {
         })
     }
 
+    /// The rows at which the joint rests, reverses, or its torque jumps, so that friction or torque is not known there. There
+    /// are none in records without torque. `sense` is the smoothed sign of the speed, and `half` the half width of the window
+    /// over which signals are averaged \[rows\].
+    fn unknown_rows(&self, sense: &[f64], torque_nm: &[f64], half: usize) -> [Vec<bool>; 3] {
+        if !self.has_torque {
+            return std::array::from_fn(|_| vec![false; sense.len()]);
+        }
+        let rests = rests(sense, half);
+        let turns = turning(sense, &rests);
+        [rests, turns, at_jumps(torque_nm, half)]
+    }
+
     fn push(&mut self, t_s: &[f64], signals: &JointSignals, blocks: usize, wave: &Wave) {
         // an error of the gear within a turn of the motor is on one side only; unremoved it would narrow the window of
         // that side
@@ -191,9 +203,7 @@ impl JointRows {
             gain,
         };
         let record = self.records.len();
-        let rests = if self.has_torque { rests(&sense, half) } else { vec![false; t_s.len()] };
-        let turns = if self.has_torque { turning(&sense, &rests) } else { vec![false; t_s.len()] };
-        let jumps = if self.has_torque { at_jumps(torque_nm, half) } else { vec![false; t_s.len()] };
+        let [rests, turns, jumps] = self.unknown_rows(&sense, torque_nm, half);
         let moving_rows = rests.iter().filter(|rests| !**rests).count();
         let mut moved = 0;
         for row in 0..t_s.len() {
