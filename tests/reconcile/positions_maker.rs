@@ -82,8 +82,6 @@ pub const LOST_RAD: f64 = 1.5e-3;
 const LOST_NM: f64 = 2.0;
 /// A base that tilts alike about x and y \[rad/(N m)\].
 pub const EVEN_RAD_PER_NM: f64 = 6e-6;
-/// A base that tilts so little that four thousand rows do not show it \[rad/(N m)\].
-pub const SLIGHT_RAD_PER_NM: f64 = 5e-8;
 
 impl Made {
     /// Nothing yields.
@@ -153,13 +151,6 @@ impl Made {
     /// The base tilts alike about x and y.
     pub fn tilting(&self, pose_rad: &[f64; 3], _row: usize) -> Truth {
         let base_rad_per_nm = Matrix3::from_diagonal(&Vector3::new(EVEN_RAD_PER_NM, EVEN_RAD_PER_NM, 0.0));
-        self.truth(pose_rad, Truths { base_rad_per_nm, ..Truths::default() })
-    }
-
-    /// The base tilts very little.
-    pub fn hardly_tilting(&self, pose_rad: &[f64; 3], _row: usize) -> Truth {
-        let tilt = Vector3::new(SLIGHT_RAD_PER_NM, SLIGHT_RAD_PER_NM, 0.0);
-        let base_rad_per_nm = Matrix3::from_diagonal(&tilt);
         self.truth(pose_rad, Truths { base_rad_per_nm, ..Truths::default() })
     }
 

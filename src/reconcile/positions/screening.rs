@@ -4,7 +4,7 @@
 //! likelihood ratio of two models grows with the number of rows. So the search of a long campaign first goes through a few
 //! thousand rows ([`SCREENED`]). The model that it finds is then fitted to all rows and has to be worth its price and to be
 //! confirmed by held-out poses there, and the search goes on from it on all rows. Every candidate is tried once more in this way
-//! by the linearized model of all rows, so that an effect that only all rows show is found too. The computing time is a constant
+//! by the linearized model of all rows, so that an effect that only all rows show can be found too. The computing time is a constant
 //! and a number of passes over all rows that does not grow with them.
 //!
 //! The rows are the same in every run. Each session, point, arm and load keeps an equal number of rows, as far as it has them;
