@@ -33,8 +33,10 @@ pub struct JointMotion {
     pub acceleration_over_gravity: f64,
     /// Which interpretation of Eq 8 is used.
     pub linear_reading: LinearReading,
-    /// Ratio of emergency deceleration to normal acceleration.
+    /// Ratio of emergency deceleration to normal acceleration, at least 1.
     pub stop_factor: f64,
+    /// Duration of an emergency stop in ramp times.
+    pub ramps_in_a_stop: f64,
     /// Ratio of the mean speed over the duty cycle to the largest speed ω.
     pub mean_speed_fraction: f64,
     /// Weights of the terms of the cubic mean torque.
@@ -89,7 +91,7 @@ impl JointMotion {
 
     /// Duration of an emergency stop from the largest speed of the joint to rest \[s\].
     pub fn stop_time_s(&self) -> f64 {
-        self.ramp_time_s / self.stop_factor
+        self.ramp_time_s * self.ramps_in_a_stop
     }
 
     /// Mean speed of the joint over the duty cycle, on the output side of the gear \[rad/s\].
@@ -209,14 +211,9 @@ impl JointDemand {
     pub(crate) fn before(self, stage: &Stage, motion: &JointMotion) -> Self {
         let gain = stage.ratio * stage.efficiency;
         let own_nm = stage.inertia_kgm2 * motion.acceleration_rad_s2;
-        Self {
-            static_torque_nm: self.static_torque_nm / gain,
-            linear_torque_nm: self.linear_torque_nm / gain + own_nm,
-            stop_torque_nm: self.stop_torque_nm / gain + motion.stop_factor * own_nm,
-            mean_torque_cubed_nm3: self.mean_torque_cubed_nm3 / gain.powi(3),
-            stated_peak_nm: self.stated_peak_nm / gain,
-            ..self
-        }
+        let at_input =
+            motion.demand_of_torques(self.static_torque_nm / gain, self.linear_torque_nm / gain + own_nm);
+        at_input.with_bearing(self.bearing).with_room(self.room)
     }
 
     /// This demand with the weights of the motor's heat multiplied by `factor`. Callers use a factor near 1, so that a

@@ -56,13 +56,18 @@ impl MotionRequirement {
         self.tip_speed_m_s / self.ramp_time_s
     }
 
-    /// Ratio of the deceleration of the tip in an emergency stop to its normal acceleration. It is at least 1: what
-    /// holds in a stop must hold in every ramp of the cycle too, also where a gentle stop is stated.
-    pub fn stop_factor(&self) -> f64 {
+    /// Ratio of the deceleration of the tip in an emergency stop to its normal acceleration.
+    fn stop_ratio(&self) -> f64 {
         match self.emergency_deceleration_m_s2 {
-            Some(deceleration) => (deceleration / self.tip_acceleration_m_s2()).max(1.0),
+            Some(deceleration) => deceleration / self.tip_acceleration_m_s2(),
             None => 2.0,
         }
+    }
+
+    /// Factor on the torque of a ramp for which the checks of an emergency stop are made. It is at least 1: what holds in
+    /// a stop must hold in every ramp of the cycle too, also where a gentle stop is stated.
+    pub fn stop_factor(&self) -> f64 {
+        self.stop_ratio().max(1.0)
     }
 
     /// The motion of a joint whose axis is at most `reach_m` \[m\] away from the tip.
@@ -90,6 +95,7 @@ impl MotionRequirement {
             acceleration_over_gravity: self.tip_acceleration_m_s2() / self.gravity_m_s2,
             linear_reading: self.linear_reading,
             stop_factor: self.stop_factor(),
+            ramps_in_a_stop: 1.0 / self.stop_ratio(),
             mean_speed_fraction: self.duty_cycle.mean_speed_fraction(),
             mean_torque: self.duty_cycle.mean_torque_weights(),
             life_h: self.life_h,

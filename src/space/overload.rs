@@ -49,6 +49,8 @@ impl ArmProblem<'_> {
         slot: usize,
         catalogs: &Catalogs,
     ) -> Option<Check> {
+        // the slots of effects and bearings have no drive
+        self.piece_in_slot(slot)?;
         let fixed = self.fixed_drive(self.piece_of_slot(slot), catalogs)?;
         let mut failed =
             checks(&fixed.drive, &fixed.motion, &self.fixed_demand_in(cases, outboard, slot, &fixed));

@@ -104,8 +104,13 @@ fn sentence(all: Vec<Held>, whose: &str) -> Option<String> {
     let mut worst: Vec<Held> = Vec::new();
     for held in all {
         match worst.iter_mut().find(|known| known.joint == held.joint) {
-            Some(known) if held.margin() < known.margin() => *known = held,
-            Some(_) => {}
+            Some(known) => {
+                let is_open = known.is_open || held.is_open;
+                if held.margin() < known.margin() {
+                    *known = held;
+                }
+                known.is_open = is_open;
+            }
             None => worst.push(held),
         }
     }
@@ -113,10 +118,15 @@ fn sentence(all: Vec<Held>, whose: &str) -> Option<String> {
     let weak: Vec<String> = worst.iter().filter(|held| held.fails()).map(Held::words).collect();
     let open: Vec<&str> = worst.iter().filter(|held| held.is_open).map(|held| held.joint.as_str()).collect();
     let main = match (weak.is_empty(), nearest.margin_words()) {
-        (true, margin) => format!(
-            "As far as their ratings are known, they also withstand the ramps and stops of the other joints {whose}{}.",
-            margin.map_or(String::new(), |margin| format!(" (smallest margin: {margin})"))
+        (true, Some(margin)) => format!(
+            "As far as their ratings are known, they also withstand the ramps and stops of the other joints {whose} (smallest \
+             margin: {margin})."
         ),
+        (true, None) => {
+            format!(
+                "Whether they withstand the ramps and stops of the other joints {whose} cannot be checked."
+            )
+        }
         (false, _) => format!(
             "The ramps and stops of other joints are too much for some of them {whose}: {}. This excludes no design.",
             weak.join("; ")

@@ -75,8 +75,7 @@ impl Duty {
         let ramp_s = first_ramp_s(&joint.duty).unwrap_or(motion.ramp_time_s);
         let acceleration_rad_s2 = speed_rad_s / ramp_s;
         let tip_m_s2 = motion.tip_acceleration_m_s2();
-        let stop_factor =
-            motion.emergency_deceleration_m_s2.map_or(2.0, |stop_m_s2| (stop_m_s2 / tip_m_s2).max(1.0));
+        let stop_ratio = motion.emergency_deceleration_m_s2.map_or(2.0, |stop_m_s2| stop_m_s2 / tip_m_s2);
         let (linear_per_inertia, linear_per_static) = match motion.linear_torque {
             LinearTorque::OfInertia => (acceleration_rad_s2, 0.0),
             LinearTorque::OfStaticTorque => (0.0, tip_m_s2 / motion.gravity_m_s2),
@@ -88,9 +87,10 @@ impl Duty {
             life_h: motion.life_h,
             linear_per_inertia,
             linear_per_static,
-            stop_factor,
+            // what holds in a stop must hold in a ramp too
+            stop_factor: stop_ratio.max(1.0),
             mean: motion.mean_torque(),
-            stop_s: ramp_s / stop_factor,
+            stop_s: ramp_s / stop_ratio,
             emergency_stops: motion.emergency_stops,
             has_brake: joint.has_brake,
             stage: joint.stage,
