@@ -16,7 +16,9 @@ use crate::arm::springs::{Side, Spring};
 use crate::arm::structure::Beam;
 use crate::arm::transmission::Stages;
 use crate::arm::{JointModel, Link, LinkBody, LinkModel};
-use crate::catalog::gear::Gear;
+use crate::catalog::Catalogs;
+use crate::catalog::gear::{Gear, GearKind};
+use crate::catalog::motor::Motor;
 use crate::sizing::demand::JointMotion;
 use crate::sizing::drive::Drive;
 use crate::sizing::fit::FitRequirement;
@@ -388,6 +390,15 @@ impl DriveChoice {
             DriveChoice::FirstFit(filter) | DriveChoice::AllFits(filter) => Some(filter),
             DriveChoice::Given { .. } => None,
         }
+    }
+
+    /// Gear and motor of a given drive that names both, if both are in the catalogs. An actuator has both, so that its
+    /// name as the gear suffices.
+    pub(crate) fn named_parts<'c>(&self, catalogs: &'c Catalogs) -> Option<(&'c Gear, &'c Motor)> {
+        let Self::Given { gear: Some(gear), motor, .. } = self else { return None };
+        let gear = catalogs.gear(gear).ok()?;
+        let of_actuator = (gear.kind == GearKind::Actuator).then_some(&gear.id);
+        Some((gear, catalogs.motor(motor.as_ref().or(of_actuator)?).ok()?))
     }
 
     /// Whether the search chooses the drive.

@@ -9,7 +9,7 @@ use super::station::reaches_m;
 use crate::arm::bearing::BearingSource;
 use crate::arm::transmission::Stage;
 use crate::catalog::Catalogs;
-use crate::catalog::gear::{GearKind, GearMass};
+use crate::catalog::gear::GearMass;
 use crate::sizing::demand::{JointDemand, JointMotion};
 use crate::sizing::drive::Drive;
 
@@ -43,10 +43,8 @@ impl ArmProblem<'_> {
     pub fn fixed_drive<'c>(&self, piece: usize, catalogs: &'c Catalogs) -> Option<FixedDrive<'c>> {
         let space = self.space();
         let SpacePiece::Joint(joint) = &space.pieces[piece] else { return None };
-        let DriveChoice::Given { gear: Some(gear), motor, mass_kg, .. } = &joint.drive else { return None };
-        let gear = catalogs.gear(gear).ok()?;
-        let of_actuator = (gear.kind == GearKind::Actuator).then_some(&gear.id);
-        let motor = catalogs.motor(motor.as_ref().or(of_actuator)?).ok()?;
+        let DriveChoice::Given { mass_kg, .. } = &joint.drive else { return None };
+        let (gear, motor) = joint.drive.named_parts(catalogs)?;
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
         let joints_before =
             space.pieces[..piece].iter().filter(|p| matches!(p, SpacePiece::Joint(_))).count();

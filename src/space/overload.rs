@@ -8,9 +8,9 @@ use crate::sizing::checks::{binding, checks};
 
 impl ArmProblem<'_> {
     /// The first piece from the tip that is overloaded in one of `cases`, for an arm with these `options`, one for each
-    /// slot. Returns its number, and the check that its drive fails; `None` in the place of the check means a
-    /// link whose stress is too high, or a drive none of whose checks can be made. `None` if no piece is overloaded. Drives that the study gives by name
-    /// count too, as far as their ratings in `catalogs` are known.
+    /// slot. Drives that the study gives by name count too, as far as their ratings in `catalogs` are known. `None` if no
+    /// piece is overloaded. Otherwise the number of the piece, and the check that its drive fails; there is no check for a
+    /// link whose stress is too high, and for a drive none of whose checks can be made.
     pub(crate) fn overload(
         &self,
         options: &[u32],

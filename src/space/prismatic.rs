@@ -55,6 +55,12 @@ impl SpacePrismatic {
         out
     }
 
+    /// Acceleration of the joint in its ramps \[m/s²\]: that of its sized drive, or that of the tip if the drive is given.
+    pub(crate) fn acceleration_m_s2(&self, asked: &MotionRequirement) -> f64 {
+        let sized = self.drive.as_ref().map(|drive| drive.motion(asked).acceleration_rad_s2);
+        sized.unwrap_or(asked.tip_acceleration_m_s2())
+    }
+
     /// The joint with the stiffness of the screw or rack `gear`.
     pub(crate) fn driven_by(&self, gear: &Gear) -> Prismatic {
         Prismatic { stiffness_n_per_m: gear.single_slope_nm_per_rad(), ..self.joint.clone() }

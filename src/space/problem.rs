@@ -24,7 +24,6 @@ use crate::mechanics::Wrench;
 use crate::mechanics::lanes::LANES;
 use crate::mechanics::lowest::{Step, frequency_hz, lowest_eigenvalue};
 use crate::pareto::objectives::Objectives;
-
 use crate::sizing::demand::{JointDemand, JointMotion, linear_torque_nm};
 use crate::sizing::fit::LinkRoom;
 use nalgebra::Vector3;

@@ -2,8 +2,9 @@
 //!
 //! The couplings are the entries of the arm's mass matrix: `M_ij` is the inertia between the motions of the joints i
 //! and j. While joint j accelerates by `α_j` and all others stand still, the drive of joint i must hold `M_ij α_j` in
-//! addition to its static torque. Drives are sized for the acceleration of their own joint ([`demand`](crate::sizing::demand)), as the
-//! vendors' procedures are, which size one axis at a time. So this torque is no part of their demand.
+//! addition to its static torque. Drives are sized for the acceleration of their own joint
+//! ([`demand`](crate::sizing::demand)), since the vendors' procedures size one axis at a time. So this torque is no part of
+//! their demand.
 
 use super::design_space::SpacePiece;
 use super::problem::ArmProblem;
@@ -87,9 +88,7 @@ impl ArmProblem<'_> {
             of_joints.map(|mover| Mover { slot: mover.slot, acceleration: mover.acceleration_rad_s2 });
         let rail = |(piece, what): (usize, &SpacePiece)| {
             let SpacePiece::Prismatic(rail) = what else { return None };
-            let sized = rail.drive.as_ref().map(|drive| drive.motion(motion).acceleration_rad_s2);
-            let acceleration = sized.unwrap_or(motion.tip_acceleration_m_s2());
-            Some(Mover { slot: self.slot_of_piece(piece), acceleration })
+            Some(Mover { slot: self.slot_of_piece(piece), acceleration: rail.acceleration_m_s2(motion) })
         };
         let rails = self.space().pieces.iter().enumerate().filter_map(rail);
         let mut out: Vec<Mover> = of_joints.chain(rails).collect();

@@ -4,7 +4,6 @@
 use crate::arm::bearing::BearingSource;
 use crate::arm::transmission::Stage;
 use crate::catalog::Catalogs;
-use crate::catalog::gear::GearKind;
 use crate::report::front_table::FrontTable;
 use crate::report::words::capital;
 use crate::sizing::bearing_checks::{BlankRatings, RigidBearing};
@@ -67,14 +66,9 @@ pub(crate) fn bearing_remarks(space: &DesignSpace, catalogs: &Catalogs, front: &
 }
 
 /// Whether the joint has a bearing and a given drive without the name of its gear or its motor, or with the gear at the
-/// motor, so that the bearing is not checked. A passive joint has no drive.
+/// motor, so that the bearing is not checked.
 fn is_unnamed(joint: &SpaceJoint, catalogs: &Catalogs) -> bool {
-    let is_actuator = |name: &String| catalogs.gear(name).is_ok_and(|gear| gear.kind == GearKind::Actuator);
-    let is_named = match &joint.drive {
-        DriveChoice::Given { gear: Some(gear), motor, .. } => motor.is_some() || is_actuator(gear),
-        _ => false,
-    };
-    let is_checked = is_named && joint.stages.after == Stage::NONE;
+    let is_checked = joint.drive.named_parts(catalogs).is_some() && joint.stages.after == Stage::NONE;
     !joint.drive.is_sized() && !is_checked && joint.bearing.stated().is_some()
 }
 

@@ -142,8 +142,8 @@ fn capacity(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], own: &[us
     Capacity::new(window(&space.sizing_cases, &loaded), table, remarks)
 }
 
-/// The sentence that drives which the study gives without gear and motor of the catalogs are not judged; `None` if there
-/// are none.
+/// A sentence that names the drives that are not judged: those that the study gives without gear and motor of the catalogs,
+/// and given drives of rails; `None` if there are none.
 fn unjudged_remark(problem: &ArmProblem, catalogs: &Catalogs) -> Option<String> {
     let pieces = problem.space().pieces.iter().enumerate();
     let unjudged = pieces.filter(|(piece, what)| match what {
@@ -158,7 +158,7 @@ fn unjudged_remark(problem: &ArmProblem, catalogs: &Catalogs) -> Option<String> 
     let names: Vec<&str> = unjudged.map(|(_, what)| what.name()).collect();
     (!names.is_empty()).then(|| {
         format!(
-            "The drive of {} is not judged: it is given without a gear and a motor of the catalogs.",
+            "The drive of {} is not judged: it is given, and not by names of the catalogs (gear and motor, or an actuator).",
             names.join(", ")
         )
     })

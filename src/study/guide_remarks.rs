@@ -86,11 +86,9 @@ fn guides<'s>(problem: &'s ArmProblem) -> Vec<OnGuide<'s>> {
     let motion = &problem.space().motion;
     let guide = |piece: &'s SpacePiece| {
         let SpacePiece::Prismatic(rail) = piece else { return None };
-        let sized = rail.drive.as_ref().map(|drive| drive.motion(motion).acceleration_rad_s2);
-        let acceleration_m_s2 = sized.unwrap_or(motion.tip_acceleration_m_s2());
         Some(OnGuide {
             joint: &rail.joint,
-            deceleration_m_s2: acceleration_m_s2 * motion.stop_factor(),
+            deceleration_m_s2: rail.acceleration_m_s2(motion) * motion.stop_factor(),
             at_rest: Largest::default(),
             in_stop: Largest::default(),
         })

@@ -79,11 +79,9 @@ pub(super) fn actuators_remark(space: &DesignSpace, catalogs: &Catalogs) -> Opti
 /// A sentence on given drives that are not checked because the study does not name both gear and motor; `None` if there
 /// are none. An actuator has both.
 pub(super) fn unchecked_remark(space: &DesignSpace, catalogs: &Catalogs) -> Option<String> {
-    let is_actuator = |name: &String| catalogs.gear(name).is_ok_and(|gear| gear.kind == GearKind::Actuator);
-    let is_unchecked = |joint: &&SpaceJoint| match &joint.drive {
-        DriveChoice::Given { gear: Some(gear), motor: None, .. } => !is_actuator(gear),
-        _ => false,
-    };
+    let names_gear = |drive: &DriveChoice| matches!(drive, DriveChoice::Given { gear: Some(_), .. });
+    let is_unchecked =
+        |joint: &&SpaceJoint| names_gear(&joint.drive) && joint.drive.named_parts(catalogs).is_none();
     let names: Vec<&str> = joints(space).filter(is_unchecked).map(|joint| joint.name.as_str()).collect();
     (!names.is_empty()).then(|| {
         format!(

@@ -1,7 +1,6 @@
 //! Values with their 95 % intervals, and effects found with such values.
 
-use crate::arm::effect::entry::Effect;
-use crate::arm::effect::entry::word_of;
+use crate::arm::effect::entry::{Effect, word_of};
 use serde_json::{Map, Value, json};
 
 /// The 95 % interval of a fitted parameter, in the scaled parameter `u` (of the order of 1). An end is `None` where

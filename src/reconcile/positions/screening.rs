@@ -47,7 +47,7 @@ fn scrambled(index: usize) -> u64 {
     z ^ (z >> 31)
 }
 
-/// The indices of [`SCREENED`] rows that have the strata `strata`, in the order of the rows: half of them the same number of each
+/// The indices of [`SCREENED`] rows that have the strata `strata`, stratum by stratum: half of them the same number of each
 /// stratum, the others evenly from the rest.
 fn spread(strata: &[Stratum]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..strata.len()).collect();

@@ -540,8 +540,8 @@ impl Curve {
         [0, 1].map(|k| self.fitted.estimate(|c| torques_nm[k] + c(at + 2 + k) / c(at + k)))
     }
 
-    /// Whether the intervals of both break points overlap. The known rows then show one break only, because they do not reach the
-    /// third segment.
+    /// Whether the intervals of both break points meet within a margin, or one of them is open. The known rows then show one
+    /// break only, because they do not reach the third segment.
     fn has_one_break(&self, place: usize, torques_nm: [f64; 2]) -> bool {
         let [first, second] = self.breaks(place, torques_nm);
         let margin = ONE_BREAK * torques_nm[1];

@@ -189,10 +189,14 @@ impl<'a> Judged<'a> {
         };
         let (shift, words) = self.with_friction(plain);
         let shift = widened(shift, LEAST_STEP_PART * self.rows.step_s);
-        let is_clear = self.model.groups.contains(&Group::Shift)
-            && excludes_zero(&shift)
-            && self.is_material(shift.value);
-        let absent = "held-out blocks are not predicted better with a shift, or friction explains it as well";
+        let is_shown = self.model.groups.contains(&Group::Shift) && excludes_zero(&shift);
+        let is_clear = is_shown && self.is_material(shift.value);
+        let absent = match is_shown {
+            true => {
+                "a shift changes the twist by less than 2 %: friction or a loop of another form could do the same"
+            }
+            false => "held-out blocks are not predicted better with a shift, or friction explains it as well",
+        };
         let state = if is_clear { State::Found } else { State::Absent };
         Stated::one(Group::Shift.what(), state, "seconds", shift, if is_clear { &words } else { absent })
     }

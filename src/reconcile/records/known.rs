@@ -7,7 +7,7 @@
 //!   the rows, because the controller begins each piece at one of its cycles. This error then has one sign and does not
 //!   average out.
 
-use crate::reconcile::fit::stats::median;
+use crate::reconcile::fit::stats::{MEDIAN_OF_NORMAL, median};
 
 /// A joint rests at rows where the magnitude of the smoothed sign of its speed is below this for longer than the window of
 /// the torque. At a reversal it is below for about half of the window.
@@ -29,8 +29,6 @@ const LEAST_STEADY_PART: f64 = 0.85;
 const JUMP: f64 = 6.0;
 /// A jump below this fraction of the standard deviation of the torque is left in the fit.
 const LEAST_JUMP_PART: f64 = 0.02;
-/// Standard deviation of normal errors for each unit of the median of their magnitudes.
-const BY_MEDIAN: f64 = 1.4826;
 
 /// Whether the joint rests, row by row. Friction is not known while it rests: it may hold any torque up to that of Coulomb
 /// friction, of either sign, and the sign of the speed says nothing of it. `sense` is the smoothed sign of the speed, and
@@ -72,7 +70,7 @@ pub(super) fn at_jumps(torque_nm: &[f64], half: usize) -> Vec<bool> {
     let mut out = vec![false; torque_nm.len()];
     let excess: Vec<f64> =
         torque_nm.windows(4).map(|t| (t[2] - t[1]) - 0.5 * ((t[1] - t[0]) + (t[3] - t[2]))).collect();
-    let usual_nm = BY_MEDIAN * median(excess.iter().map(|e| e.abs()).collect());
+    let usual_nm = median(excess.iter().map(|e| e.abs()).collect()) / MEDIAN_OF_NORMAL;
     let least_nm = (JUMP * usual_nm).max(LEAST_JUMP_PART * deviation(torque_nm));
     for (i, _) in excess.iter().enumerate().filter(|(_, e)| e.abs() > least_nm) {
         // between the rows i + 1 and i + 2; the slope of the average reaches one row further

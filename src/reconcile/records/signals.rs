@@ -4,8 +4,7 @@ use super::blocks::Blocks;
 use super::known::{at_jumps, rests, turning};
 use super::smooth::{averaged, half_width, noise, slope, slope_noise, smooth};
 use super::wave::Wave;
-use crate::reconcile::readings::record::usual_step_s;
-use crate::reconcile::readings::record::{JointSignals, Record};
+use crate::reconcile::readings::record::{JointSignals, Record, usual_step_s};
 
 /// Fraction of the largest speed below which the sign of the speed changes smoothly, because real friction does not
 /// jump at zero speed either.

@@ -282,7 +282,7 @@ impl<'a> TwistModel<'a> {
         Some(out)
     }
 
-    /// Errors of the present fit (recorded minus modelled twist), one per row that has a reading \[rad\].
+    /// Errors of the present fit (recorded minus modelled twist), one per known row \[rad\].
     pub(crate) fn errors(&self) -> Vec<f64> {
         let mut row = vec![0.0; self.places.further() + 1];
         let error = |i: usize| {

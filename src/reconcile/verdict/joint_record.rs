@@ -129,7 +129,8 @@ pub struct JointRecord {
     pub steps: Vec<Step>,
     /// Twist against torque, thinned for the picture.
     pub trace: Vec<Traced>,
-    /// A cause that explains the records better than every effect of the library, as a sentence.
+    /// A cause without an effect of the library that explains the records better than a transmission error of the output, as a
+    /// sentence.
     pub(crate) unnamed: Option<String>,
     /// What the records leave open, such as a transmission error that they cannot tell from the twist by gravity. Then the
     /// data are insufficient.
