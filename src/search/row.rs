@@ -53,7 +53,7 @@ pub(crate) struct Row {
     pub twisting: Vec<Twisting>,
     /// The checked output bearings of the joints inboard of the row level.
     pub bearings: Vec<RowBearing>,
-    /// The largest outer diameters that the links leave for gear and motor at the joints inboard of the row level.
+    /// The largest widths that the links leave for gear and motor at the joints inboard of the row level.
     pub rooms: Vec<RowRoom>,
 }
 

@@ -31,7 +31,7 @@ pub(crate) struct Begun {
     pub steps: Vec<usize>,
     /// Loads on the output bearing of the joint that is the row level; zero if the row level is a link.
     pub of_row: BearingDemand,
-    /// Largest outer diameters of gear and motor at the joint that is the row level; unlimited if the row level is a
+    /// Largest widths of gear and motor at the joint that is the row level; unlimited if the row level is a
     /// link.
     pub room_of_row: LinkRoom,
     /// Loads that everything outboard of the row makes on the output bearings inboard of the row level.

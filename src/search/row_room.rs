@@ -17,8 +17,8 @@ pub(crate) struct RowRoom {
 enum RoomOf {
     /// A link that is given or outboard of the row. The number is the slot of the joint.
     Slot(usize),
-    /// The link of the row. Each entry is for a chunk of its options: the largest outer diameters \[m\] of the gear and
-    /// of the motor, for eight options.
+    /// The link of the row. Each entry is for a chunk of its options: the largest widths \[m\] of gear, round motor and
+    /// square flange, for eight options.
     Chunk(Vec<[Eight; 3]>),
 }
 
@@ -38,7 +38,7 @@ impl RowRoom {
         rooms.filter_map(room).collect()
     }
 
-    /// Largest outer diameters \[m\] that the link leaves for the gear and for the motor of this joint, for the eight
+    /// Largest widths \[m\] that the link leaves for gear, round motor and square flange at this joint, for the eight
     /// designs of a chunk. `from` is the arm outboard of the row. `None` if no link limits them.
     #[inline(always)]
     pub(crate) fn room<V: Lanes>(
@@ -56,7 +56,7 @@ impl RowRoom {
     }
 }
 
-/// Largest outer diameters \[m\] that each option of the link leaves for the gear and for the motor, eight options in a
+/// Largest widths \[m\] that each option of the link leaves for gear, round motor and square flange, eight options in a
 /// chunk. The last chunk is filled up with copies of the last option.
 fn chunks(room: &RoomAtJoint) -> Vec<[Eight; 3]> {
     let of = |option: usize| room.rooms[option.min(room.rooms.len() - 1)];

@@ -190,7 +190,7 @@ pub struct JointDemand {
     pub mean_torque_cubed_nm3: f64,
     /// Loads on the output bearing; all zero if the bearing is not to be checked.
     pub bearing: BearingDemand,
-    /// Largest diameters of gear and motor for which the link outboard of this joint leaves room.
+    /// Largest widths of gear and motor for which the link outboard of this joint leaves room.
     pub room: LinkRoom,
     /// Largest torque of a duty that the study states for the joint \[N m\]; 0 without one.
     pub stated_peak_nm: f64,

@@ -209,7 +209,7 @@ impl<V: Lanes> EightDemands<V> {
         Self { bearing, ..self }
     }
 
-    /// These demands with `room` as the largest outer diameters of gear and motor that fit \[m\]; `None`: sizes are not
+    /// These demands with `room` as the largest widths of gear, round motor and square flange that fit \[m\]; `None`: sizes are not
     /// checked.
     #[inline(always)]
     pub(crate) fn with_room(self, room: Option<[V; 3]>) -> Self {

@@ -146,7 +146,7 @@ impl StatedPhase {
 }
 
 impl StatedDemand {
-    /// What this duty of a joint asks at the input of `stage`, which drives the joint.
+    /// What this duty of a joint asks at the input of `stage`, which drives the joint, without the stage's own inertia.
     pub(super) fn before(self, stage: &Stage) -> Self {
         let gain = stage.ratio * stage.efficiency;
         Self {
@@ -187,7 +187,8 @@ impl StatedHeat {
         torque + 2.0 * inertia_s2 * mixed + inertia_s2 * inertia_s2 * self.acceleration_rad2_s4
     }
 
-    /// The sums of this duty at the input of `stage`. Where the load drives, the stage's losses help the motor.
+    /// The sums of this duty at the input of `stage`, whose own inertia is left out: a duty in numbers states torques and
+    /// not what accelerates the stage. Where the load drives, the stage's losses help the motor.
     fn before(self, stage: &Stage) -> Self {
         let per_nm = [1.0 / (stage.ratio * stage.efficiency), stage.efficiency / stage.ratio];
         Self {

@@ -12,11 +12,11 @@ use crate::sizing::fit::{FitRequirement, LinkRoom};
 use nalgebra::{Unit, Vector3};
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// The room that the link of one joint leaves for gear and motor: their largest outer diameters.
+/// The room that the link of one joint leaves for gear and motor: their largest widths.
 pub(crate) struct RoomAtJoint {
-    /// Slot of the link whose section limits the diameters of gear and motor.
+    /// Slot of the link whose section limits the widths of gear and motor.
     pub link_slot: usize,
-    /// The largest diameters of gear and motor with each option of the link; a single entry if the study gives the
+    /// The largest widths of gear and motor with each option of the link; a single entry if the study gives the
     /// link.
     pub rooms: Vec<LinkRoom>,
 }

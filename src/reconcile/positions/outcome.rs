@@ -183,7 +183,7 @@ impl Positions {
         if let Some(text) = self.unsteady_drift().or_else(|| self.better_law(campaign)) {
             return (Verdict::Unexplained, vec![text]);
         }
-        if let Some(said) = self.not_calibrated(campaign, adjusted) {
+        if let Some(said) = self.not_calibrated(campaign, findings, adjusted) {
             return said;
         }
         if findings.is_empty() {
@@ -234,7 +234,12 @@ impl Positions {
 
     /// Verdict and reasons if the calibration cannot be right: the poses do not determine it, a factor is beyond what is
     /// possible, or the geometry is far from the arm file. Otherwise `None`.
-    fn not_calibrated(&self, campaign: &Campaign, adjusted: &[Calibrated]) -> Option<(Verdict, Vec<String>)> {
+    fn not_calibrated(
+        &self,
+        campaign: &Campaign,
+        findings: &[Finding],
+        adjusted: &[Calibrated],
+    ) -> Option<(Verdict, Vec<String>)> {
         let last = &self.stages[self.stages.len() - 1];
         if last.median_mm > UNSTABLE * last.fitted_median_mm.max(campaign.positions[0].sigma_mm()) {
             let text = format!(
@@ -244,7 +249,8 @@ impl Positions {
             );
             return Some((Verdict::InsufficientData, vec![text]));
         }
-        if let Some(text) = caution::impossible_calibration(campaign, "", self.tolerances(), adjusted) {
+        let named = findings.iter().map(Finding::label).collect::<Vec<_>>().join(" + ");
+        if let Some(text) = caution::impossible_calibration(campaign, &named, self.tolerances(), adjusted) {
             return Some((Verdict::Unexplained, vec![text]));
         }
         let text = "the positions fit only an arm that is far from the arm file: check the unit of the positions, and the \
