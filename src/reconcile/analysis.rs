@@ -199,7 +199,9 @@ impl Analysis<'_> {
         let held_out = self.held_out();
         let (verdict, mut reasons) = self.verdict(&held_out);
         if verdict == Verdict::Explained && self.shows_in_one_fold() {
-            reasons.push(shows_in_few_poses(&self.best.model.label()));
+            let several = self.best.model.effects.len() > 1;
+            let label = self.best.model.label();
+            reasons.push(shows_in_few_poses(&if several { format!("one of {label}") } else { label }));
         }
         if matches!(verdict, Verdict::Explained | Verdict::Unexplained) {
             reasons.extend(self.at_a_limit());

@@ -250,13 +250,11 @@ fn a_hysteresis_remembers_the_torque_while_the_joint_rests() {
 }
 
 #[test]
-fn segments_that_the_known_rows_do_not_reach_are_open() {
+fn the_intervals_of_segments_that_the_known_rows_hardly_reach_hold() {
     // the largest torque outside of reversals is below the second break of 85 N m
     let joint = Prescribed { has_segments: true, has_rests: true, gravity_nm: 62.0, ..Prescribed::plain() };
     let outcome = joint.outcome(false, &mut Dice(610));
-    let stated = outcome.records[0].found("torsion_curve").expect("a curve of two segments");
-    let end = |name: &str| stated.parameters.iter().find(|(n, _)| n == name).expect(name).1[0].high;
-    assert_eq!([end("k3_nm_per_rad"), end("t2_nm")], [None, None]);
+    let stated = outcome.records[0].found("torsion_curve").expect("a curve");
     for (name, truth) in
         [("k1_nm_per_rad", 35e3), ("k2_nm_per_rad", 60e3), ("k3_nm_per_rad", 90e3), ("t2_nm", 85.0)]
     {
