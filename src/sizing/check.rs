@@ -46,6 +46,8 @@ pub enum CheckKind {
     GearWidth,
     /// The motor fits into the hollow of the link that the joint carries.
     MotorWidth,
+    /// A motor in the hollow of the link that the joint carries is no longer than this link.
+    MotorLength,
     /// The bore of the gear is wide enough for the cables.
     GearBore,
     /// The bore of a motor that is mounted behind the gear is wide enough for the cables.
@@ -80,6 +82,7 @@ impl CheckKind {
             CheckKind::MotorSpeed => "speed",
             CheckKind::GearWidth | CheckKind::MotorWidth => "width",
             CheckKind::GearBore | CheckKind::MotorBore => "bore",
+            CheckKind::MotorLength => "length",
             CheckKind::DriveLength => "length of the drive",
             CheckKind::Torsion => "torsion",
             CheckKind::Mass => "mass",
@@ -108,6 +111,7 @@ impl CheckKind {
             CheckKind::MotorSpeed => "motor speed",
             CheckKind::GearWidth => "gear width",
             CheckKind::MotorWidth => "motor width",
+            CheckKind::MotorLength => "motor length",
             CheckKind::GearBore => "gear bore",
             CheckKind::MotorBore => "motor bore",
             CheckKind::DriveLength => "drive length",
@@ -148,8 +152,8 @@ impl CheckKind {
 
     /// Whether the check compares sizes of parts, so that no torque changes its result.
     pub fn is_fit(self) -> bool {
-        use CheckKind::{DriveLength, GearBore, GearWidth, MotorBore, MotorWidth};
-        matches!(self, GearWidth | MotorWidth | GearBore | MotorBore | DriveLength)
+        use CheckKind::{DriveLength, GearBore, GearWidth, MotorBore, MotorLength, MotorWidth};
+        matches!(self, GearWidth | MotorWidth | MotorLength | GearBore | MotorBore | DriveLength)
     }
 
     /// Whether a drive is excluded if the rating that this check needs is blank. Blank ratings of an output bearing and
@@ -164,11 +168,19 @@ impl CheckKind {
     /// Whether the check is about gear and bearing alone, so that its result is the same with every motor.
     pub fn is_gear(self) -> bool {
         use CheckKind::{
-            DriveLength, Mass, MotorBore, MotorHold, MotorPeak, MotorRms, MotorSpeed, MotorWidth,
+            DriveLength, Mass, MotorBore, MotorHold, MotorLength, MotorPeak, MotorRms, MotorSpeed, MotorWidth,
         };
         !matches!(
             self,
-            MotorHold | MotorPeak | MotorRms | MotorSpeed | MotorWidth | MotorBore | DriveLength | Mass
+            MotorHold
+                | MotorPeak
+                | MotorRms
+                | MotorSpeed
+                | MotorWidth
+                | MotorLength
+                | MotorBore
+                | DriveLength
+                | Mass
         )
     }
 }

@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | gear at the link that the joint carries | outer diameter of the gear | factor times width of the link |
 //! | motor in the hollow of that link | outer diameter of the motor; the side of a square flange | the smaller clear width of the hollow; for a square in a round tube its diameter over √2 |
+//! | the same | length of the motor | length of the tubes from the joint to the next one |
 //! | cables along the axis | bore of the gear, and of a motor behind it | at least the bore that the study states |
 //! | space at the joint | length of the gear, plus that of a motor behind it | the length that the study states |
 //!
@@ -30,6 +31,9 @@ pub struct FitRequirement {
     pub cable_bore_min_m: Option<f64>,
     /// Largest length of the drive along the axis \[m\].
     pub drive_length_max_m: Option<f64>,
+    /// Largest length of a motor in the hollow of the link \[m\]: the length of that link. It follows from the chain, so
+    /// no key states it; `None` if the motor is elsewhere or the joint carries no tube.
+    pub link_length_m: Option<f64>,
 }
 
 /// Where the motor of a joint is mounted.
@@ -178,7 +182,12 @@ impl FitRequirement {
             (Some(most_m), Some(length_m)) => length_m <= most_m,
             _ => true,
         };
+        let link_holds = match (self.most_motor_length_m(), motor.length_m) {
+            (Some(most_m), Some(length_m)) => length_m <= most_m,
+            _ => true,
+        };
         length_holds
+            && link_holds
             && bore_holds(gear.hollow_bore_m)
             && (self.motor != MotorPlace::Behind || bore_holds(motor.hollow_bore_m))
     }
@@ -191,6 +200,14 @@ impl FitRequirement {
     /// Largest length that passes \[m\], increased by the tolerance for rounding; `None` if the length is not limited.
     pub(super) fn most_length_m(&self) -> Option<f64> {
         self.drive_length_max_m.map(|most_m| most_m * (1.0 + ROUNDING))
+    }
+
+    /// Largest length of a motor in the link that passes \[m\], increased by the tolerance for rounding; `None` if it is
+    /// not limited.
+    pub(super) fn most_motor_length_m(&self) -> Option<f64> {
+        self.link_length_m
+            .filter(|_| self.motor == MotorPlace::InLink)
+            .map(|most_m| most_m * (1.0 + ROUNDING))
     }
 
     /// Length of a drive along the axis \[m\]; `None` if one of its parts has no length in the catalog.

@@ -30,7 +30,7 @@ pub(super) fn gear_fits(
         .flatten()
 }
 
-/// The checks of the diameter and the bore of a motor, and of the length of motor and gear together.
+/// The checks of the diameter, the length and the bore of a motor, and of the length of motor and gear together.
 pub(super) fn motor_fits(
     drive: &Drive,
     fit: &FitRequirement,
@@ -44,10 +44,12 @@ pub(super) fn motor_fits(
         Some(_) => "motor length_mm",
     };
     let length = known(fit.length_m(gear, motor), blank);
+    let own_length = known(motor.length_m, "motor length_mm");
     let bore = known(motor.hollow_bore_m, "motor hollow_bore_mm");
     let least_bore_m = fit.least_bore_m().filter(|_| fit.motor == MotorPlace::Behind);
     let checks = [
         at_most(CheckKind::MotorWidth, width, clear_m),
+        fit.most_motor_length_m().and_then(|most_m| at_most(CheckKind::MotorLength, own_length, most_m)),
         least_bore_m.map(|least_m| bore_check(CheckKind::MotorBore, least_m, bore)),
         at_most(CheckKind::DriveLength, length, fit.most_length_m().unwrap_or(f64::INFINITY)),
     ];
@@ -91,6 +93,7 @@ mod tests {
             motor: MotorPlace::Behind,
             cable_bore_min_m: Some(0.02),
             drive_length_max_m: Some(0.2),
+            link_length_m: Some(0.15),
         };
         let (mut gear, mut motor) = ample();
         gear.envelope =
@@ -131,6 +134,10 @@ mod tests {
             misfits(|_, m, fit| (m.envelope.outer_diameter_m, fit.motor) = (Some(0.15), MotorPlace::InLink)),
             ["motor width: width 150 mm needed, 140 allowed"]
         );
+        assert_eq!(
+            misfits(|_, m, fit| (m.envelope.length_m, fit.motor) = (Some(0.16), MotorPlace::InLink)),
+            ["motor length: length 160 mm needed, 150 allowed"]
+        );
     }
 
     #[test]
@@ -166,6 +173,7 @@ mod tests {
             motor: MotorPlace::Behind,
             cable_bore_min_m: Some(0.02),
             drive_length_max_m: Some(0.2),
+            link_length_m: None,
         };
         let motion = JointMotion { fit, ..motion() };
         let demand = motion.demand_of_torques(300.0, 100.0).with_room(fit.room(0.15, [0.14; 2]));

@@ -233,12 +233,13 @@ fn any_envelope() -> impl Strategy<Value = Envelope> {
 fn any_fit() -> impl Strategy<Value = FitRequirement> {
     let asked = |range: std::ops::Range<f64>| prop_oneof![1 => range.prop_map(Some), 3 => Just(None)];
     let motor = prop_oneof![Just(MotorPlace::Behind), Just(MotorPlace::InLink), Just(MotorPlace::Beside)];
-    (asked(0.5..2.0), motor, asked(0.0..0.03), asked(0.06..0.2)).prop_map(
-        |(gear_to_link_max, motor, cable_bore_min_m, drive_length_max_m)| FitRequirement {
+    (asked(0.5..2.0), motor, asked(0.0..0.03), asked(0.06..0.2), asked(0.02..0.1)).prop_map(
+        |(gear_to_link_max, motor, cable_bore_min_m, drive_length_max_m, link_length_m)| FitRequirement {
             gear_to_link_max,
             motor,
             cable_bore_min_m,
             drive_length_max_m,
+            link_length_m,
         },
     )
 }

@@ -70,6 +70,17 @@ pub(crate) fn carried_link(pieces: &[SpacePiece], place: usize) -> Option<usize>
     before_next_joint.find(|(_, piece)| is_tube(piece)).map(|(link, _)| link)
 }
 
+/// Length of the tubes between the joint with number `place` and the next joint \[m\]; `None` if there are none.
+pub(crate) fn carried_length_m(pieces: &[SpacePiece], place: usize) -> Option<f64> {
+    let first = carried_link(pieces, place)?;
+    let lengths_m = pieces[first..].iter().map_while(|piece| match piece {
+        SpacePiece::Choice(choice) => Some(choice.vector_m.norm()),
+        SpacePiece::Link(Link { vector_m, body: LinkBody::Tube { .. }, .. }) => Some(vector_m.norm()),
+        _ => None,
+    });
+    Some(lengths_m.sum())
+}
+
 /// Names of the joints for which a study limits sizes in relation to a link, but which have no link.
 pub(crate) fn joints_without_link(pieces: &[SpacePiece]) -> Vec<&str> {
     let asks = |joint: &SpaceJoint| joint.drive.is_sized() && joint.fit.asks_of_link();

@@ -9,7 +9,7 @@ use crate::report::number::significant;
 use crate::sizing::fit::{FitRequirement, MotorPlace};
 use crate::sizing::select::DriveFilter;
 use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiece};
-use crate::space::fit::joints_without_link;
+use crate::space::fit::{carried_length_m, joints_without_link};
 
 /// Reads the key `fit` of a study or of a joint. Keys that are missing are taken from `usual`; `null` means no limits.
 /// Returns `None` after recording a fault.
@@ -37,6 +37,7 @@ fn read_requirement(node: &Node, usual: FitRequirement) -> Option<FitRequirement
         motor: motor?,
         cable_bore_min_m: cable_bore_min_m?,
         drive_length_max_m: drive_length_max_m?,
+        link_length_m: None,
     })
 }
 
@@ -49,6 +50,16 @@ fn read_motor_place(node: &Node) -> Option<MotorPlace> {
             format!("\"{other}\" is not known"),
             "choose one of: behind (the gear, on its axis), in_link (in the hollow of the link), beside (not checked)",
         ),
+    }
+}
+
+/// Notes at every joint whose motor is in its link how long this link is: the motor is no longer.
+pub(super) fn measure_links(pieces: &mut [SpacePiece]) {
+    for place in 0..pieces.len() {
+        let length_m = carried_length_m(pieces, place);
+        if let SpacePiece::Joint(joint) = &mut pieces[place] {
+            joint.fit.link_length_m = length_m.filter(|_| joint.fit.motor == MotorPlace::InLink);
+        }
     }
 }
 
@@ -114,7 +125,8 @@ fn phrases(asking: &[&SpaceJoint]) -> Vec<String> {
         let of_joint = [
             fit.gear_to_link_max
                 .map(|factor| format!("gear no wider than {factor} times the link that the joint carries")),
-            (fit.motor == MotorPlace::InLink).then(|| "motor in the hollow of that link".to_string()),
+            (fit.motor == MotorPlace::InLink)
+                .then(|| "motor in the hollow of that link and no longer than it".to_string()),
             fit.cable_bore_min_m.map(|m| format!("bore of the gear{behind} at least {} mm", mm(m))),
             fit.drive_length_max_m.map(|m| format!("length of the gear{behind} at most {} mm", mm(m))),
         ];
@@ -180,6 +192,7 @@ fn unknown_sizes(asking: &[&SpaceJoint], catalogs: &Catalogs) -> Option<String> 
             filter.allows_motor(motor)
                 && motor.kind != MotorKind::OfActuator
                 && (is_blank(fit.motor == MotorPlace::InLink, size.outer_diameter_m)
+                    || is_blank(fit.link_length_m.is_some(), size.length_m)
                     || is_blank(behind && fit.cable_bore_min_m.is_some(), size.hollow_bore_m)
                     || is_blank(behind && fit.drive_length_max_m.is_some(), size.length_m))
         })
@@ -231,7 +244,13 @@ mod tests {
             panic!("two joints")
         };
         assert_eq!(usual.cable_bore_min_m, Some(0.012));
-        let expected = FitRequirement { cable_bore_min_m: None, drive_length_max_m: Some(0.09), ..usual };
+        let expected = FitRequirement {
+            cable_bore_min_m: None,
+            drive_length_max_m: Some(0.09),
+            // the forearm is an offset, and has no hollow
+            link_length_m: None,
+            ..usual
+        };
         assert_eq!(own, expected);
         assert_eq!(of_joints(&read(all, json!({"fit": null})).unwrap())[1], FitRequirement::default());
     }
@@ -242,7 +261,8 @@ mod tests {
         let remarks = read(all, json!({"fit": {"motor": "in_link"}})).unwrap().remarks.join(" ");
         for words in [
             "Fit is checked: gear no wider than 1.2 times the link that the joint carries (shoulder, elbow); length of the gear \
-             and of the motor behind it at most 150.0 mm (shoulder); motor in the hollow of that link (elbow)",
+             and of the motor behind it at most 150.0 mm (shoulder); motor in the hollow of that link and no longer than it \
+             (elbow)",
             "not compared with a link in elbow: there is none before the next joint",
             "lack a size in the catalogs, and that size is not checked",
             "Sizes that were recalled and not seen in a document count like others",

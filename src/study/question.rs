@@ -82,6 +82,7 @@ fn asked_joint(joint: &SpaceJoint) -> AskedJoint {
             motor_on_axis: joint.fit.motor == MotorPlace::Behind,
             cable_bore_min_m: joint.fit.cable_bore_min_m,
             drive_length_max_m: joint.fit.drive_length_max_m,
+            link_length_m: joint.fit.link_length_m,
         },
     }
 }

@@ -12,7 +12,7 @@ use super::creep::creep_remarks;
 use super::definition::Study;
 use super::drives::{Drives, read_drives};
 use super::effects::{check_effects, effects_remark};
-use super::fit::{fit_remarks, read_fit};
+use super::fit::{fit_remarks, measure_links, read_fit};
 use super::harness::{harness_effects, harness_remark};
 use super::keys::{CONSTRAINTS, JOINT, LINK, MODELS, STUDY};
 use super::linkages::drivers_are_inboard;
@@ -325,6 +325,7 @@ fn read_chain(node: &Node, open: &Open, aside: &mut Aside) -> Option<Vec<SpacePi
     let repeated = items.into_iter().zip(counts).flat_map(|(n, count)| std::iter::repeat_n(n, count));
     let items: Vec<Node> = repeated.collect();
     number_materials(&mut pieces);
+    measure_links(&mut pieces);
     check_names(node, &pieces)?;
     drivers_are_inboard(&items, &pieces)?;
     let mut transmissions = transmissions.into_iter();

@@ -5,6 +5,7 @@
 //! | gear next to the link | outer diameter of the gear | a factor times the width of the link |
 //! | motor in the link | outer diameter of a round motor | the clear width of the hollow |
 //! | the same | side of a square flange (AC servo motors, steppers) | the side of a square in the hollow |
+//! | the same | length of the motor | the length of the link |
 //! | cables | the bores of the parts on the axis | the smallest bore asked for |
 //! | room at the joint | the length of the parts on the axis | the largest length asked for |
 //!
@@ -81,5 +82,7 @@ pub(super) fn goes_into_joint(fit: &AskedFit, gear: &Envelope, motor: &Envelope)
     let most_m = fit.drive_length_max_m.unwrap_or(f64::INFINITY) * (1.0 + SAME_SIZE);
     let bores_hold = on_axis.iter().filter_map(|part| part.hollow_bore_m).all(|bore_m| bore_m >= least_m);
     let length_m: Option<f64> = on_axis.iter().map(|part| part.length_m).sum();
-    bores_hold && length_m.is_none_or(|length_m| length_m <= most_m)
+    let link_m = fit.link_length_m.unwrap_or(f64::INFINITY) * (1.0 + SAME_SIZE);
+    let is_in_link = !fit.motor_in_link || motor.length_m.is_none_or(|length_m| length_m <= link_m);
+    bores_hold && is_in_link && length_m.is_none_or(|length_m| length_m <= most_m)
 }

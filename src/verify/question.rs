@@ -120,6 +120,8 @@ pub struct AskedFit {
     pub cable_bore_min_m: Option<f64>,
     /// Largest length of the gear \[m\], together with the motor if that is on the joint's axis too.
     pub drive_length_max_m: Option<f64>,
+    /// Length of the link in whose hollow the motor is \[m\]; `None` if the motor is elsewhere.
+    pub link_length_m: Option<f64>,
 }
 
 /// One phase of a duty that the study states for a joint.

@@ -12,9 +12,8 @@ use armwright::space::{ArmProblem, OutwardIn};
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
 
-/// The catalogs with other bearings in every gear: some rigid, others a tenth to three times as stiff.
-fn other_bearings(seed: u64) -> Catalogs {
-    let mut catalogs = Catalogs::builtin();
+/// Gives every gear another bearing: some rigid, others a tenth to three times as stiff.
+pub fn change_bearings(catalogs: &mut Catalogs, seed: u64) {
     let dice = &mut Dice(seed + 3_000);
     for gear in &mut catalogs.gears {
         let times = 10f64.powf(dice.within(-1.0, 0.5));
@@ -24,12 +23,10 @@ fn other_bearings(seed: u64) -> Catalogs {
         gear.permissible_tilting_moment_nm = gear.permissible_tilting_moment_nm.map(|moment| moment * rated);
         gear.bearing.static_load_rating_n = gear.bearing.static_load_rating_n.map(|load| load * rated);
     }
-    catalogs
 }
 
-/// A random study whose joints have bearings of all kinds.
-fn study_of_bearings(seed: u64) -> Value {
-    let mut study = random_study(seed);
+/// Gives the sized joints of a study bearings of all kinds.
+pub fn add_bearings(study: &mut Value, seed: u64) {
     let dice = &mut Dice(seed + 4_000);
     let joints =
         study["chain"].as_array_mut().expect("a chain").iter_mut().filter(|p| p["drive"].is_string());
@@ -53,7 +50,6 @@ fn study_of_bearings(seed: u64) -> Value {
         0 => json!([tilt(dice.of(&["j1", "j2", "j3", "j4"]), 10f64.powf(dice.within(4.3, 5.8)))]),
         _ => json!([]),
     };
-    study
 }
 
 /// Designs of a study with drives that a bearing alone excludes, at the joints that are levels.
@@ -79,7 +75,9 @@ fn the_exact_front_is_whole_with_bearings_that_tilt_and_limit() {
         std::env::var("ARMWRIGHT_EXACT_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(9);
     let (mut points, mut feasible, mut excluded) = (0, 0, 0);
     for seed in 0..studies {
-        let (text, catalogs) = (study_of_bearings(seed), other_bearings(seed));
+        let (mut text, mut catalogs) = (random_study(seed), Catalogs::builtin());
+        add_bearings(&mut text, seed);
+        change_bearings(&mut catalogs, seed);
         let study = read(&text, &catalogs);
         let problem = ArmProblem::new(&study.space, &catalogs);
         let what = format!("seed {seed}: {text}");

@@ -25,9 +25,8 @@ use armwright::verify::{Judge, Settings};
 use serde_json::{Value, json};
 use std::sync::atomic::AtomicBool;
 
-/// The catalogs with other sizes: most parts shrunk, so that some fit into these links, and some blank.
-fn other_sizes(seed: u64) -> Catalogs {
-    let mut catalogs = Catalogs::builtin();
+/// Gives every part other sizes: most are shrunk, so that some fit into these links, and some are blank.
+pub fn change_sizes(catalogs: &mut Catalogs, seed: u64) {
     let dice = &mut Dice(seed + 6_000);
     let gears = catalogs.gears.iter_mut().map(|gear| &mut gear.envelope);
     for size in gears.chain(catalogs.motors.iter_mut().map(|motor| &mut motor.envelope)) {
@@ -36,6 +35,12 @@ fn other_sizes(seed: u64) -> Catalogs {
         size.length_m = size.length_m.map(|m| m * by).filter(|_| dice.below(8) > 0);
         size.hollow_bore_m = Some(dice.within(0.0, 0.04)).filter(|_| dice.below(4) > 0);
     }
+}
+
+/// The catalogs with other sizes.
+fn other_sizes(seed: u64) -> Catalogs {
+    let mut catalogs = Catalogs::builtin();
+    change_sizes(&mut catalogs, seed);
     catalogs
 }
 
@@ -53,9 +58,8 @@ fn wishes(dice: &mut Dice) -> Value {
     fit
 }
 
-/// A random study that asks for room, with a joint of its own mind, a link that is given, or an offset before the link.
-fn study_of_fits(seed: u64) -> Value {
-    let mut study = random_study(seed);
+/// Asks for room in a study, with a joint that asks for another, a link that is given, or an offset before the link.
+pub fn add_fits(study: &mut Value, seed: u64) {
     let dice = &mut Dice(seed + 7_000);
     study["fit"] = wishes(dice);
     study["connection_share"] = json!(dice.of(&[0.0, 0.0, 0.2]));
@@ -87,7 +91,6 @@ fn study_of_fits(seed: u64) -> Value {
             json!({"type": "link", "name": "bracket", "vector_m": [0, 0.05, 0], "mass_kg": 0.3}),
         );
     }
-    study
 }
 
 /// How often a link keeps a drive that would hold out of a joint, in some of the designs.
@@ -153,7 +156,8 @@ fn the_exact_front_is_whole_where_parts_must_fit() {
         std::env::var("ARMWRIGHT_EXACT_STUDIES").ok().and_then(|n| n.parse().ok()).unwrap_or(8);
     let (mut points, mut feasible, mut decided, mut bounds) = (0, 0, 0, 0);
     for seed in 0..studies {
-        let (text, catalogs) = (study_of_fits(seed), other_sizes(seed));
+        let (mut text, catalogs) = (random_study(seed), other_sizes(seed));
+        add_fits(&mut text, seed);
         let study = read(&text, &catalogs);
         let problem = ArmProblem::new(&study.space, &catalogs);
         let what = format!("seed {seed}: {text}");
@@ -230,6 +234,8 @@ fn hollow_gears() -> Catalogs {
 
 const ALL_ASKED: &str =
     r#"{"gear_to_link_max": 1.25, "motor": "in_link", "cable_bore_min_mm": 10, "drive_length_max_mm": 70}"#;
+/// The column of the study `tight` is 200 mm long, so that motors are too long for it that are some times as long.
+const LONG_MOTOR: &str = r#"{"motor": "in_link"}"#;
 const ON_AXIS: &str = r#"{"cable_bore_min_mm": 25, "drive_length_max_mm": 110}"#;
 
 fn asked(text: &str) -> Value {
@@ -237,11 +243,12 @@ fn asked(text: &str) -> Value {
 }
 
 /// One size each, and a study in which it decides.
-const SIZES: [(&str, &str, Spoil); 6] = [
+const SIZES: [(&str, &str, Spoil); 7] = [
     ("gear diameter", ALL_ASKED, |gear, _, by| times(&mut gear.envelope.outer_diameter_m, by)),
     ("gear bore", ALL_ASKED, |gear, _, by| times(&mut gear.envelope.hollow_bore_m, by)),
     ("gear length", ALL_ASKED, |gear, _, by| times(&mut gear.envelope.length_m, by)),
     ("motor diameter", ALL_ASKED, |_, motor, by| times(&mut motor.envelope.outer_diameter_m, by)),
+    ("length of a motor in its link", LONG_MOTOR, |_, motor, by| times(&mut motor.envelope.length_m, by)),
     ("motor bore", ON_AXIS, |_, motor, by| times(&mut motor.envelope.hollow_bore_m, by)),
     ("motor length", ON_AXIS, |_, motor, by| times(&mut motor.envelope.length_m, by)),
 ];
@@ -254,7 +261,7 @@ fn one_wrong_size_is_found_by_the_verifier_and_each_decides() {
         let true_front = front(&study, &catalogs, &catalogs);
         assert_eq!(faults(&study, &catalogs, &true_front), [0, 0], "{name}");
         let mut decides = false;
-        for factor in [0.4, 0.7, 1.4, 2.5] {
+        for factor in [0.4, 0.7, 1.4, 2.5, 12.0] {
             let rows = front(&study, &spoiled(&catalogs, spoil, factor), &catalogs);
             let found = faults(&study, &catalogs, &rows);
             println!("{name} times {factor}: {} rows of {}, faults {found:?}", rows.len(), true_front.len());

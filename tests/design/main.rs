@@ -35,6 +35,7 @@ mod search_fast_vs_full;
 mod springs;
 mod study_rerun;
 mod transmissions;
+mod whole_arms;
 #[path = "../witness/mod.rs"]
 mod witness;
 mod witness_bearings;

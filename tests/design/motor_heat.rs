@@ -33,10 +33,9 @@ fn cycle(dice: &mut Dice) -> Value {
     json!(cycle)
 }
 
-/// A study in which motors work hard: quick ramps, short rests, some brakes, now and then a joint with a duty of its own.
-fn hot_study(seed: u64) -> Value {
+/// Lets the motors of a study work hard: quick ramps, short rests, some brakes, now and then a joint with a duty of its own.
+pub fn add_heat(study: &mut Value, seed: u64) {
     let dice = &mut Dice(seed.wrapping_mul(104_729).wrapping_add(5));
-    let mut study = random_study(seed);
     study["motion"] = json!({"tip_speed_m_s": dice.within(0.5, 1.2), "ramp_time_s": dice.within(0.08, 0.25)});
     if dice.below(2) == 0 {
         study["motion"]["cycle"] = cycle(dice);
@@ -47,10 +46,6 @@ fn hot_study(seed: u64) -> Value {
     for piece in study["chain"].as_array_mut().expect("a chain") {
         if piece["drive"].is_null() {
             continue;
-        }
-        if seed.is_multiple_of(2) {
-            // what no bearing limits, motors do
-            piece["bearing"] = Value::Null;
         }
         if dice.below(3) == 0 {
             piece["brake"] = json!(true);
@@ -64,11 +59,22 @@ fn hot_study(seed: u64) -> Value {
                 {"torque_nm": 0.5 * most_nm, "time_s": dice.within(0.0, 1.0), "speed_rpm": 0.0}]);
         }
     }
+}
+
+/// A study whose drives motor heat decides. In every other one the bearings are rigid: what no bearing limits, motors do.
+fn hot_study(seed: u64) -> Value {
+    let mut study = random_study(seed);
+    add_heat(&mut study, seed);
+    let joints =
+        study["chain"].as_array_mut().expect("a chain").iter_mut().filter(|p| p["drive"].is_string());
+    if seed.is_multiple_of(2) {
+        joints.for_each(|joint| joint["bearing"] = Value::Null);
+    }
     study
 }
 
 /// The same study without the check.
-fn unheated(study: &Study) -> Study {
+pub fn unheated(study: &Study) -> Study {
     let mut study = study.clone();
     study.space.motion.checks_motor_heat = false;
     study

@@ -411,7 +411,7 @@ impl View {
 }
 
 /// The checks that the page shows, in the order of its table.
-const CHECKS: [CheckKind; 22] = [
+const CHECKS: [CheckKind; 23] = [
     CheckKind::GearPeak,
     CheckKind::GearMean,
     CheckKind::GearStop,
@@ -431,6 +431,7 @@ const CHECKS: [CheckKind; 22] = [
     CheckKind::MotorSpeed,
     CheckKind::GearWidth,
     CheckKind::MotorWidth,
+    CheckKind::MotorLength,
     CheckKind::GearBore,
     CheckKind::MotorBore,
     CheckKind::DriveLength,

@@ -3,7 +3,7 @@
 //! | asked | definition |
 //! |---|---|
 //! | gear and link | seen along the joint's axis the link is that wide: the spread of its corners, or its diameter; the smaller side if the joint rolls the link |
-//! | motor and link | a cylinder goes into the tube if it is no wider than the tube's clear width and clear height |
+//! | motor and link | a cylinder goes into the tube if it is no wider than the tube's clear width and clear height, and if it is no longer than the tubes |
 //! | cables | a rod of that diameter goes through what is on the axis |
 //! | room | what is on the axis is no longer |
 //!
@@ -55,13 +55,15 @@ impl Sizes {
             // the corners of a square flange touch the hollow of a round tube
             if self.is_square && tube.is_round { hollow_mm / 2f64.sqrt() } else { hollow_mm }
         });
+        let link_mm = link.is_some().then(|| 1e3 * tubes_m(outboard));
         on_axis.iter().all(|part| at_least(part[BORE], "cable_bore_min_mm"))
             && at_most(length_mm, asked["drive_length_max_mm"].as_f64())
             && at_most(
                 self.gear[DIAMETER],
                 asked["gear_to_link_max"].as_f64().zip(width_mm).map(|(f, w)| f * w),
             )
-            && (place != "in_link" || at_most(self.motor[DIAMETER], clear_mm))
+            && (place != "in_link"
+                || at_most(self.motor[DIAMETER], clear_mm) && at_most(self.motor[LENGTH], link_mm))
     }
 }
 
@@ -73,6 +75,15 @@ pub fn asked(joint: &Value, study: &Value) -> Value {
     let mut asked = study.as_object().cloned().unwrap_or_default();
     asked.extend(joint["fit"].as_object().cloned().unwrap_or_default());
     Value::Object(asked)
+}
+
+/// How far the tubes reach that follow the first one without a break \[m\].
+fn tubes_m(outboard: &[Chosen]) -> f64 {
+    let tube_m = |piece: &Chosen| match piece {
+        Chosen::Link(link) if link.option.is_some() => Some(link.vector_m.norm()),
+        _ => None,
+    };
+    outboard.iter().map(tube_m).skip_while(Option::is_none).map_while(|length_m| length_m).sum()
 }
 
 /// The first link with a section before the next joint.
