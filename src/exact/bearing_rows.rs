@@ -32,7 +32,15 @@ pub(super) struct BearingRows {
     /// Additional load components while one joint accelerates, one entry for each joint whose acceleration loads this
     /// bearing. Each component is a sum over the line inertias (inertias per metre of a tube) of all pieces, with
     /// [`INERTIAS`] numbers for each piece.
-    ramps: Vec<Components>,
+    ramps: Vec<RampRow>,
+}
+
+/// The load on a bearing while one joint accelerates.
+struct RampRow {
+    /// The load components in the ramp.
+    sums: Components,
+    /// Ratio of the deceleration in the joint's emergency stop to its acceleration in the ramp, at least 1.
+    stop_factor: f64,
 }
 
 /// The components of a load, each as a linear function of the numbers of the parts.
@@ -72,6 +80,8 @@ pub(super) struct Ramp<'a> {
     /// Inertia matrix of each piece that moves with the joint, per unit of each of its line inertias (inertias per
     /// metre of a tube).
     pub inertia: &'a [[Matrix6<f64>; INERTIAS]],
+    /// Ratio of the deceleration in the joint's emergency stop to its acceleration in the ramp, at least 1.
+    pub stop_factor: f64,
 }
 
 /// The axes of a joint about and along which the components of a load are taken, each as a unit motion. The dot product
@@ -125,23 +135,25 @@ impl BearingRows {
         let at_rest = frame.sums(&loads.fixed, loads.per_n.iter().copied().enumerate());
         let of_ramp = |ramp: Ramp| {
             let lines = ramp.inertia.as_flattened().iter().map(|form| form * ramp.acceleration);
-            frame.sums(&(ramp.fixed * ramp.acceleration), lines.enumerate())
+            RampRow {
+                sums: frame.sums(&(ramp.fixed * ramp.acceleration), lines.enumerate()),
+                stop_factor: ramp.stop_factor,
+            }
         };
         // A joint whose ramp does not load this bearing is left out, so that it takes no time in any box.
-        let counts = |sums: &Components| sums.iter().any(|sum| sum.fixed != 0.0 || !sum.terms.is_empty());
+        let counts = |row: &RampRow| row.sums.iter().any(|sum| sum.fixed != 0.0 || !sum.terms.is_empty());
         Self { at_rest, ramps: ramps.map(of_ramp).filter(counts).collect() }
     }
 
     /// Least and greatest moment, radial and axial force on the output bearing over the box: at rest, while a joint
-    /// accelerates, and in an emergency stop. `stop_factor` is the acceleration in a stop divided by the acceleration
-    /// in a ramp. The moment of the radial force about the bearing (force times the distance along the axis to the
+    /// accelerates, and in an emergency stop. The moment of the radial force about the bearing (force times the distance along the axis to the
     /// link) is left out; the caller adds it.
-    pub(super) fn loads(&self, numbers: &Numbers, stop_factor: f64) -> [BearingDemand; 2] {
+    pub(super) fn loads(&self, numbers: &Numbers) -> [BearingDemand; 2] {
         let at_rest = self.at_rest.each_ref().map(|sum| sum.between_weights(numbers.weights_n));
         let rest = squared_lengths(&at_rest);
         let [mut running, mut in_stop] = [rest; 2];
-        for ramp in &self.ramps {
-            let ramp = ramp
+        for RampRow { sums, stop_factor } in &self.ramps {
+            let ramp = sums
                 .each_ref()
                 .map(|sum| sum.between_inertias(numbers.light.as_flattened(), numbers.heavy.as_flattened()));
             for sign in [1.0, -1.0] {
@@ -172,7 +184,7 @@ impl BearingRows {
             };
             grows(&at_rest, 1)
                 && self.ramps.iter().all(|ramp| {
-                    let ramp = shares(ramp, places);
+                    let ramp = shares(&ramp.sums, places);
                     let products = || at_rest.iter().flat_map(|(_, a)| ramp.iter().map(|(_, b)| dot(a, b)));
                     grows(&ramp, INERTIAS) && (products().all(|p| p >= 0.0) || products().all(|p| p <= 0.0))
                 })
@@ -425,7 +437,7 @@ mod tests {
                         let lines: Vec<[f64; INERTIAS]> = pieces
                             .map(|piece| std::array::from_fn(|k| if k == inertia::MASS { mass(piece) } else { 0.01 }))
                             .collect();
-                        rows.loads(&Numbers { weights_n: &weights, light: &lines, heavy: &lines }, 2.0)[0]
+                        rows.loads(&Numbers { weights_n: &weights, light: &lines, heavy: &lines })[0]
                     };
                     for piece in (0..problem.parts.len()).filter(|piece| is_drive(*piece)) {
                         let (before, after) = (numbers(&loads(None)), numbers(&loads(Some(piece))));

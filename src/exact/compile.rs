@@ -93,7 +93,11 @@ impl JointNeeds {
     /// from the joint's axis \[m\]; the angular acceleration follows from it and the tip's acceleration.
     fn of(space: &DesignSpace, joint: &SpaceJoint, reach_m: f64, slot: &Slot) -> Self {
         let motion = joint.motion(&space.motion, reach_m);
-        let of_gear = Self { acceleration_rad_s2: motion.acceleration_rad_s2, ..Self::default() };
+        let of_gear = Self {
+            acceleration_rad_s2: motion.acceleration_rad_s2,
+            stop_factor: motion.stop.factor,
+            ..Self::default()
+        };
         let Slot::Sized(sized) = slot else { return of_gear };
         let limits = (0..sized.table.len()).map(|i| sized.table.limits(i).bearing);
         Self {

@@ -35,6 +35,8 @@ pub(super) struct JointNeeds {
     pub is_checked: bool,
     /// Angular acceleration of the joint in a ramp \[rad/s²\].
     pub acceleration_rad_s2: f64,
+    /// Ratio of the deceleration of the joint in its emergency stop to this acceleration, at least 1.
+    pub stop_factor: f64,
 }
 
 impl Pose {
@@ -158,7 +160,8 @@ impl Pose {
                 Some(fixed) => (*fixed, &outboard.inertia[..*moving]),
                 None => (outboard.fixed_inertia, &outboard.inertia[..]),
             };
-            Some(Ramp { acceleration: twist * needs.acceleration_rad_s2, fixed, inertia })
+            let (acceleration, stop_factor) = (twist * needs.acceleration_rad_s2, needs.stop_factor);
+            Some(Ramp { acceleration, fixed, inertia, stop_factor })
         });
         let axis = angular(twist);
         Some(BearingRows::new([at_m, &axis], &across(&axis), &loads, ramps))

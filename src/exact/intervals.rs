@@ -163,7 +163,7 @@ impl Problem<'_> {
         let [least, most] = cases
             .filter_map(|(pose, weights_n)| {
                 let numbers = Numbers { weights_n, light: &work.light, heavy: &work.heavy };
-                Some(pose.bearings[piece].as_ref()?.loads(&numbers, self.space.motion.stop_factor()))
+                Some(pose.bearings[piece].as_ref()?.loads(&numbers))
             })
             .fold([BearingDemand::default(); 2], |a, b| [a[0].max(b[0]), a[1].max(b[1])]);
         let lever_m = match lever {

@@ -253,7 +253,7 @@ impl CaseLoads {
                 ([1.0, 0.0], parts.alive[slot].iter().map(|&o| limits(o).static_torque_nm).collect()),
                 (ramp(1.0), parts.alive[slot].iter().map(|&o| limits(o).peak_torque_nm).collect()),
                 (
-                    ramp(motion.stop_factor),
+                    ramp(motion.stop.factor),
                     parts.alive[slot].iter().map(|&o| limits(o).stop_torque_nm).collect(),
                 ),
             ];

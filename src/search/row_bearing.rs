@@ -227,8 +227,8 @@ impl RowBearing {
             let at_rest: [V; 5] = case.at_rest.load(chunk, &begun[0], masses_kg);
             out.rest(&at_rest);
             for (ramp, begun) in case.ramps.iter().zip(&begun[1..]) {
-                let ramp = ramp.source.load(chunk, begun, masses_kg);
-                out.moving(&at_rest, &ramp, V::splat(loads.stop_factor));
+                let load = ramp.source.load(chunk, begun, masses_kg);
+                out.moving(&at_rest, &load, V::splat(loads.movers[ramp.mover].stop_factor));
             }
         }
         let lever_m = match &self.lever {

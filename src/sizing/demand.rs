@@ -18,6 +18,36 @@ pub enum LinearReading {
     Paper,
 }
 
+/// The emergency stop of a joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stop {
+    /// Deceleration of the joint that follows from the stop of the tip which the study states \[rad/s²\]; `None` if the
+    /// study states none, and the deceleration is then twice that of the ramps.
+    pub stated_rad_s2: Option<f64>,
+    /// Ratio of the torque of the checks of a stop to the torque of a ramp. It is at least 1: what holds in a stop must
+    /// hold in every ramp of the cycle too, also where a gentle stop is stated.
+    pub factor: f64,
+    /// Duration of the stop in ramp times.
+    pub ramps: f64,
+}
+
+impl Stop {
+    /// The stop of a joint whose ramps have the acceleration `acceleration_rad_s2`.
+    pub(super) fn new(stated_rad_s2: Option<f64>, acceleration_rad_s2: f64) -> Self {
+        let ratio = match stated_rad_s2 {
+            // a joint that never moves needs no stop
+            Some(stated_rad_s2) if acceleration_rad_s2 > 0.0 => stated_rad_s2 / acceleration_rad_s2,
+            _ => 2.0,
+        };
+        Self { stated_rad_s2, factor: ratio.max(1.0), ramps: 1.0 / ratio }
+    }
+
+    /// This stop with all decelerations and accelerations multiplied by `factor`.
+    fn times(self, factor: f64) -> Self {
+        Self { stated_rad_s2: self.stated_rad_s2.map(|stated| stated * factor), ..self }
+    }
+}
+
 /// The motion of one joint. It follows from the study and the geometry; masses do not change it.
 ///
 /// [`MotionRequirement::joint_motion`](super::MotionRequirement::joint_motion) is the usual source.
@@ -33,10 +63,8 @@ pub struct JointMotion {
     pub acceleration_over_gravity: f64,
     /// Which interpretation of Eq 8 is used.
     pub linear_reading: LinearReading,
-    /// Ratio of emergency deceleration to normal acceleration, at least 1.
-    pub stop_factor: f64,
-    /// Duration of an emergency stop in ramp times.
-    pub ramps_in_a_stop: f64,
+    /// The emergency stop of the joint.
+    pub stop: Stop,
     /// Ratio of the mean speed over the duty cycle to the largest speed ω.
     pub mean_speed_fraction: f64,
     /// Weights of the terms of the cubic mean torque.
@@ -61,8 +89,8 @@ impl JointMotion {
     /// This motion, adapted to a joint that has a brake or a duty of its own.
     ///
     /// A stated duty replaces the duty cycle of the study: mean torque, mean speed and motor heat follow from its
-    /// phases. Its first ramp sets the acceleration. The speed of the joint is the largest speed of the duty, or
-    /// `max_speed_rad_s` \[rad/s\] if that is larger.
+    /// phases. Its steepest ramp sets the acceleration. The speed of the joint is the largest speed of the duty, or
+    /// `max_speed_rad_s` \[rad/s\] if that is larger. An emergency stop that the study states keeps its deceleration.
     pub fn of_joint(self, max_speed_rad_s: Option<f64>, has_brake: bool, duty: Option<&StatedDuty>) -> Self {
         let mut motion = Self { has_brake, ..self };
         if has_brake {
@@ -70,11 +98,13 @@ impl JointMotion {
         }
         let Some(duty) = duty else { return motion };
         let speed_rad_s = max_speed_rad_s.unwrap_or(0.0).max(duty.fastest_rpm() * RAD_S_PER_RPM);
-        let ramp_time_s = duty.ramp_time_s().unwrap_or(self.ramp_time_s);
+        let ramp_time_s = duty.ramp_time_s(self.ramp_time_s);
+        let acceleration_rad_s2 = speed_rad_s / ramp_time_s;
         Self {
             speed_rad_s,
-            acceleration_rad_s2: speed_rad_s / ramp_time_s,
+            acceleration_rad_s2,
             ramp_time_s,
+            stop: Stop::new(self.stop.stated_rad_s2, acceleration_rad_s2),
             mean_speed_fraction: duty.mean_speed_rpm() / rpm_from_rad_s(speed_rad_s),
             mean_torque: MeanTorqueWeights::NONE,
             heat: HeatWeights::default(),
@@ -91,7 +121,7 @@ impl JointMotion {
 
     /// Duration of an emergency stop from the largest speed of the joint to rest \[s\].
     pub fn stop_time_s(&self) -> f64 {
-        self.ramp_time_s * self.ramps_in_a_stop
+        self.ramp_time_s * self.stop.ramps
     }
 
     /// Mean speed of the joint over the duty cycle, on the output side of the gear \[rad/s\].
@@ -111,6 +141,7 @@ impl JointMotion {
             speed_rad_s: self.speed_rad_s * factor,
             acceleration_rad_s2: self.acceleration_rad_s2 * factor,
             acceleration_over_gravity: self.acceleration_over_gravity * factor,
+            stop: self.stop.times(factor),
             stated: self.stated.map(|stated| stated.slowed(factor)),
             ..self
         }
@@ -121,6 +152,7 @@ impl JointMotion {
         Self {
             speed_rad_s: self.speed_rad_s * stage.ratio,
             acceleration_rad_s2: self.acceleration_rad_s2 * stage.ratio,
+            stop: self.stop.times(stage.ratio),
             stated: self.stated.map(|stated| stated.before(stage)),
             ..self
         }
@@ -160,7 +192,7 @@ impl JointMotion {
     pub fn demand_of_torques(&self, static_torque_nm: f64, linear_torque_nm: f64) -> JointDemand {
         let static_torque_nm = static_torque_nm.abs();
         let linear_torque_nm = linear_torque_nm.abs();
-        let stop_nm = stop_torque_nm(static_torque_nm, linear_torque_nm, self.stop_factor);
+        let stop_nm = stop_torque_nm(static_torque_nm, linear_torque_nm, self.stop.factor);
         let cubed_nm3 = cubic_mean_cubed_nm3(self.mean_torque, static_torque_nm, linear_torque_nm);
         let [stated_peak_nm, stated_cubed_nm3] = self.stated_torques();
         JointDemand {

@@ -192,7 +192,7 @@ impl<V: Lanes> EightDemands<V> {
         Self {
             static_torque_nm: statically,
             peak_torque_nm: up.max(V::splat(stated_peak_nm)),
-            stop_torque_nm: (statically + V::splat(motion.stop_factor) * linear)
+            stop_torque_nm: (statically + V::splat(motion.stop.factor) * linear)
                 .max(V::splat(stated_peak_nm)),
             mean_torque_cubed_nm3: cubed_nm3 + V::splat(stated_cubed_nm3),
             up_nm: up,

@@ -130,6 +130,8 @@ pub struct Relaxation {
     pub kind: RelaxationKind,
     /// Factor on torque or speed, below 1 and a whole number of percent.
     pub factor: f64,
+    /// Whether the study states torques of the joint in a duty. No lighter arm reduces these.
+    pub has_duty: bool,
     /// Name of the lightest drive that meets the reduced demand.
     pub drive: String,
 }
@@ -149,7 +151,11 @@ impl fmt::Display for Relaxation {
         let percent = self.factor * 100.0;
         match self.kind {
             RelaxationKind::Torque => {
-                write!(f, "torque on the joint (payload, outboard mass, reach) down to {percent:.0} %")?
+                let of_duty = if self.has_duty { ", and the torques of its duty" } else { "" };
+                write!(
+                    f,
+                    "torque on the joint (payload, outboard mass, reach{of_duty}) down to {percent:.0} %"
+                )?
             }
             RelaxationKind::Speed => {
                 write!(f, "speed, acceleration and emergency deceleration down to {percent:.0} %")?
@@ -374,7 +380,8 @@ impl<'c> DriveTable<'c> {
                 RelaxationKind::Torque => self.first_fit(&demand.scaled(factor)).map(|i| self.drive(i)),
                 RelaxationKind::Speed => self.lightest_when_slowed(factor, demand),
             }?;
-            Some(Relaxation { kind, factor, drive: drive.name() })
+            let has_duty = demand.stated_peak_nm > 0.0;
+            Some(Relaxation { kind, factor, has_duty, drive: drive.name() })
         })
     }
 
@@ -578,7 +585,13 @@ mod tests {
 
     #[test]
     fn a_shortfall_of_torque_is_a_larger_one_of_the_payload_alone() {
-        let step = Relaxation { kind: RelaxationKind::Torque, factor: 0.9, drive: String::new() };
+        let step =
+            Relaxation { kind: RelaxationKind::Torque, factor: 0.9, has_duty: false, drive: String::new() };
+        assert!(
+            step.to_string().starts_with("torque on the joint (payload, outboard mass, reach) down to 90 %")
+        );
+        let of_duty = Relaxation { has_duty: true, ..step.clone() };
+        assert!(of_duty.to_string().contains("reach, and the torques of its duty)"));
         assert!((step.payload_factor(0.4).unwrap() - 0.75).abs() < 1e-12);
         assert_eq!(step.payload_factor(0.05), None);
     }

@@ -267,7 +267,7 @@ pub(super) fn actuator_stop_nm(drive: &Drive, motion: &JointMotion) -> Rating {
 
 /// Torque that stops the rotor of an actuator in an emergency, at the output \[N m\].
 pub(super) fn actuator_stop_of_rotor_nm(drive: &Drive, motion: &JointMotion) -> Rating {
-    Ok(motion.stop_factor * drive.rotary_torque_motor_nm(motion)? * drive.gain()?)
+    Ok(motion.stop.factor * drive.rotary_torque_motor_nm(motion)? * drive.gain()?)
 }
 
 /// Number of emergency stops (momentary peaks) that a gear may see in its life: 1e4 / (2 n t / 60), with n the input

@@ -1,6 +1,6 @@
 //! The motion that a study asks of the tip: speed, ramp, emergency stop, duty cycle, life.
 
-use super::demand::{JointMotion, LinearReading};
+use super::demand::{JointMotion, LinearReading, Stop};
 use super::duty::{DutyCycle, Phase, PhaseKind};
 use super::fit::FitRequirement;
 use crate::arm::GRAVITY_M_S2;
@@ -56,24 +56,11 @@ impl MotionRequirement {
         self.tip_speed_m_s / self.ramp_time_s
     }
 
-    /// Ratio of the deceleration of the tip in an emergency stop to its normal acceleration.
-    fn stop_ratio(&self) -> f64 {
-        match self.emergency_deceleration_m_s2 {
-            Some(deceleration) => deceleration / self.tip_acceleration_m_s2(),
-            None => 2.0,
-        }
-    }
-
-    /// Factor on the torque of a ramp for which the checks of an emergency stop are made. It is at least 1: what holds in
-    /// a stop must hold in every ramp of the cycle too, also where a gentle stop is stated.
-    pub fn stop_factor(&self) -> f64 {
-        self.stop_ratio().max(1.0)
-    }
-
     /// The motion of a joint whose axis is at most `reach_m` \[m\] away from the tip.
     ///
     /// The speed ω is `max_speed_rad_s` \[rad/s\] if the study states one, else v / r with r the larger of `reach_m`
-    /// and the smallest lever. The acceleration is α = ω / t_a, which equals a / r (Eq 10, output side).
+    /// and the smallest lever. The acceleration is α = ω / t_a, which equals a / r (Eq 10, output side). The deceleration
+    /// in an emergency stop is that of the tip over r, where the study states one.
     ///
     /// ```
     /// use armwright::sizing::MotionRequirement;
@@ -88,14 +75,15 @@ impl MotionRequirement {
     pub fn joint_motion(&self, reach_m: f64, max_speed_rad_s: Option<f64>) -> JointMotion {
         let lever_m = reach_m.max(self.min_lever_m);
         let speed_rad_s = max_speed_rad_s.unwrap_or(self.tip_speed_m_s / lever_m);
+        let acceleration_rad_s2 = speed_rad_s / self.ramp_time_s;
+        let stop = Stop::new(self.emergency_deceleration_m_s2.map(|a| a / lever_m), acceleration_rad_s2);
         JointMotion {
             speed_rad_s,
-            acceleration_rad_s2: speed_rad_s / self.ramp_time_s,
+            acceleration_rad_s2,
             ramp_time_s: self.ramp_time_s,
             acceleration_over_gravity: self.tip_acceleration_m_s2() / self.gravity_m_s2,
             linear_reading: self.linear_reading,
-            stop_factor: self.stop_factor(),
-            ramps_in_a_stop: 1.0 / self.stop_ratio(),
+            stop,
             mean_speed_fraction: self.duty_cycle.mean_speed_fraction(),
             mean_torque: self.duty_cycle.mean_torque_weights(),
             life_h: self.life_h,
@@ -188,6 +176,8 @@ fn not_negative(field: &'static str, value: f64) -> Result<(), RequirementError>
 
 #[cfg(test)]
 mod tests {
+    use super::super::RAD_S_PER_RPM;
+    use super::super::stated::{StatedDuty, StatedPhase};
     use super::*;
 
     #[test]
@@ -210,9 +200,26 @@ mod tests {
     #[test]
     fn the_emergency_stop_is_twice_the_ramp_unless_stated() {
         let study = MotionRequirement::default();
-        assert_eq!(study.stop_factor(), 2.0);
+        assert_eq!(study.joint_motion(1.35, None).stop.factor, 2.0);
         let hard = MotionRequirement { emergency_deceleration_m_s2: Some(20.0), ..study };
-        assert!((hard.stop_factor() - 4.0).abs() < 1e-15);
+        assert!((hard.joint_motion(1.35, None).stop.factor - 4.0).abs() < 1e-15);
+    }
+
+    /// The tip is stopped as hard as stated, however fast the joint turns and however gently it ramps otherwise.
+    #[test]
+    fn a_stated_stop_is_that_of_the_tip_whatever_the_ramps_of_the_joint() {
+        let study = MotionRequirement { emergency_deceleration_m_s2: Some(20.0), ..Default::default() };
+        let phase = |time_s, speed_rpm| StatedPhase { torque_nm: 5.0, time_s, speed_rpm };
+        let phases = vec![phase(1.0, 10.0), phase(3.0, 20.0), phase(1.0, 10.0), phase(2.0, 0.0)];
+        let duty = StatedDuty { phases };
+        let slow = study.joint_motion(1.25, Some(0.5));
+        let gentle = study.joint_motion(1.25, None).of_joint(None, false, Some(&duty));
+        assert!((gentle.acceleration_rad_s2 - 20.0 * RAD_S_PER_RPM).abs() < 1e-12, "0 to 20 rpm in a second");
+        for motion in [slow, gentle] {
+            let stop_rad_s2 = motion.acceleration_rad_s2 * motion.stop.factor;
+            assert!((stop_rad_s2 - 20.0 / 1.25).abs() < 1e-12, "{motion:?}");
+            assert!((motion.stop_time_s() - motion.speed_rad_s / stop_rad_s2).abs() < 1e-12, "{motion:?}");
+        }
     }
 
     #[test]

@@ -19,8 +19,8 @@ pub struct StatedPhase {
 /// takes the place of the study's cycle. The static torque, peak and emergency stop that follow from poses and masses
 /// are still checked.
 ///
-/// A phase at half the speed of the next one (within 5 %) is a ramp up to it; a phase at half the speed of the one
-/// before is a ramp down from it. In ramps rotor and wave generator are accelerated too.
+/// Speeds are means over the phases. A phase whose speed is the mean of the speeds before and after it is a ramp between
+/// them (within 5 %), and in ramps rotor and wave generator are accelerated too.
 ///
 /// ```
 /// use armwright::sizing::{StatedDuty, StatedPhase};
@@ -32,7 +32,8 @@ pub struct StatedPhase {
 /// };
 /// assert!((duty.mean_torque_cubed_nm3().cbrt() - 319.7).abs() < 0.05);
 /// assert!((120.0 * duty.mean_speed_rpm() - 1443.0).abs() < 0.5);
-/// assert_eq!(duty.ramp_time_s(), Some(0.3));
+/// assert_eq!(duty.ramps(), [1, 3]);
+/// assert!((duty.ramp_time_s(0.2) - 0.3).abs() < 1e-12, "the steeper of the two");
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct StatedDuty {
@@ -51,8 +52,8 @@ pub struct StatedDemand {
     pub heat: StatedHeat,
 }
 
-/// Relative tolerance within which the speed of a phase counts as half the speed of a neighbouring phase. Data sheets
-/// and worked examples print speeds with two or three digits.
+/// Tolerance within which the mean speed of a ramp is the mean of the speeds at its ends, as a fraction of that mean.
+/// Data sheets and worked examples print speeds with two or three digits.
 const SPEED_TOLERANCE: f64 = 0.05;
 
 impl StatedDuty {
@@ -83,10 +84,23 @@ impl StatedDuty {
         self.phases.iter().map(|phase| phase.torque_nm.abs()).fold(0.0, f64::max)
     }
 
-    /// Duration of the first ramp up \[s\]; `None` if no phase is a ramp up.
-    pub fn ramp_time_s(&self) -> Option<f64> {
-        let ramps = self.phases.iter().zip(self.accelerations_rad_s2());
-        ramps.filter(|(_, acceleration)| *acceleration > 0.0).map(|(phase, _)| phase.time_s).next()
+    /// Duration of a ramp from rest to the largest speed at the largest acceleration or deceleration \[s\]. A jump between
+    /// the speeds of two phases takes `jump_s` \[s\]; without a movement this is the result too.
+    pub fn ramp_time_s(&self, jump_s: f64) -> f64 {
+        let ends_rpm = self.ends_rpm();
+        let jumps = (0..ends_rpm.len()).map(|i| {
+            let [before, after] = [ends_rpm[i][1], ends_rpm[(i + 1) % ends_rpm.len()][0]];
+            if is_about(before, after) { 0.0 } else { (after - before).abs() * RAD_S_PER_RPM / jump_s }
+        });
+        let ramps = self.accelerations_rad_s2().into_iter().map(f64::abs);
+        let steepest_rad_s2 = jumps.chain(ramps).fold(0.0, f64::max);
+        if steepest_rad_s2 > 0.0 { self.fastest_rpm() * RAD_S_PER_RPM / steepest_rad_s2 } else { jump_s }
+    }
+
+    /// The numbers of the phases that count as ramps, from 1.
+    pub fn ramps(&self) -> Vec<usize> {
+        let accelerations = self.accelerations_rad_s2();
+        (1..=accelerations.len()).filter(|number| accelerations[number - 1] != 0.0).collect()
     }
 
     /// Whether the joint moves and no phase is a ramp, so that nothing says how hard rotor and wave generator are
@@ -96,25 +110,80 @@ impl StatedDuty {
             && self.accelerations_rad_s2().iter().all(|acceleration| *acceleration == 0.0)
     }
 
+    /// Speeds at the start and at the end of every phase \[rpm\]; they are equal unless the phase is a ramp.
+    ///
+    /// If speeds that follow each other without a jump have the stated means, they decide. Otherwise each phase is
+    /// compared with its neighbours: it is a ramp if its speed is the mean of theirs, where a neighbour that is itself a
+    /// ramp from or to rest counts as rest.
+    fn ends_rpm(&self) -> Vec<[f64; 2]> {
+        self.ends_without_jumps().unwrap_or_else(|| self.ends_by_neighbours())
+    }
+
     /// Acceleration of the joint in each phase \[rad/s²\]: positive in a ramp up, negative in a ramp down, else 0.
     fn accelerations_rad_s2(&self) -> Vec<f64> {
-        let count = self.phases.len();
-        let is_half = |phase: &StatedPhase, of: &StatedPhase| {
-            let full = of.speed_rpm.abs();
-            full > 0.0
-                && phase.time_s > 0.0
-                && (2.0 * phase.speed_rpm.abs() / full - 1.0).abs() < SPEED_TOLERANCE
+        let ends_rpm = self.ends_rpm();
+        let acceleration = |(phase, [start, end]): (&StatedPhase, [f64; 2])| match phase.time_s > 0.0 {
+            true => (end - start) * RAD_S_PER_RPM / phase.time_s,
+            false => 0.0,
         };
-        let ramp = |phase: &StatedPhase, of: &StatedPhase| of.speed_rpm.abs() * RAD_S_PER_RPM / phase.time_s;
-        let of_phase = |(i, phase): (usize, &StatedPhase)| {
-            let (before, after) = (&self.phases[(i + count - 1) % count], &self.phases[(i + 1) % count]);
-            match (is_half(phase, after), is_half(phase, before)) {
-                (true, _) => ramp(phase, after),
-                (false, true) => -ramp(phase, before),
-                (false, false) => 0.0,
+        self.phases.iter().zip(ends_rpm).map(acceleration).collect()
+    }
+
+    /// Speeds at the start and at the end of every phase \[rpm\] if the joint never jumps from one speed to another and
+    /// every phase is a ramp or has constant speed. `None` if no such speeds have the stated means. The largest of these
+    /// speeds must be stated, as that of a phase at constant speed: two phases of equal speed after a rest are no ramps to
+    /// and from twice their speed.
+    ///
+    /// The speeds are followed from a phase of constant speed through the whole cycle, back to it: at rest, or else the
+    /// fastest one.
+    fn ends_without_jumps(&self) -> Option<Vec<[f64; 2]>> {
+        let speeds_rpm: Vec<f64> = self.phases.iter().map(|phase| phase.speed_rpm.abs()).collect();
+        let fastest_rpm = self.fastest_rpm();
+        let first = speeds_rpm.iter().position(|rpm| *rpm == 0.0);
+        let first = first.or_else(|| speeds_rpm.iter().position(|rpm| *rpm == fastest_rpm))?;
+        let mut ends_rpm = vec![[0.0; 2]; speeds_rpm.len()];
+        let mut now_rpm = speeds_rpm[first];
+        for place in (first..first + speeds_rpm.len()).map(|place| place % speeds_rpm.len()) {
+            let (start_rpm, mean_rpm) = (now_rpm, speeds_rpm[place]);
+            let next_rpm = speeds_rpm[(place + 1) % speeds_rpm.len()];
+            now_rpm = match is_about(mean_rpm, start_rpm) {
+                true => start_rpm,
+                // the ramp ends at the constant speed of the next phase or at rest, up to rounding
+                false => [next_rpm, 0.0]
+                    .into_iter()
+                    .find(|end_rpm| is_about(mean_rpm, 0.5 * (start_rpm + end_rpm)))
+                    .unwrap_or(2.0 * mean_rpm - start_rpm),
+            };
+            let is_stated = now_rpm <= fastest_rpm || is_about(now_rpm, fastest_rpm);
+            if now_rpm < 0.0 || !is_stated {
+                return None;
             }
+            ends_rpm[place] = [start_rpm, now_rpm];
+        }
+        is_about(now_rpm, speeds_rpm[first]).then_some(ends_rpm)
+    }
+
+    /// Speeds at the start and at the end of every phase \[rpm\], each phase compared with its neighbours alone. The two
+    /// are equal if the phase is no ramp.
+    fn ends_by_neighbours(&self) -> Vec<[f64; 2]> {
+        let count = self.phases.len();
+        let speed_rpm = |place: usize| self.phases[place % count].speed_rpm.abs();
+        let of_phase = |place: usize| {
+            let [earlier, before, mean, after, later] =
+                [count - 2 % count, count - 1, 0, 1, 2].map(|step| speed_rpm(place + step));
+            // a neighbour that is itself a ramp down to rest, or up from it
+            let starts_at_rest = is_about(before, 0.5 * earlier);
+            let ends_at_rest = is_about(after, 0.5 * later);
+            let ends = [
+                Some([before, after]),
+                starts_at_rest.then_some([0.0, after]),
+                ends_at_rest.then_some([before, 0.0]),
+            ];
+            let is_ramp =
+                |[start, end]: &[f64; 2]| !is_about(*start, *end) && is_about(mean, 0.5 * (start + end));
+            ends.into_iter().flatten().find(is_ramp).unwrap_or([mean; 2])
         };
-        self.phases.iter().enumerate().map(of_phase).collect()
+        (0..count).map(of_phase).collect()
     }
 
     /// What this duty asks of any drive. If the joint has a brake, phases at rest do not heat the motor.
@@ -136,6 +205,11 @@ impl StatedDuty {
             heat,
         }
     }
+}
+
+/// Whether two speeds are the same up to the rounding of what is printed.
+fn is_about(rpm: f64, other_rpm: f64) -> bool {
+    (rpm - other_rpm).abs() <= SPEED_TOLERANCE * rpm.max(other_rpm)
 }
 
 impl StatedPhase {
@@ -227,6 +301,46 @@ mod tests {
         assert_eq!(accelerations([7.2, 14.3, 7.1, 0.0]), exact);
         assert_eq!(accelerations([7.0, 14.3, 7.0, 0.0]), exact);
         assert_eq!(accelerations([8.0, 14.3, 8.0, 0.0]), [0.0; 4]);
+    }
+
+    fn of_speeds(phases: &[(f64, f64)]) -> StatedDuty {
+        let phase = |&(speed_rpm, time_s): &(f64, f64)| StatedPhase { torque_nm: 10.0, time_s, speed_rpm };
+        StatedDuty { phases: phases.iter().map(phase).collect() }
+    }
+
+    /// Largest acceleration of a duty \[rpm/s\], where a jump takes 0.1 s.
+    fn steepest_rpm_s(duty: &StatedDuty) -> f64 {
+        duty.fastest_rpm() / duty.ramp_time_s(0.1)
+    }
+
+    #[test]
+    fn ramps_are_those_of_a_speed_that_does_not_jump() {
+        // from rest to 10 rpm, on to 20 rpm, and back to rest
+        let steps = of_speeds(&[(5.0, 0.2), (10.0, 1.0), (15.0, 0.2), (20.0, 1.0), (10.0, 0.4), (0.0, 1.0)]);
+        assert_eq!(steps.ramps(), [1, 3, 5]);
+        assert!((steepest_rpm_s(&steps) - 50.0).abs() < 1e-9);
+        // two ramps after each other, and no rest between a move and the next
+        assert_eq!(of_speeds(&[(5.0, 0.2), (15.0, 0.1), (20.0, 1.0), (10.0, 0.3)]).ramps(), [1, 2, 4]);
+        assert_eq!(of_speeds(&[(7.0, 0.3), (14.0, 3.0), (7.0, 0.4)]).ramps(), [1, 3]);
+        // the steepest ramp is the one down
+        let gentle = of_speeds(&[(10.0, 2.0), (20.0, 1.0), (10.0, 0.5), (0.0, 1.0)]);
+        assert!((steepest_rpm_s(&gentle) - 40.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_jumps_is_as_steep_as_the_ramps_of_the_study() {
+        // 10 rpm may be a ramp to 20 rpm or a speed; the way back to rest is a jump
+        let two = of_speeds(&[(10.0, 5.0), (20.0, 5.0), (0.0, 5.0)]);
+        assert!((steepest_rpm_s(&two) - 200.0).abs() < 1e-9);
+        // never at rest: two speeds, and jumps of 10 rpm
+        let never = of_speeds(&[(10.0, 5.0), (20.0, 5.0)]);
+        assert_eq!((never.ramps().len(), steepest_rpm_s(&never).round()), (0, 100.0));
+        // two phases of one speed are not a triangle up to twice the speed
+        let same = of_speeds(&[(14.0, 1.0), (14.0, 1.0), (0.0, 1.0)]);
+        assert_eq!((same.ramps().len(), steepest_rpm_s(&same).round()), (0, 140.0));
+        // a move and a creeping speed that begins at once
+        let creeps = of_speeds(&[(7.0, 0.3), (14.0, 1.0), (7.0, 0.3), (3.0, 1.0), (0.0, 1.0)]);
+        assert_eq!(creeps.ramps(), [1]);
     }
 
     #[test]

@@ -102,7 +102,7 @@ impl ArmProblem<'_> {
                 StationSlot::Joint(moving) => state.momentum(slot, moving) * mover.acceleration_rad_s2,
                 _ => continue,
             };
-            largest.moving(&rest, &bearing.components(&ramp), loads.stop_factor);
+            largest.moving(&rest, &bearing.components(&ramp), mover.stop_factor);
         }
     }
 

@@ -24,8 +24,6 @@ pub(crate) struct BearingLoads {
     pub levers: Vec<Option<Lever>>,
     /// Whether the bearing in each slot can exclude a design. A bearing whose ratings are unknown cannot.
     pub checked: Vec<bool>,
-    /// Ratio of emergency deceleration to acceleration.
-    pub stop_factor: f64,
 }
 
 /// A joint that accelerates while the other joints are at rest.
@@ -34,6 +32,8 @@ pub(crate) struct Mover {
     pub slot: usize,
     /// Acceleration of the joint in normal operation \[rad/s²\].
     pub acceleration_rad_s2: f64,
+    /// Ratio of the deceleration in its emergency stop to this acceleration, at least 1.
+    pub stop_factor: f64,
 }
 
 /// The lever: the distance, along the axis of a joint, from the face of its flange to the point at which the link
@@ -128,7 +128,8 @@ impl BearingLoads {
             let motion = joint.motion(&space.motion, reach_m);
             // a passive joint moves only together with its driving joints, so it is not a mover of its own
             if joint.coupled.is_none() {
-                movers.push(Mover { slot, acceleration_rad_s2: motion.acceleration_rad_s2 });
+                let (acceleration_rad_s2, stop_factor) = (motion.acceleration_rad_s2, motion.stop.factor);
+                movers.push(Mover { slot, acceleration_rad_s2, stop_factor });
             }
             if has_bearing(&slots[slot], joint) {
                 levers[slot] = Some(Lever::new(space, piece, joint, piece_slots));
@@ -136,7 +137,7 @@ impl BearingLoads {
             }
         }
         movers.reverse();
-        Self { movers, levers, checked, stop_factor: space.motion.stop_factor() }
+        Self { movers, levers, checked }
     }
 
     /// Whether some joint has a bearing.

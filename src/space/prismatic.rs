@@ -27,9 +27,15 @@ impl RailDrive {
     /// acceleration, so the exact reading of Eq 8 gives mass times acceleration.
     pub(crate) fn motion(&self, asked: &MotionRequirement) -> JointMotion {
         let speed_m_s = self.max_speed_m_s.unwrap_or(asked.tip_speed_m_s);
-        let motion = asked.joint_motion(1.0, Some(speed_m_s)).with_linear_reading(LinearReading::Exact);
+        let motion = along_its_way(asked, speed_m_s).with_linear_reading(LinearReading::Exact);
         motion.of_joint(Some(speed_m_s), self.has_brake, None)
     }
+}
+
+/// The motion of a joint that slides, with metres in the place of radians. The tip moves as far as the joint does, so
+/// the lever is 1 whatever the smallest lever of joints that turn.
+fn along_its_way(asked: &MotionRequirement, speed_m_s: f64) -> JointMotion {
+    MotionRequirement { min_lever_m: 1.0, ..asked.clone() }.joint_motion(1.0, Some(speed_m_s))
 }
 
 /// A prismatic joint of a study.
@@ -55,10 +61,22 @@ impl SpacePrismatic {
         out
     }
 
-    /// Acceleration of the joint in its ramps \[m/s²\]: that of its sized drive, or that of the tip if the drive is given.
+    /// The motion of the joint, with metres in the place of radians: that of its sized drive, or that of the tip if the
+    /// drive is given.
+    fn motion(&self, asked: &MotionRequirement) -> JointMotion {
+        let sized = self.drive.as_ref().map(|drive| drive.motion(asked));
+        sized.unwrap_or_else(|| along_its_way(asked, asked.tip_speed_m_s))
+    }
+
+    /// Acceleration of the joint in its ramps \[m/s²\].
     pub(crate) fn acceleration_m_s2(&self, asked: &MotionRequirement) -> f64 {
-        let sized = self.drive.as_ref().map(|drive| drive.motion(asked).acceleration_rad_s2);
-        sized.unwrap_or(asked.tip_acceleration_m_s2())
+        self.motion(asked).acceleration_rad_s2
+    }
+
+    /// Deceleration of the joint in an emergency stop \[m/s²\], at least its acceleration in the ramps.
+    pub(crate) fn stop_m_s2(&self, asked: &MotionRequirement) -> f64 {
+        let motion = self.motion(asked);
+        motion.acceleration_rad_s2 * motion.stop.factor
     }
 
     /// The joint with the stiffness of the screw or rack `gear`.

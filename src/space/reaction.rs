@@ -29,6 +29,8 @@ pub(crate) struct Reaction {
 struct Mover {
     slot: usize,
     acceleration: f64,
+    /// Ratio of the deceleration in its emergency stop to the acceleration, at least 1.
+    stop_factor: f64,
 }
 
 impl ArmProblem<'_> {
@@ -56,19 +58,21 @@ impl ArmProblem<'_> {
             }
         })
         .ok()?;
-        let stop_factor = self.space().motion.stop_factor();
         let largest = |here: usize| {
             // the largest torque if accelerations are `times` those of the ramps, with the joint that moves
-            let with_mover = |times: f64| {
+            let with_mover = |times: fn(&Mover) -> f64| {
                 let held = |other: usize| {
-                    let ramp_nm = |at: usize| inertia_kgm2[here][other][at] * movers[other].acceleration;
-                    (0..cases.len()).map(|at| static_nm[here][at] + times * ramp_nm(at)).fold(0.0, f64::max)
+                    let acceleration = times(&movers[other]) * movers[other].acceleration;
+                    let held_nm =
+                        |at: usize| static_nm[here][at] + inertia_kgm2[here][other][at] * acceleration;
+                    (0..cases.len()).map(held_nm).fold(0.0, f64::max)
                 };
                 let others = (0..movers.len()).filter(|other| *other != here);
                 let all = others.map(|other| (held(other), self.piece_of_slot(movers[other].slot)));
                 all.max_by(|a, b| a.0.total_cmp(&b.0))
             };
-            let ((in_ramp_nm, ramps), (in_stop_nm, stops)) = (with_mover(1.0)?, with_mover(stop_factor)?);
+            let ((in_ramp_nm, ramps), (in_stop_nm, stops)) =
+                (with_mover(|_| 1.0)?, with_mover(|mover| mover.stop_factor)?);
             Some(Reaction {
                 piece: self.piece_of_slot(movers[here].slot),
                 ramps,
@@ -84,11 +88,15 @@ impl ArmProblem<'_> {
     fn movers(&self) -> Vec<Mover> {
         let motion = &self.space().motion;
         let of_joints = self.bearing_loads().movers.iter();
-        let of_joints =
-            of_joints.map(|mover| Mover { slot: mover.slot, acceleration: mover.acceleration_rad_s2 });
+        let of_joints = of_joints.map(|m| Mover {
+            slot: m.slot,
+            acceleration: m.acceleration_rad_s2,
+            stop_factor: m.stop_factor,
+        });
         let rail = |(piece, what): (usize, &SpacePiece)| {
             let SpacePiece::Prismatic(rail) = what else { return None };
-            Some(Mover { slot: self.slot_of_piece(piece), acceleration: rail.acceleration_m_s2(motion) })
+            let (slot, acceleration) = (self.slot_of_piece(piece), rail.acceleration_m_s2(motion));
+            Some(Mover { slot, acceleration, stop_factor: rail.stop_m_s2(motion) / acceleration })
         };
         let rails = self.space().pieces.iter().enumerate().filter_map(rail);
         let mut out: Vec<Mover> = of_joints.chain(rails).collect();

@@ -88,7 +88,7 @@ fn guides<'s>(problem: &'s ArmProblem) -> Vec<OnGuide<'s>> {
         let SpacePiece::Prismatic(rail) = piece else { return None };
         Some(OnGuide {
             joint: &rail.joint,
-            deceleration_m_s2: rail.acceleration_m_s2(motion) * motion.stop_factor(),
+            deceleration_m_s2: rail.stop_m_s2(motion),
             at_rest: Largest::default(),
             in_stop: Largest::default(),
         })

@@ -66,16 +66,23 @@ pub(super) fn duty_remarks(space: &DesignSpace) -> Vec<String> {
         })
     };
     let slower = space.joints().zip(reaches_m(space, sizing)).filter_map(remark);
+    let ramps = space.joints().filter_map(|(_, joint)| {
+        let numbers: Vec<String> = joint.duty.as_ref()?.ramps().iter().map(usize::to_string).collect();
+        let phases = if numbers.len() == 1 { "phase" } else { "phases" };
+        (!numbers.is_empty()).then(|| {
+            format!("Joint {}: {phases} {} of its duty count as ramps.", joint.name, numbers.join(", "))
+        })
+    });
     let has_no_ramps = |joint: &&SpaceJoint| joint.duty.as_ref().is_some_and(StatedDuty::moves_without_ramps);
     let without_ramps = space.joints().map(|(_, joint)| joint).filter(has_no_ramps).map(|joint| {
         format!(
-            "Joint {}: no phase of its duty is at half the speed of a neighbour, so that none is a ramp. Motor heat leaves out the \
+            "Joint {}: the speed of no phase of its duty is the mean of the speeds before and after it, so that none is a ramp. Motor heat leaves out the \
              inertia of the rotor, and speeds count as constant in each phase. Give ramps at their mean speed, and between a ramp up \
              and a ramp down a short phase at the speed that they reach.",
             joint.name
         )
     });
-    slower.chain(without_ramps).collect()
+    slower.chain(ramps).chain(without_ramps).collect()
 }
 
 /// Speeds that differ by less than this fraction count as equal: they were converted between units.

@@ -17,7 +17,7 @@ use super::harness::{harness_effects, harness_remark};
 use super::keys::{CONSTRAINTS, JOINT, LINK, MODELS, STUDY};
 use super::linkages::drivers_are_inboard;
 use super::motion::{duty_remarks, ramp_remark, read_duty, read_motion};
-use super::omissions::{actuators_remark, omissions, unchecked_remark};
+use super::omissions::{actuators_remark, omissions, roller_life_remark, unchecked_remark};
 use super::piece_names::check_names;
 use super::rail_keys::{OF_CATALOG_DRIVE, PRISMATIC};
 use super::rail_remarks::rail_remarks;
@@ -179,6 +179,7 @@ fn remarks_on(space: &DesignSpace, harness_kg_per_m: f64, catalogs: &Catalogs) -
     out.extend(fit_remarks(space, catalogs));
     out.extend(omissions(space));
     out.extend(actuators_remark(space, catalogs));
+    out.extend(roller_life_remark(space, catalogs));
     out.extend(unchecked_remark(space, catalogs));
     out.extend(cost_remark(space));
     out.extend(creep_remarks(space, catalogs));

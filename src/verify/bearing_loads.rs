@@ -25,7 +25,23 @@ pub(super) struct PosedBearing {
     rest: Components<Linear>,
     /// The five components of the load that the ramp of each joint adds, one entry per joint, base first. Each is a
     /// linear function of the inertias of the parts.
-    ramps: Vec<Components<Linear>>,
+    ramps: Vec<RampLoad>,
+}
+
+/// The load that the ramp of one joint adds.
+struct RampLoad {
+    components: Components<Linear>,
+    /// Ratio of the deceleration in the joint's stop to the acceleration in its ramp, at least 1.
+    stop_factor: f64,
+}
+
+/// How a joint moves while the others are at rest.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Mover {
+    /// Acceleration in a ramp \[rad/s²\].
+    pub acceleration_rad_s2: f64,
+    /// Ratio of the deceleration in a stop to this acceleration, at least 1.
+    pub stop_factor: f64,
 }
 
 /// Lower and upper bounds of the largest loads on a bearing over the cases treated so far. First index: at rest, in a
@@ -34,12 +50,12 @@ pub(super) struct PosedBearing {
 pub(super) struct Largest([[Span; 3]; 3]);
 
 /// The bearings of all joints in a case, base first; `None` for a joint whose bearing is not checked.
-/// `accelerations_rad_s2` has the acceleration of each joint in a ramp.
+/// `movers` says how each joint moves.
 pub(super) fn bearings(
     builder: &Builder,
     case: &LoadCase,
     checked: &[bool],
-    accelerations_rad_s2: &[f64],
+    movers: &[Mover],
 ) -> Vec<Option<PosedBearing>> {
     let joints = checked.len();
     let is_checked = |joint: &usize| checked[*joint];
@@ -51,15 +67,16 @@ pub(super) fn bearings(
     (0..joints)
         .map(|joint| {
             checked[joint].then(|| {
-                let ramp = |(mover, acceleration_rad_s2): (usize, &f64)| {
-                    std::array::from_fn(|component| {
+                let ramp = |(number, &Mover { acceleration_rad_s2, stop_factor }): (usize, &Mover)| {
+                    let components = std::array::from_fn(|component| {
                         let row = first + component;
-                        let entry = row * (row + 1) / 2 + mover;
+                        let entry = row * (row + 1) / 2 + number;
                         let per = per_inertia.iter().map(|per| per[entry] * acceleration_rad_s2);
                         Linear { fixed: fixed[entry] * acceleration_rad_s2, per_load: per.collect() }
-                    })
+                    });
+                    RampLoad { components, stop_factor }
                 };
-                let ramps = accelerations_rad_s2.iter().enumerate().map(ramp).collect();
+                let ramps = movers.iter().enumerate().map(ramp).collect();
                 first += COMPONENTS;
                 PosedBearing { rest: at_rest(builder, joint), ramps }
             })
@@ -91,15 +108,14 @@ fn at_rest(builder: &Builder, joint: usize) -> Components<Linear> {
 
 impl PosedBearing {
     /// Raises `largest` to the loads on this bearing in this case. `loads` and `inertias` are the intervals of the
-    /// weights and inertias of the parts. `stop_factor` is the acceleration in a stop divided by the acceleration in a
-    /// ramp.
-    pub(super) fn load(&self, loads: &[Span], inertias: &[Span], stop_factor: f64, largest: &mut Largest) {
+    /// weights and inertias of the parts.
+    pub(super) fn load(&self, loads: &[Span], inertias: &[Span], largest: &mut Largest) {
         let rest = self.rest.each_ref().map(|component| component.over(loads));
         let [at_rest, running, in_stop] = &mut largest.0;
         take(at_rest, &rest);
-        for ramp in &self.ramps {
-            let ramp = ramp.each_ref().map(|component| component.over(inertias));
-            for (load, factor) in [(&mut *running, 1.0), (&mut *in_stop, stop_factor)] {
+        for RampLoad { components, stop_factor } in &self.ramps {
+            let ramp = components.each_ref().map(|component| component.over(inertias));
+            for (load, factor) in [(&mut *running, 1.0), (&mut *in_stop, *stop_factor)] {
                 for signed in [factor, -factor] {
                     take(load, &std::array::from_fn(|i| rest[i].plus(ramp[i].times(signed))));
                 }

@@ -82,7 +82,7 @@ impl Skeleton {
         let asked = self.asked(joint, members);
         let (statics, inertia) = (asked.static_nm, asked.inertia_kgm2);
         let (less, more) = (1.0 - ROUNDING, 1.0 + ROUNDING);
-        let [least, most] = self.bearing_demands(joint, duty, members);
+        let [least, most] = self.bearing_demands(joint, members);
         let [widest, narrowest] = self.rooms(joint, members);
         [
             Demand {
@@ -101,12 +101,12 @@ impl Skeleton {
     /// Lower and upper bound, over the members, of the largest loads on a joint's bearing in the sizing cases. The
     /// moments are taken at the face of the joint's flange, or at the centre of the bearing if the study states the
     /// lever. Zero if the bearing is not checked.
-    fn bearing_demands(&self, joint: usize, duty: &Duty, members: &Members) -> [BearingDemand; 2] {
+    fn bearing_demands(&self, joint: usize, members: &Members) -> [BearingDemand; 2] {
         let mut largest = Largest::default();
         for (pose, bearings) in self.poses.iter().zip(&self.bearings) {
             if let Some(Some(bearing)) = bearings.get(joint) {
                 let inertias: Vec<Span> = members.inertias(pose.water).collect();
-                bearing.load(&members.loads[pose.water], &inertias, duty.stop_factor, &mut largest);
+                bearing.load(&members.loads[pose.water], &inertias, &mut largest);
             }
         }
         let levers_m = match self.levers[joint] {

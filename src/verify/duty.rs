@@ -4,6 +4,7 @@
 //! from it.
 
 use super::bearing::BearingDemand;
+use super::courses::{courses, is_same_speed};
 use super::demand::{Demand, QUANTITIES, Quantity};
 use super::fit::ANY_WIDTH;
 use super::heat::{CycleShares, HeatDemand, StatedPhase, stated_phases};
@@ -72,10 +73,14 @@ impl Duty {
     /// the joint's axis \[m\].
     pub(super) fn new(motion: &AskedMotion, reach_m: f64, joint: &AskedJoint) -> Self {
         let speed_rad_s = speed_rad_s(motion, reach_m, joint);
-        let ramp_s = first_ramp_s(&joint.duty).unwrap_or(motion.ramp_time_s);
+        let ramp_s = ramp_s(&joint.duty, motion.ramp_time_s);
         let acceleration_rad_s2 = speed_rad_s / ramp_s;
         let tip_m_s2 = motion.tip_acceleration_m_s2();
-        let stop_ratio = motion.emergency_deceleration_m_s2.map_or(2.0, |stop_m_s2| stop_m_s2 / tip_m_s2);
+        let lever_m = reach_m.max(motion.min_lever_m);
+        let stop_ratio = match motion.emergency_deceleration_m_s2 {
+            Some(stop_m_s2) if acceleration_rad_s2 > 0.0 => stop_m_s2 / (lever_m * acceleration_rad_s2),
+            _ => 2.0,
+        };
         let (linear_per_inertia, linear_per_static) = match motion.linear_torque {
             LinearTorque::OfInertia => (acceleration_rad_s2, 0.0),
             LinearTorque::OfStaticTorque => (0.0, tip_m_s2 / motion.gravity_m_s2),
@@ -155,10 +160,19 @@ fn speed_rad_s(motion: &AskedMotion, reach_m: f64, joint: &AskedJoint) -> f64 {
     }
 }
 
-/// Duration of the first phase \[s\] in which a duty stated in numbers speeds up. `None` if it has no such phase.
-fn first_ramp_s(duty: &[AskedDutyPhase]) -> Option<f64> {
-    let ramp = stated_phases(duty, false).iter().position(StatedPhase::speeds_up)?;
-    Some(duty[ramp].time_s)
+/// Time in which a joint with a duty stated in numbers would reach its largest speed if it sped up as fast as it ever does
+/// \[s\]. Where the duty jumps from one speed to another, it takes `jump_s` \[s\].
+fn ramp_s(duty: &[AskedDutyPhase], jump_s: f64) -> f64 {
+    let courses = courses(duty);
+    let next = courses.iter().cycle().skip(1);
+    let jumps = courses.iter().zip(next).map(|(now, next)| match is_same_speed(now.to_rpm, next.from_rpm) {
+        true => 0.0,
+        false => (next.from_rpm - now.to_rpm).abs() / jump_s,
+    });
+    let rates = courses.iter().map(|course| course.rpm_per_s().abs());
+    let steepest_rpm_s = rates.chain(jumps).fold(0.0, f64::max);
+    let fastest_rpm = duty.iter().map(|phase| phase.speed_rpm).fold(0.0, f64::max);
+    if steepest_rpm_s > 0.0 { fastest_rpm / steepest_rpm_s } else { jump_s }
 }
 
 impl AskedMotion {

@@ -5,6 +5,7 @@
 //! act against whichever side drives. The worse of the two directions counts. The search itself uses a formula for
 //! lifting alone.
 
+use super::courses::courses;
 use super::question::{AskedDutyPhase, AskedStage};
 use crate::catalog::gear::{Gear, GearKind};
 use crate::catalog::motor::Motor;
@@ -180,31 +181,14 @@ pub(super) struct StatedPhase {
     acceleration_rad_s2: f64,
 }
 
-impl StatedPhase {
-    /// Whether the joint speeds up in this phase.
-    pub(super) fn speeds_up(&self) -> bool {
-        self.acceleration_rad_s2 > 0.0
-    }
-}
-
-/// The phases of a stated duty. A phase at half the speed of the phase after or before it is taken as the ramp between
-/// rest and that speed. A speed counts as half if it differs from half by less than 5 %, because speeds are printed
-/// with few digits. With a brake, phases at rest need no motor torque and are left out.
+/// The phases of a stated duty. With a brake, phases at rest need no motor torque and are left out.
 pub(super) fn stated_phases(duty: &[AskedDutyPhase], has_brake: bool) -> Vec<StatedPhase> {
     let whole_s: f64 = duty.iter().map(|phase| phase.time_s).sum();
-    let full_rad_s = |place: usize| duty[place % duty.len()].speed_rpm * PI / 30.0;
-    let ramps = |place: usize, to: usize| {
-        let (half, full) = (full_rad_s(place), full_rad_s(to));
-        full > 0.0 && (half / full - 0.5).abs() < 0.025 && duty[place].time_s > 0.0
-    };
-    let of_phase = |(place, phase): (usize, &AskedDutyPhase)| {
-        let (next, before) = (place + 1, place + duty.len() - 1);
-        let acceleration_rad_s2 = match (ramps(place, next), ramps(place, before)) {
-            (true, _) => full_rad_s(next) / phase.time_s,
-            (false, true) => -full_rad_s(before) / phase.time_s,
-            (false, false) => 0.0,
-        };
-        StatedPhase { share: phase.time_s / whole_s, torque_nm: phase.torque_nm, acceleration_rad_s2 }
+    let courses = courses(duty);
+    let of_phase = |(place, phase): (usize, &AskedDutyPhase)| StatedPhase {
+        share: phase.time_s / whole_s,
+        torque_nm: phase.torque_nm,
+        acceleration_rad_s2: courses[place].rpm_per_s() * PI / 30.0,
     };
     let moves = |(_, phase): &(usize, &AskedDutyPhase)| !has_brake || phase.speed_rpm != 0.0;
     duty.iter().enumerate().filter(moves).map(of_phase).collect()

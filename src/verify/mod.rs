@@ -33,6 +33,7 @@ pub(crate) mod bound;
 pub(crate) mod boxes;
 pub(crate) mod branch_score;
 pub(crate) mod carriers;
+pub(crate) mod courses;
 pub(crate) mod demand;
 pub(crate) mod drive_range;
 pub(crate) mod drives;

@@ -1,6 +1,6 @@
 //! Data that all designs of a question have in common, and the options of each joint and tube.
 
-use super::bearing_loads::{PosedBearing, bearings};
+use super::bearing_loads::{Mover, PosedBearing, bearings};
 use super::carriers::{carriers, is_tube};
 use super::drives::{DriveOptions, Ties};
 use super::duty::Duty;
@@ -92,14 +92,14 @@ impl Skeleton {
 
     fn pose_all(&mut self, question: &Question, structure: &Structure, offers: &[JointOffers]) {
         let checked: Vec<bool> = offers.iter().map(JointOffers::checks_bearing).collect();
-        let accelerations_rad_s2 = accelerations_rad_s2(question);
+        let movers = movers(question);
         for (index, case) in question.cases.iter().enumerate() {
             let layout = Layout::new(structure, case);
             let builder = Builder::new(question, structure, case, &layout, &self.coordinates);
             let water = self.waters.iter().position(|other| *other == water_of(structure, case));
             let pose = Pose::new(question, index, water.unwrap_or_default(), &builder);
             self.bearings.push(match pose.sizing {
-                true => bearings(&builder, case, &checked, &accelerations_rad_s2),
+                true => bearings(&builder, case, &checked, &movers),
                 false => Vec::new(),
             });
             self.poses.push(pose);
@@ -178,11 +178,12 @@ fn levers(question: &Question) -> Vec<Lever> {
     levers
 }
 
-/// Acceleration of every joint in its ramp \[rad/s²\], base to tip.
-fn accelerations_rad_s2(question: &Question) -> Vec<f64> {
+/// How every joint moves in its ramp and in its stop, base to tip.
+fn movers(question: &Question) -> Vec<Mover> {
     let joints = question.joints().zip(reaches_m(question));
     let duty = |(joint, reach_m): (&AskedJoint, f64)| {
-        Duty::new(&question.motion, reach_m, joint).acceleration_rad_s2
+        let duty = Duty::new(&question.motion, reach_m, joint);
+        Mover { acceleration_rad_s2: duty.acceleration_rad_s2, stop_factor: duty.stop_factor }
     };
     joints.map(duty).collect()
 }

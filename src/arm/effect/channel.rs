@@ -1,6 +1,8 @@
 //! Measuring channels: the kinds of reading that a campaign has, and how an instrument turns an actual value into a
 //! reading.
 
+use nalgebra::{Matrix3, Vector3};
+
 /// A kind of reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Channel {
@@ -43,7 +45,8 @@ impl Channel {
 }
 
 /// How a channel turns an actual value into a reading: `bent(factor x gain x value) + bias + drift x (row - 1)`, in
-/// the unit of the channel's file. The nonlinearity is `bent(d) = d + bend[0] d |d| / s + bend[1] d³ / s²`, where s
+/// the unit of the channel's file. In a displacement the value is the component of `d + mix d`, where d is the actual
+/// displacement. The nonlinearity is `bent(d) = d + bend[0] d |d| / s + bend[1] d³ / s²`, where s
 /// is `bend_scale`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
@@ -57,6 +60,9 @@ pub struct Reading {
     pub outlier_rows: Vec<usize>,
     /// Further factor on each component; channels with one component use the first number only.
     pub gain: [f64; 3],
+    /// What each direction also shows of the others, for axes that are turned or not square: row x has the parts of the
+    /// actual y and z that the reading in x shows. Zero on the diagonal, and for channels with one component.
+    pub mix: Matrix3<f64>,
     /// Coefficients of the nonlinearity. At a reading of `bend_scale`, each is the deviation from a straight line as a
     /// fraction of this reading.
     pub bend: [f64; 2],
@@ -72,6 +78,7 @@ impl Default for Reading {
             drift_per_row: [0.0; 3],
             outlier_rows: Vec::new(),
             gain: [1.0; 3],
+            mix: Matrix3::zeros(),
             bend: [0.0; 2],
             bend_scale: 1.0,
         }
@@ -79,7 +86,13 @@ impl Default for Reading {
 }
 
 impl Reading {
-    /// The reading that the instrument shows for the actual value `truth`. `component` (0 to 2) is the direction of a
+    /// The displacement along the axes of the instrument, of which each component is then read by [`Reading::of`]. `actual` is
+    /// the actual displacement along the axes that the campaign states, in any unit.
+    pub fn along_own_axes(&self, actual: &Vector3<f64>) -> Vector3<f64> {
+        actual + self.mix * actual
+    }
+
+    /// The reading that the instrument shows for the value `truth` along its own axis. `component` (0 to 2) is the direction of a
     /// displacement, `row` is the row of the file, counted from 0.
     pub fn of(&self, truth: f64, component: usize, row: usize) -> f64 {
         let straight = self.factor * self.gain[component] * truth;

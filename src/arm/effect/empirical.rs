@@ -1,7 +1,7 @@
 //! `empirical`: a law without a name, as it was found in readings. At a joint it is a further twist, which is a
 //! polynomial of the torque, a housing that tilts about two axes unequally, or a compliance that changes in the course
 //! of the tests. At the base it is a tilt that differs about x and y. At a channel it is a nonlinearity, a gain for
-//! each direction, or a rotation of the base between two rows.
+//! each direction, a rotation of the base between two rows, or axes that each show a part of the others.
 
 use super::channel::Channel;
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
@@ -43,6 +43,10 @@ pub(crate) const BASE_TURN: &str = "base_turn_rad";
 /// Name of the parameter with the first row after the base turned, counted from 1.
 pub(crate) const BASE_TURN_ROW: &str = "base_turn_from_row";
 
+/// Name of the parameter with the parts of the other directions that the reading in each direction shows: of y and z in
+/// x, of x and z in y, of x and y in z.
+pub(crate) const MIX: &str = "mix";
+
 const OF_JOINT: &[Parameter] = &[
     optional(ODD_TWIST, 2, -0.1, 0.1, 0.0),
     optional(EVEN_TWIST, 2, -0.1, 0.1, 0.0),
@@ -69,6 +73,7 @@ const OF_STATIC: &[Parameter] = &[
     OF_CHANNEL[2],
     optional(BASE_TURN, 3, -0.1, 0.1, 0.0),
     optional(BASE_TURN_ROW, 1, 1.0, 1e9, 1.0),
+    optional(MIX, 6, -2.0, 2.0, 0.0),
 ];
 
 /// A parameter that changes nothing where it is left out.
@@ -120,18 +125,19 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
         }
         soften(softening, at, subject);
     } else if let Some(reading) = subject.channel_mut(at) {
-        let [a, b, bend_scale, x, y, z, ref turn @ ..] = numbers[..] else { return };
+        let [a, b, bend_scale, x, y, z, ref of_static @ ..] = numbers[..] else { return };
         // a channel may have two laws, one with a nonlinearity and one with gains, and both act; so a law without a
         // nonlinearity must not erase the nonlinearity of the other law
         if [a, b] != [0.0; 2] {
             (reading.bend, reading.bend_scale) = ([a, b], bend_scale);
         }
         reading.gain.iter_mut().zip([x, y, z]).for_each(|(own, gain)| *own *= gain);
-        if let ([x, y, z, from_row], Some(setup)) = (turn, subject.setup_mut(at)) {
-            let turn_rad = Vector3::new(*x, *y, *z);
-            if turn_rad != Vector3::zeros() {
-                setup.turned = Some(Turned { turn_rad, from_row: (from_row.max(1.0) - 1.0) as usize });
-            }
+        let [x, y, z, from_row, ref mix @ ..] = of_static[..] else { return };
+        let [xy, xz, yx, yz, zx, zy] = mix[..] else { return };
+        reading.mix += Matrix3::new(0.0, xy, xz, yx, 0.0, yz, zx, zy, 0.0);
+        let turn_rad = Vector3::new(x, y, z);
+        if let Some(setup) = subject.setup_mut(at).filter(|_| turn_rad != Vector3::zeros()) {
+            setup.turned = Some(Turned { turn_rad, from_row: (from_row.max(1.0) - 1.0) as usize });
         }
     }
 }
@@ -217,6 +223,19 @@ mod tests {
         assert!((along - Vector3::new(2.5e-5, 0.0, 0.0)).norm() < 1e-15, "{along}");
         // the forearm hangs along the other axis
         assert!(share_of([1e-5, 0.0]).norm() < 1e-15);
+    }
+
+    #[test]
+    fn an_axis_shows_a_part_of_the_others() {
+        let mut subject = super::super::validate::testing::two_link_subject();
+        let plain = [0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+        let mixing = [&plain[..], &[0.01, 0.02, 0.03, 0.04, 0.05, 0.06]].concat();
+        apply(&mixing, "static", &mut subject);
+        let reading = &subject.channels[Channel::Static as usize];
+        let seen = reading.along_own_axes(&Vector3::new(1.0, 10.0, 100.0));
+        let expected = Vector3::new(1.0 + 0.1 + 2.0, 10.0 + 0.03 + 4.0, 100.0 + 0.05 + 0.6);
+        assert!((seen - expected).norm() < 1e-12, "{seen}");
+        assert_eq!(subject.setups[Channel::Static as usize].turned, None);
     }
 
     #[test]

@@ -158,17 +158,21 @@ pub(crate) struct StaticChanges {
     pub lift: bool,
     /// For each joint, whether its torsion law differs.
     pub laws: Vec<bool>,
+    /// Whether the axes of the instrument or a turn of the base differ. Deflections are then the same, but not what is
+    /// seen of them.
+    pub seen: bool,
 }
 
 impl StaticChanges {
     /// States that all numbers differ, for an arm with this number of joints.
     pub(crate) fn all(joints: usize) -> Self {
-        Self { linear: true, weights: true, payload: true, lift: true, laws: vec![true; joints] }
+        Self { linear: true, weights: true, payload: true, lift: true, laws: vec![true; joints], seen: true }
     }
 
     /// Whether no number differs, so that all static readings are the same.
     pub(crate) fn is_none(&self) -> bool {
-        !(self.linear || self.weights || self.payload || self.lift || self.laws.contains(&true))
+        let deflects = self.linear || self.weights || self.payload || self.lift || self.laws.contains(&true);
+        !(deflects || self.seen)
     }
 }
 
@@ -385,7 +389,9 @@ impl Coefficients {
         let is_steady = [own, others].iter().all(|test| test.softening.is_empty());
         let is_linear = self.lift.is_none() && is_steady && self.laws.iter().all(is_proportional);
         let weights = is_heavier && (is_other || !is_linear);
-        StaticChanges { linear, weights, payload, lift, laws }
+        let mix = |c: &Self| c.channels[Channel::Static as usize].mix;
+        let seen = own.turned != others.turned || mix(self) != mix(other);
+        StaticChanges { linear, weights, payload, lift, laws, seen }
     }
 
     /// Whether this subject and `other` have the same natural frequencies and the same errors of the modal channel.

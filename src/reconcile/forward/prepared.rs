@@ -226,27 +226,13 @@ impl Forward {
         for pose in &self.statics {
             let state = pose.state(&self.layout, coefficients);
             for load in 0..pose.count() {
-                let mut true_mm = pose.displacement_mm(&state, load);
+                let seen_mm = pose.seen_mm(&state, coefficients, load);
                 // every component of a row is read at the same time
                 let row = pose.measured(load).next().map_or(0, |(_, datum)| self.data[datum].row);
-                if let Some(turned) = coefficients.tests[Channel::Static as usize].turned {
-                    true_mm += 1e3 * turned.moved_m(&pose.geometry.tip_m, row);
-                }
-                out.push(std::array::from_fn(|c| reading.of(true_mm[c], c, row)));
+                out.push(std::array::from_fn(|c| reading.of(seen_mm[c], c, row)));
             }
         }
         out
-    }
-
-    /// Adds to the displacements in `out` the movement of the tip that is due to a turn of the base in the course of
-    /// the tests \[mm\].
-    fn turn(&self, coefficients: &Coefficients, out: &mut [f64]) {
-        let Some(turned) = coefficients.tests[Channel::Static as usize].turned else { return };
-        for pose in &self.statics {
-            for (component, datum) in (0..pose.count()).flat_map(|load| pose.measured(load)) {
-                out[datum] += 1e3 * turned.moved_m(&pose.geometry.tip_m, self.data[datum].row)[component];
-            }
-        }
     }
 
     /// Writes the predictions for static and bench data to `out`. The entries of modal data stay as they are. Returns
@@ -257,7 +243,7 @@ impl Forward {
         }
         let state = |pose: &StaticPose| {
             let state = pose.state(&self.layout, coefficients);
-            pose.write(&state, out);
+            pose.write(&state, coefficients, out);
             state
         };
         self.statics.iter().map(state).collect()
@@ -288,7 +274,7 @@ impl Forward {
             for &k in &changed {
                 moved.copy_from(state);
                 pose.update(&self.layout, &to[k], &changes[k], &mut moved);
-                pose.write(&moved, out.column_mut(k).as_mut_slice());
+                pose.write(&moved, &to[k], out.column_mut(k).as_mut_slice());
             }
         }
     }
@@ -296,7 +282,6 @@ impl Forward {
     /// Adds the errors of the measuring channels: turns the value of each datum in `out` into the reading that the
     /// channel shows.
     pub fn read(&self, coefficients: &Coefficients, out: &mut [f64]) {
-        self.turn(coefficients, out);
         for (value, datum) in out.iter_mut().zip(&self.data) {
             *value = coefficients.channels[datum.channel as usize].of(*value, datum.component, datum.row);
         }

@@ -484,11 +484,26 @@ impl StaticPose {
         state.lifted_rad.extend(state.wrenches.iter().map(lifted));
     }
 
-    /// Writes the measured components of the tip displacement under each load to their data in `out` \[mm\].
-    pub(crate) fn write(&self, state: &StaticState, out: &mut [f64]) {
+    /// Displacement of the tip under the load with index `load` along the axes of the instrument \[mm\]. It contains a turn
+    /// of the base in the course of the tests.
+    pub(crate) fn seen_mm(
+        &self,
+        state: &StaticState,
+        coefficients: &Coefficients,
+        load: usize,
+    ) -> Vector3<f64> {
+        let mut moved_mm = self.displacement_mm(state, load);
+        if let Some(turned) = coefficients.tests[Channel::Static as usize].turned {
+            moved_mm += 1e3 * turned.moved_m(&self.geometry.tip_m, self.loads[load].when.row);
+        }
+        coefficients.channels[Channel::Static as usize].along_own_axes(&moved_mm)
+    }
+
+    /// Writes the measured components of [`seen_mm`](Self::seen_mm) under each load to their data in `out` \[mm\].
+    pub(crate) fn write(&self, state: &StaticState, coefficients: &Coefficients, out: &mut [f64]) {
         for load in 0..self.loads.len() {
-            let moved = self.displacement_mm(state, load);
-            self.measured(load).for_each(|(component, datum)| out[datum] = moved[component]);
+            let seen_mm = self.seen_mm(state, coefficients, load);
+            self.measured(load).for_each(|(component, datum)| out[datum] = seen_mm[component]);
         }
     }
 

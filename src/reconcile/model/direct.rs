@@ -75,7 +75,8 @@ impl<'a> Direct<'a> {
             let loaded = self.posed(&chain, pose, &row.payload, row.force_n);
             let slipped_m = turned.map_or(Vector3::zeros(), |t| t.moved_m(&unloaded.tip_m, row.row));
             let d = tip_m(&loaded, &mut play) - (unloaded_m + lag) + slipped_m;
-            out.push(std::array::from_fn(|c| reading.of(1e3 * d[c], c, row.row)));
+            let seen_mm = reading.along_own_axes(&(1e3 * d));
+            out.push(std::array::from_fn(|c| reading.of(seen_mm[c], c, row.row)));
         }
         out
     }

@@ -4,13 +4,14 @@
 //! [`unnamed`](super::unnamed) asks whether a law competes with named effects, with the model made linear. Here a law
 //! becomes an effect of the arm, so that a corrected arm can have it: a further twist of a joint as a polynomial of its
 //! torque, a housing or base that tilts unequally about two axes, a stiffness of a joint that changes with the order of
-//! the tests, readings that bend or have a gain in each direction, or a base that turned once.
+//! the tests, readings that bend, have a gain in each direction or mix the directions, or a base that turned once.
 
 use super::search::{Scored, Search};
 use crate::arm::BASE;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::empirical::{
-    BASE_TURN, BEND, EVEN_TWIST, GAIN, KIND, LEAN, ODD_TWIST, SOFTENING, SOFTENING_REFERENCE, SOFTENING_ROWS,
+    BASE_TURN, BEND, EVEN_TWIST, GAIN, KIND, LEAN, MIX, ODD_TWIST, SOFTENING, SOFTENING_REFERENCE,
+    SOFTENING_ROWS,
 };
 use crate::arm::effect::kind::{Absent, Parameter, Scale};
 use crate::arm::structure::Piece;
@@ -39,6 +40,8 @@ const SOFTENING_IN: [Channel; 2] = [Channel::Static, Channel::Modal];
 /// Values from which fits start, for the number of rows in which 63 % of a joint's softening takes place, as fractions
 /// of the rows of the file.
 const SOFTENED_AFTER: [f64; 2] = [0.08, 0.5];
+/// Place of the row of a base's turn among the numbers of a law of displacements.
+const TURN_ROW: usize = 9;
 /// Smallest number of poses that must come before a turn of the base, and of poses that must come after it.
 const FEWEST_POSES: usize = 2;
 
@@ -66,6 +69,7 @@ pub(crate) fn laws(forward: &Forward, baseline: &Fit, weights: &Weights) -> Vec<
             out.extend(readings(channel, largest));
         }
     }
+    out.extend(mixing(forward));
     out.extend(lean(forward));
     out.extend(most_telling_row(forward, baseline, weights).map(base_turn));
     out
@@ -110,6 +114,32 @@ fn upright() -> Vec<Number> {
     vec![Stated(0.0); 2]
 }
 
+/// The candidate that each direction of the displacements also shows a part of the others. `None` if there are no
+/// displacements.
+fn mixing(forward: &Forward) -> Option<Candidate> {
+    let statics = &forward.data[forward.range(Channel::Static)];
+    let is_measured = |component: usize| statics.iter().any(|datum| datum.component == component);
+    let part = Parameter { count: 6, ..Parameter::number(MIX, -0.5, 0.5, 0.05, Scale::Linear) };
+    let of_component = [0, 0, 1, 1, 2, 2].map(is_measured);
+    let numbers = of_component.map(|measured| if measured { Free } else { Stated(0.0) });
+    let mut candidate = law(Channel::Static.word(), part, 0.0);
+    candidate.free_parameters.retain(|free| of_component[free.component]);
+    candidate.starts = vec![candidate.free_parameters.iter().map(|free| free.u(0.0)).collect()];
+    candidate.numbers =
+        [vec![Stated(0.0), Stated(0.0)], vec![Stated(1.0); 4], still(), numbers.to_vec()].concat();
+    (!statics.is_empty()).then_some(candidate)
+}
+
+/// The numbers of a base that did not turn in the course of the displacements.
+fn still() -> Vec<Number> {
+    [0.0, 0.0, 0.0, 1.0].map(Stated).to_vec()
+}
+
+/// The numbers of an instrument whose directions do not mix.
+fn square() -> Vec<Number> {
+    vec![Stated(0.0); 6]
+}
+
 /// The candidate that the base tilts about world x and about world y with a compliance of its own for each. `None` if
 /// no joint is compliant, or if a piece of the arm has the name of the base.
 fn lean(forward: &Forward) -> Option<Candidate> {
@@ -145,7 +175,7 @@ fn leaning(forward: &Forward, at: &str, numbers: Vec<Number>) -> Option<Candidat
 fn base_turn(from_row: usize) -> Candidate {
     let turn = Parameter { count: 3, ..Parameter::number(BASE_TURN, -0.1, 0.1, 1e-4, Scale::Linear) };
     let straight = vec![Stated(0.0), Stated(0.0), Stated(1.0), Stated(1.0), Stated(1.0), Stated(1.0)];
-    let numbers = [straight, vec![Free; 3], vec![Stated((from_row + 1) as f64)]];
+    let numbers = [straight, vec![Free; 3], vec![Stated((from_row + 1) as f64)], square()];
     Candidate { numbers: numbers.concat(), ..law(Channel::Static.word(), turn, 0.0) }
 }
 
@@ -199,6 +229,7 @@ pub(crate) fn may_be(candidate: &Candidate) -> &'static str {
         Some(BEND) => {
             "it may be an instrument that is not straight, or a displacement too large for a straight law"
         }
+        Some(MIX) => "it may be an instrument that is turned, or whose axes are not square",
         _ => "it may be an instrument whose axes have gains of their own, or are not square",
     }
 }
@@ -217,11 +248,12 @@ pub(crate) fn in_words(candidate: &Candidate) -> String {
         }
         Some(LEAN) if at == BASE => format!("a {at} that tilts about x and y unequally"),
         Some(LEAN) => format!("a housing of {at} that tilts about two axes unequally"),
-        Some(BASE_TURN) => match candidate.numbers.last() {
+        Some(BASE_TURN) => match candidate.numbers.get(TURN_ROW) {
             Some(Stated(row)) => format!("a base that turned before row {row} of the {at} readings"),
             _ => format!("a base that turned in the course of the {at} readings"),
         },
         Some(BEND) => format!("{at} readings that bend"),
+        Some(MIX) => format!("{at} readings that mix the directions"),
         _ => format!("{at} readings with a gain of their own in each direction"),
     }
 }
@@ -277,23 +309,19 @@ fn twists(joint: &str, torque_nm: f64, twist_rad: f64) -> [Candidate; 2] {
 /// The laws of a channel's readings as candidates: a nonlinear characteristic, and a gain for each direction if the
 /// channel has three components. `largest` is the largest reading, in its unit.
 fn readings(channel: Channel, largest: f64) -> Vec<Candidate> {
-    // a base that turned shows in displacements only
-    let still = if channel == Channel::Static {
-        [vec![Stated(0.0); 3], vec![Stated(1.0)]].concat()
-    } else {
-        Vec::new()
-    };
+    // a base that turned, and directions that mix, show in displacements only
+    let of_static = if channel == Channel::Static { [still(), square()].concat() } else { Vec::new() };
     let bend = Parameter { count: 2, ..Parameter::number(BEND, -1.0, 1.0, 0.1, Scale::Linear) };
     let bent = law(channel.word(), bend, 0.0);
     let mut out = vec![Candidate {
-        numbers: [vec![Free, Free, Stated(largest)], vec![Stated(1.0); 3], still.clone()].concat(),
+        numbers: [vec![Free, Free, Stated(largest)], vec![Stated(1.0); 3], of_static.clone()].concat(),
         ..bent
     }];
     if channel.components() == 3 {
         let gain = Parameter::vector(GAIN, 0.5, 2.0, 1.0).absent(Absent::AtOne);
         let gains = law(channel.word(), gain, 1.0);
         out.push(Candidate {
-            numbers: [vec![Stated(0.0), Stated(0.0), Stated(1.0)], vec![Free; 3], still].concat(),
+            numbers: [vec![Stated(0.0), Stated(0.0), Stated(1.0)], vec![Free; 3], of_static].concat(),
             ..gains
         });
     }

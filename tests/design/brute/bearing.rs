@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 
 use super::arm::{Body, Chosen, Link, section_axes};
 use super::catalog::{Catalog, Row};
-use super::demand::{axis_in, bodies, speed_rad_s};
+use super::demand::{axis_in, bodies, speed_rad_s, stop_factor};
 use super::study::{Piece, Pose, Posed, Study};
 
 /// The numbers of a bearing; blank ones are not checked.
@@ -178,7 +178,11 @@ pub fn loads(study: &Study, sizing: &[(&Pose, Posed)], index: usize, outboard: &
             let ramp = inertia_forces(&moved, &alpha, &posed.places[mover].start_m, &at_m);
             for sign in [1.0, -1.0] {
                 take(&mut largest.running, &rest.with(&ramp, sign), &axis);
-                take(&mut largest.in_stop, &rest.with(&ramp, sign * study.motion.stop_factor), &axis);
+                take(
+                    &mut largest.in_stop,
+                    &rest.with(&ramp, sign * stop_factor(study, sizing, mover)),
+                    &axis,
+                );
             }
         }
     }

@@ -18,6 +18,7 @@ pub struct Torques {
 pub struct Demand {
     pub speed_rad_s: f64,
     pub acceleration_rad_s2: f64,
+    pub stop_factor: f64,
     /// The largest static torque of all sizing poses, and the largest linear torque of all.
     pub worst: Torques,
     /// The largest loads on the output bearing.
@@ -50,6 +51,7 @@ impl Demand {
                 in_stop: between(&self.bearing.at_rest, &self.bearing.in_stop, factor),
                 ..self.bearing
             },
+            ..*self
         }
     }
 }
@@ -70,15 +72,26 @@ pub fn axis_in(study: &Study, posed: &Posed, index: usize) -> Unit<Vector3<f64>>
     Unit::new_normalize(posed.places[index].frame * axis)
 }
 
-/// Largest speed of the joint at `index`.
-pub fn speed_rad_s(study: &Study, sizing: &[(&Pose, Posed)], index: usize) -> f64 {
-    let Piece::Joint { max_speed_rad_s, .. } = &study.pieces[index] else { panic!("not a joint") };
+/// Largest distance of the tip from the axis of the joint at `index`, and at least the smallest lever.
+fn lever_m(study: &Study, sizing: &[(&Pose, Posed)], index: usize) -> f64 {
     let reach_m = sizing.iter().map(|(_, posed)| {
         let to_tip = posed.tip_m - posed.places[index].start_m;
         to_tip.cross(&axis_in(study, posed, index)).norm()
     });
-    let lever_m = reach_m.fold(study.motion.min_lever_m, f64::max);
-    max_speed_rad_s.unwrap_or(study.motion.tip_speed_m_s / lever_m)
+    reach_m.fold(study.motion.min_lever_m, f64::max)
+}
+
+/// Largest speed of the joint at `index`.
+pub fn speed_rad_s(study: &Study, sizing: &[(&Pose, Posed)], index: usize) -> f64 {
+    let Piece::Joint { max_speed_rad_s, .. } = &study.pieces[index] else { panic!("not a joint") };
+    max_speed_rad_s.unwrap_or(study.motion.tip_speed_m_s / lever_m(study, sizing, index))
+}
+
+/// How many times as hard as in its ramp the joint at `index` is slowed down in a stop.
+pub fn stop_factor(study: &Study, sizing: &[(&Pose, Posed)], index: usize) -> f64 {
+    let Some(stop_m_s2) = study.motion.stop_m_s2 else { return 2.0 };
+    let stop_rad_s2 = stop_m_s2 / lever_m(study, sizing, index);
+    (stop_rad_s2 * study.motion.ramp_time_s / speed_rad_s(study, sizing, index)).max(1.0)
 }
 
 /// The demand on the joint at `index`; `outboard` are the pieces beyond it, nearest first.
@@ -102,7 +115,14 @@ pub fn demand(study: &Study, sizing: &[(&Pose, Posed)], index: usize, outboard: 
         linear_nm: a.linear_nm.max(b.linear_nm),
     };
     let worst = sizing.iter().map(torques).reduce(larger).expect("a study sizes in some pose");
-    Demand { speed_rad_s, acceleration_rad_s2, worst, bearing: loads(study, sizing, index, outboard) }
+    let stop_factor = stop_factor(study, sizing, index);
+    Demand {
+        speed_rad_s,
+        acceleration_rad_s2,
+        stop_factor,
+        worst,
+        bearing: loads(study, sizing, index, outboard),
+    }
 }
 
 /// Everything beyond the piece at `index`, the payload too.

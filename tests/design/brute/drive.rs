@@ -131,7 +131,7 @@ impl Drive {
             && input_rpm <= self.motor_rpm
             && self.stays_cool(demand, input_rpm)
             && bearing.is_none_or(|b| b.holds(&demand.bearing, 0.4 * demand.speed_rad_s, motion.life_h))
-            && self.holds_torques(&demand.worst, demand.acceleration_rad_s2, mean_rpm, motion)
+            && self.holds_torques(demand, mean_rpm, motion)
     }
 
     /// Whether the root mean square of the motor's torque is within what it gives continuously, whichever way the joint
@@ -160,7 +160,8 @@ impl Drive {
         })
     }
 
-    fn holds_torques(&self, t: &Torques, acceleration_rad_s2: f64, mean_rpm: f64, motion: &Motion) -> bool {
+    fn holds_torques(&self, demand: &Demand, mean_rpm: f64, motion: &Motion) -> bool {
+        let t = &demand.worst;
         let (slow, fast) = ((t.static_nm - t.linear_nm).abs(), t.static_nm + t.linear_nm);
         // Ramps run at half speed on average: weights 1/2, 3, 1/2 of t_a.
         let mean_nm = ((0.5 * fast.powi(3) + 3.0 * t.static_nm.powi(3) + 0.5 * slow.powi(3)) / 4.0).cbrt();
@@ -168,10 +169,10 @@ impl Drive {
             self.rated_life_h * (self.rated_nm / mean_nm).powf(self.life_exponent) * self.rated_life_rpm
                 / mean_rpm;
         let gain = self.ratio * self.efficiency;
-        let rotary_nm = self.inertia_kgm2 * self.ratio * acceleration_rad_s2;
+        let rotary_nm = self.inertia_kgm2 * self.ratio * demand.acceleration_rad_s2;
         fast <= self.repeated_nm
             && mean_nm <= self.average_nm
-            && t.static_nm + motion.stop_factor * t.linear_nm <= self.momentary_nm
+            && t.static_nm + demand.stop_factor * t.linear_nm <= self.momentary_nm
             && life_h >= motion.life_h
             && t.static_nm / gain <= self.motor_rated_nm
             && fast / gain + rotary_nm <= self.motor_peak_nm

@@ -42,7 +42,8 @@ pub enum DriveChoice {
 pub struct Motion {
     pub tip_speed_m_s: f64,
     pub ramp_time_s: f64,
-    pub stop_factor: f64,
+    /// Deceleration of the tip in a stop, if the study states it.
+    pub stop_m_s2: Option<f64>,
     pub min_lever_m: f64,
     pub life_h: f64,
 }
@@ -283,11 +284,10 @@ fn read_pose(study: &Value, pose: &Value) -> Pose {
 fn read_motion(motion: &Value) -> Motion {
     let or = |key: &str, default: f64| motion[key].as_f64().unwrap_or(default);
     let (tip_speed_m_s, ramp_time_s) = (or("tip_speed_m_s", 1.0), or("ramp_time_s", 0.2));
-    let acceleration_m_s2 = tip_speed_m_s / ramp_time_s;
     Motion {
         tip_speed_m_s,
         ramp_time_s,
-        stop_factor: or("emergency_deceleration_m_s2", 2.0 * acceleration_m_s2) / acceleration_m_s2,
+        stop_m_s2: motion["emergency_deceleration_m_s2"].as_f64(),
         min_lever_m: or("min_lever_m", 0.3),
         life_h: or("life_h", 10_000.0),
     }

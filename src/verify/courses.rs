@@ -1,0 +1,87 @@
+//! How the speed of a joint runs through the phases of a duty that the study states in numbers.
+//!
+//! A study states the mean speed of every phase. In a phase the joint turns at constant speed, or its speed changes evenly.
+//! There is one course without a jump if, followed once through the cycle from a phase of constant speed (rest, or else the
+//! fastest), the speed comes back to where it began, and is never negative nor beyond the fastest phase. If there is none,
+//! a phase is taken to ramp where its mean is that of its neighbours' speeds; a neighbour that is half of the phase beyond
+//! it ends, or begins, at rest.
+
+use super::question::AskedDutyPhase;
+
+/// Printed speeds have few digits, so that two speeds that differ by this fraction of the larger one count as the same.
+const ROUNDED: f64 = 0.05;
+
+/// The course of the speed in one phase.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Course {
+    /// Speed at the beginning of the phase \[rpm\].
+    pub from_rpm: f64,
+    /// Speed at its end \[rpm\].
+    pub to_rpm: f64,
+    time_s: f64,
+}
+
+impl Course {
+    /// Change of the speed in a second \[rpm/s\]; 0 in a phase without duration.
+    pub(super) fn rpm_per_s(&self) -> f64 {
+        if self.time_s > 0.0 { (self.to_rpm - self.from_rpm) / self.time_s } else { 0.0 }
+    }
+
+    fn mean_rpm(&self) -> f64 {
+        0.5 * (self.from_rpm + self.to_rpm)
+    }
+}
+
+/// Whether two printed speeds may be the same.
+pub(super) fn is_same_speed(a_rpm: f64, b_rpm: f64) -> bool {
+    (a_rpm - b_rpm).abs() <= ROUNDED * a_rpm.max(b_rpm)
+}
+
+/// The course of the speed in every phase.
+pub(super) fn courses(duty: &[AskedDutyPhase]) -> Vec<Course> {
+    unbroken(duty).unwrap_or_else(|| (0..duty.len()).map(|place| by_neighbours(duty, place)).collect())
+}
+
+/// The course without a jump; `None` if there is none.
+fn unbroken(duty: &[AskedDutyPhase]) -> Option<Vec<Course>> {
+    let slowest_first = |a: &&usize, b: &&usize| duty[**a].speed_rpm.total_cmp(&duty[**b].speed_rpm);
+    let places: Vec<usize> = (0..duty.len()).collect();
+    let fastest_rpm = duty[*places.iter().max_by(slowest_first)?].speed_rpm;
+    let at = |rpm: f64| places.iter().position(|place| duty[*place].speed_rpm == rpm);
+    let begin = at(0.0).or_else(|| at(fastest_rpm))?;
+    let mut courses = Vec::new();
+    let mut from_rpm = duty[begin].speed_rpm;
+    for step in 0..duty.len() {
+        let [phase, next] = [step, step + 1].map(|step| duty[(begin + step) % duty.len()]);
+        let ends_rpm = [from_rpm, next.speed_rpm, 0.0, 2.0 * phase.speed_rpm - from_rpm];
+        let course = |to_rpm: f64| Course { from_rpm, to_rpm, time_s: phase.time_s };
+        let fits = |course: &Course| is_same_speed(course.mean_rpm(), phase.speed_rpm);
+        let found = ends_rpm.map(course).into_iter().find(fits)?;
+        let is_stated = found.to_rpm <= fastest_rpm || is_same_speed(found.to_rpm, fastest_rpm);
+        if found.to_rpm < 0.0 || !is_stated {
+            return None;
+        }
+        from_rpm = found.to_rpm;
+        courses.push(found);
+    }
+    courses.rotate_right(begin);
+    is_same_speed(from_rpm, duty[begin].speed_rpm).then_some(courses)
+}
+
+/// The course in the phase at `place`, judged by its neighbours alone.
+fn by_neighbours(duty: &[AskedDutyPhase], place: usize) -> Course {
+    let rpm = |offset: usize| duty[(place + offset) % duty.len()].speed_rpm;
+    let back = |steps: usize| rpm(duty.len() * steps - steps);
+    let own = duty[place];
+    let mut between = vec![(back(1), rpm(1))];
+    if is_same_speed(2.0 * back(1), back(2)) {
+        between.push((0.0, rpm(1)));
+    }
+    if is_same_speed(2.0 * rpm(1), rpm(2)) {
+        between.push((back(1), 0.0));
+    }
+    let ramps = between.into_iter().filter(|(from, to)| !is_same_speed(*from, *to));
+    let mut courses = ramps.map(|(from_rpm, to_rpm)| Course { from_rpm, to_rpm, time_s: own.time_s });
+    let steady = Course { from_rpm: own.speed_rpm, to_rpm: own.speed_rpm, time_s: own.time_s };
+    courses.find(|course| is_same_speed(course.mean_rpm(), own.speed_rpm)).unwrap_or(steady)
+}
