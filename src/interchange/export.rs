@@ -365,8 +365,8 @@ fn links_in_pieces(arm: &Arm) -> Vec<String> {
     .collect()
 }
 
-/// A note for files that lack some loads of the arm: at which torques the tangents of their springs are taken. `None`
-/// if they lack none.
+/// A note for files that lack some loads of the arm. It says that the springs in the files have the tangent stiffnesses
+/// at the torques with all loads. `None` if the files lack no load.
 fn working_points_note(left_out: &[LeftOut]) -> Option<String> {
     const LOADS: [&str; 5] = ["water", "balance_spring", "joint_torque", "turns_with", "tip_load"];
     let loads: Vec<&str> =

@@ -14,7 +14,8 @@ impl FreeNames {
         Self { taken: taken.into_iter().collect() }
     }
 
-    /// Takes the name `name` if it is free. Else `end` is added to it until it is.
+    /// Takes the name `name` if it is free. Otherwise appends `end` until the name is free. Returns the name that was
+    /// taken.
     pub(super) fn take(&mut self, name: &str, end: &str) -> String {
         let mut free = name.to_string();
         while !self.taken.insert(free.clone()) {

@@ -106,7 +106,8 @@ fn step_words(step: TimeStep) -> String {
     }
 }
 
-/// The exported arm as MuJoCo moves it, in the pose of the case with straight springs.
+/// The exported arm as MuJoCo moves it, for the choice of the time step. The arm is in the pose of the case, and its
+/// springs are undeflected.
 fn moving<'n>(
     snapshot: &Snapshot,
     nodes: &'n [Node],
@@ -302,7 +303,8 @@ fn keyframes(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
     xml.close();
 }
 
-/// The position of every hinge in the pose of the case \[rad, m\], with springs straight or deflected by the load.
+/// The position of every hinge in the pose of the case \[rad, m\]. If `deflected`, the springs are deflected by the
+/// load of the case; otherwise they are undeflected.
 fn positions(snapshot: &Snapshot, nodes: &[Node], deflected: bool) -> Vec<f64> {
     let (driven, pose) = (snapshot.case_joints(), snapshot.pose_si());
     let hinges = || nodes.iter().flat_map(|node| &node.hinges);

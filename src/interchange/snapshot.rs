@@ -146,7 +146,8 @@ impl Snapshot {
         self.statics().tip_displacement_m
     }
 
-    /// The static state of the arm in the case. With the springs of a file, its deflections and tangents are theirs.
+    /// The static state of the arm in the case. If the arm has the springs of a file, the deflections and the tangent
+    /// compliances are those of these springs.
     fn statics(&self) -> Statics {
         let posed = self.posed();
         let mut statics = posed.statics();

@@ -20,8 +20,9 @@ use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
 /// Coefficients of an equation below this value are dropped as rounding errors.
 const ROUNDING: f64 = 1e-12;
-/// Largest distance of the point masses that stand for a body with inertia and without mass \[m\]. Farther ones would
-/// have less mass, but the springs that hold them to the ground would hold the body.
+/// Largest distance from the centre of gravity at which point masses stand for a body with inertia and without mass
+/// \[m\]. Farther points would need less mass. But the springs between point masses and the ground would then act on
+/// longer levers and hold the body.
 const FAR_M: f64 = 10.0;
 
 /// A term of an equation, or a load: index of the node, direction (0 to 2), coefficient.
@@ -200,7 +201,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Adds a point mass. Those of a body without mass, which has inertia alone, have no weight.
+    /// Adds a point mass. `has_weight` is false for the points of a body that has inertia and no mass, because such a
+    /// body has no weight.
     fn point_mass(&mut self, node: usize, mass_kg: f64, has_weight: bool) {
         self.model.masses.push((node, mass_kg));
         if !has_weight {
@@ -212,7 +214,8 @@ impl Builder<'_> {
     }
 
     /// Point masses that together have the mass, centre of gravity and inertia of a body: one point, or two on each
-    /// principal axis. Those of a body without mass are so far away that they have little.
+    /// principal axis. If the body has inertia and no mass, the points are far away (see `FAR_M`), so that a small mass
+    /// gives the inertia.
     fn points(
         &mut self,
         mass_kg: f64,
