@@ -408,7 +408,8 @@ fn joints_remarks_text(arm: &Arm, out: &mut String) {
     }
 }
 
-/// Lines on the guides for which the arm states some of the loads that they hold, and not all.
+/// Lines on the guides of which the arm states some load limits and not all. Each line names the limits that are
+/// missing.
 fn not_in_the_part(arm: &Arm) -> String {
     let lines = arm.prismatics().filter_map(|joint| {
         let keys = joint.guide.limits.unknown();
