@@ -30,8 +30,8 @@ const ROUNDING: f64 = 1e-6;
 /// Largest relative difference that is allowed between an objective that a row states and the same objective by the
 /// full model.
 const AGREEMENT: f64 = 1e-9;
-/// Part of the claimed gap by which two designs may differ so that one of them may represent the other. The search for
-/// missing designs then reports only one of such designs.
+/// One missing design stands for all that differ from it by less than this fraction of the claimed gap. The search for
+/// missing designs reports only the one.
 const PART_OF_GAP: f64 = 0.45;
 /// Largest number of faults of one kind that are listed one by one.
 const FAULTS_LISTED: usize = 10;

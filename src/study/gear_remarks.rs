@@ -1,5 +1,5 @@
-//! Remarks on the gears of a result: on lives that rest on a figure which the catalog's row does not have or that are
-//! not checked, and on the play that the deflection leaves out.
+//! Remarks on the gears of a result. They name lives that come from a usual value because the row of the catalog states
+//! none, lives that are not checked, and the play that the deflection leaves out.
 //!
 //! A gear with a play of β (the whole angle between its two stops) leaves the tip loose by β ρ, where ρ is the largest
 //! displacement of the tip per radian of the joint in the judged cases: the distance of the tip from the axis, unless
@@ -105,8 +105,8 @@ pub(crate) fn play_remarks(space: &DesignSpace, catalogs: &Catalogs, front: &Fro
     joints.flat_map(of_joint).chain(space.pieces.iter().flat_map(of_rail)).collect()
 }
 
-/// The remarks on the play of the gears that the picks have at one joint. `reach_m` is the way of the tip per radian of
-/// the joint \[m\], or per metre of a rail; `gear` finds a gear by its name.
+/// The remarks on the play of the gears that the picks have at one joint. `reach_m` is the displacement of the tip per
+/// radian of the joint \[m\], or per metre of a rail. `gear` finds a gear by its name.
 fn said_of<'g>(
     joint: &str,
     reach_m: f64,
@@ -136,7 +136,7 @@ fn said_of<'g>(
 /// The play of a gear: the larger of the backlash and the lost motion that its row states.
 #[derive(Debug, PartialEq)]
 struct Play {
-    /// The play as an angle. For a screw or rack a metre of travel stands in the place of a radian.
+    /// The play as an angle. For a screw or rack it is a travel, converted as if a metre were a radian.
     arcmin: f64,
     word: &'static str,
     slides: bool,
@@ -160,7 +160,8 @@ impl Play {
         }
     }
 
-    /// How far the tip moves from one stop to the other \[mm\], if it moves by `reach_m` \[m\] per radian of the joint.
+    /// How far the tip moves from one stop to the other \[mm\]. `reach_m` is the displacement of the tip per radian of
+    /// the joint \[m\].
     fn loose_mm(&self, reach_m: f64) -> f64 {
         1e3 * reach_m * (self.arcmin / 60.0).to_radians()
     }

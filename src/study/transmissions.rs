@@ -107,8 +107,8 @@ fn of_sized(driven: &[Driven], number: usize, placed: &Placed, pieces: &mut [Spa
     Some(())
 }
 
-/// The joint number `number` of the chain in the form in which motors are put in their places: with its transmission
-/// and the joints with which it turns.
+/// The joint number `number` of the chain with its transmission and the joints with which it turns, as the placing of
+/// motors needs it.
 pub(super) fn of_joint<'n>(
     node: &Node<'n>,
     joint: &SpaceJoint,
