@@ -128,8 +128,8 @@ fn turned(hinge: &Hinge, by: f64) -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::from(hinge.at_m - rotation * hinge.at_m), rotation)
 }
 
-/// The matrix that converts a twist to the twist of the same motion after its axis was moved by `by`. Before that, the axis
-/// is where it stands at zero joint angles.
+/// The matrix that converts a twist to the twist of the same motion after its axis was moved by `by`. Before that, the
+/// axis is where it stands at zero joint angles.
 fn moved(by: &Isometry3<f64>) -> Matrix6<f64> {
     let mut out = Matrix6::zeros();
     for (i, mut column) in out.column_iter_mut().enumerate() {

@@ -31,8 +31,8 @@ use crate::arm::Arm;
 use serde_json::Value;
 use std::cell::OnceCell;
 
-/// Poses that are held out together are the only ones that show an effect if the right model leaves more than this on them
-/// \[standard deviations\].
+/// If the best model is right and yet is expected to leave residuals larger than this on held-out poses, an effect
+/// shows in the poses of one fold alone \[standard deviations\]. Held-out poses cannot confirm such an effect.
 const SHOWN_BY_ONE_FOLD: f64 = 1.5;
 /// An effect is only suspected if it raises the natural logarithm of the evidence by less than this. Such evidence is
 /// not yet strong (Kass and Raftery 1995, table of Bayes factors).
@@ -104,7 +104,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
 }
 
 /// The candidates (effects at places) that the search tries: every effect that the campaign admits and the readings
-/// could show. `few`: there are only a handful of rows, and rare effects are left out.
+/// could show. If `few`, the campaign has only a handful of rows, and rare effects are left out.
 fn sought(campaign: &Campaign, forward: &Forward, nuisance: &Nuisance, few: bool) -> Vec<Candidate> {
     let mut candidates = candidates(forward);
     candidates.retain(|c| campaign.statement.considers(c.kind.name));
@@ -309,7 +309,7 @@ impl Analysis<'_> {
                 return (Verdict::InsufficientData, vec![text]);
             }
         }
-        // without the poses that alone show an effect nothing is known of it, so nothing can be predicted either
+        // if only the poses of one fold show an effect, a fit without them knows nothing of it and cannot predict them
         let held_out =
             held_out.filter(|k| !self.shows_in_one_fold() || k.rms_after > TOO_FAR_OFF * self.expected_rms);
         if let Some(k) = held_out.filter(|k| k.rms_after > k.rms_before + 0.02) {

@@ -171,7 +171,8 @@ impl Cell {
         let fitted = fit_below(forward, &model, start, weights, HELD, limit);
         let held = axes.each_ref().map(|a| a.parameter);
         let of_rest = without(&fitted.curvature, held);
-        // the density at the nodes is the evidence of the fit without the factor for the two fixed parameters
+        // the evidence integrates over all parameters; here two of them are fixed, so the factor that belongs to them
+        // is removed
         let ln_density =
             fitted.evidence + 0.5 * (ln_determinant(fitted.curvature.clone()) - ln_determinant(of_rest));
         // the two fixed parameters are not part of the covariance
