@@ -101,8 +101,8 @@ fn of_arm(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     Ok(said(args, &arm.name, &capacity_of_arm(&arm, cases?, limits?, catalogs)?, &[]))
 }
 
-/// The largest payload of a range of payloads that hold (`window`) as text: kilograms, "no limit", or "none" if no
-/// payload holds.
+/// The payload at the upper end of `window`, a range of payloads that hold, as text: kilograms, "no limit", or "none"
+/// if no payload holds.
 fn kilograms(window: &Window) -> String {
     match (window.holds(), window.most.payload_kg) {
         (false, _) => "none".into(),

@@ -164,8 +164,8 @@ pub(super) fn settle(state: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The path of the file that saves the state of an unfinished search, in a folder of results. `name` tells the searches
-/// of the folder apart.
+/// The path of the file that saves the state of an unfinished search, in a folder of results. `name` distinguishes the
+/// searches that save their states in this folder.
 pub(super) fn unfinished_in(folder: &Path, name: &str) -> PathBuf {
     folder.join(STATE).join(format!("{name}{ENDING}"))
 }

@@ -90,8 +90,8 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs, log: Log) -> Result<Stri
     Ok(text)
 }
 
-/// The first lines of the table: the motion that is asked for, and the sections of the open links. If no design is
-/// named (`is_trial`), these are trials, which the lines say.
+/// The first lines of the table: the motion that is asked for, and the sections of the open links. `is_trial` is true
+/// if no design is named. The sections are then those of median mass, and the lines say so.
 fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32], is_trial: bool) -> String {
     let trial = if is_trial { " (trial: median mass of its options)" } else { "" };
     let motion = &study.space.motion;

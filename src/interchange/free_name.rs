@@ -1,4 +1,4 @@
-//! Names that nothing else has: of links and joints that a conversion adds to those of an arm or a robot.
+//! Unique names for the links and joints that a conversion adds to those of an arm or a robot.
 
 use std::collections::BTreeSet;
 

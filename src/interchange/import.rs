@@ -4,10 +4,9 @@
 //! A URDF gives every link a frame of its own, rotated against the frame of its parent. In an arm all frames are
 //! parallel to the world's when all joint angles are zero. So every position, axis and inertia is converted to the
 //! root frame of the URDF at zero angles. The path from the root to the tip is the arm. Each moving joint on this
-//! path becomes a joint. Everything between two of them becomes one rigid link, which takes over the bodies of its
-//! URDF links. Side branches, which leave the path, are held where they stand
-//! while the arm is at zero angles, and their bodies are added to the link on
-//! which they hang.
+//! path becomes a joint. Everything between two of them becomes one rigid link, which takes over the bodies of its URDF
+//! links. The joints of side branches are held at one position each. The bodies of a side branch are added to the link
+//! on which it hangs.
 //!
 //! A URDF has no stiffness. A joint that the stiffness file does not name is rigid.
 

@@ -153,7 +153,7 @@ struct Builder<'o> {
     nodes: Vec<Node>,
     /// Names of the passive joints.
     passive: BTreeSet<String>,
-    /// Names for hinges other than those of motors, which are called as their joints.
+    /// Free names for hinges. The hinge of a motor is not among them: it has the name of its joint.
     free: FreeNames,
 }
 

@@ -364,7 +364,8 @@ mod tests {
         assert!(refused(&far.replace('X', "1e300")).contains("m away"));
     }
 
-    /// A product of inertia of 1e-20 beside zeros is rounding of a tensor that was moved from the origin.
+    /// A product of inertia of 1e-20, where all other entries are zero, is a rounding error of a tensor that was moved
+    /// from the origin.
     #[test]
     fn a_tensor_within_rounding_has_no_negative_moments_and_a_link_that_stands_still_may_have_any() {
         let inertial = |ixx: &str, ixz: &str| {

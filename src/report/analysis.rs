@@ -81,8 +81,8 @@ pub struct Analysis {
     unbent: Vec<String>,
     /// Name of each balance spring, with its length and force, or its torque, in the pose of the case.
     springs: Vec<(String, Drawn)>,
-    /// The lowest mode with every tube divided at the bodies on it \[Hz\]; `None` if no tube has a body between its
-    /// ends, or no mode was asked for.
+    /// The lowest mode, computed with every tube cut into several tubes at the bodies on it \[Hz\]. `None` if no tube
+    /// has a body between its ends, or no mode was asked for.
     divided_hz: Option<f64>,
 }
 
