@@ -116,9 +116,10 @@ pub fn capacity_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Resu
     Ok(found)
 }
 
-/// The capacity of the design with these options, one for each slot of the arm (joint or link, in the order in which
-/// the arm is built), tip first. `space` is the space to which the options belong. The cases with the indices `own`
-/// state a payload of their own and keep it; if all sizing cases do, the payload of all of them changes.
+/// The capacity of the design with these options, tip first. There is one option for each slot (joint or link, in the
+/// order in which the arm is built), and `space` is the space to which the options belong. The cases with the indices
+/// `own` state a payload of their own and keep it. If this is so of all sizing cases, all of them take the same
+/// payload, which varies.
 fn capacity(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], own: &[usize]) -> Capacity {
     let (kept, mut loaded): (Vec<usize>, Vec<usize>) =
         space.sizing_cases.iter().partition(|case| own.contains(case));

@@ -1,5 +1,5 @@
-//! Remarks on given drives that are too weak for some designs of a front, or of which a check cannot be made. They are
-//! printed with the front.
+//! Remarks on given drives. They say which drives are too weak for some designs of a front, and which checks cannot be
+//! made because ratings are blank. They are printed with the front.
 
 use crate::catalog::Catalogs;
 use crate::sizing::check::{Check, CheckState};

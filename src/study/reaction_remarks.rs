@@ -18,13 +18,14 @@ const NAMED_FROM: f64 = 0.02;
 /// The reaction on one joint (what it must hold while another joint moves), and the torque of its own motion.
 struct Held {
     joint: String,
-    /// The joint whose ramp gives the largest torque in a ramp, and the one whose stop gives the largest in a stop.
+    /// The joint whose ramp gives the largest torque in a ramp, and the joint whose stop gives the largest torque in a
+    /// stop.
     movers: [String; 2],
     /// Unit of the torques: N m, or N of a prismatic joint.
     unit: &'static str,
-    /// Torque in the ramp and in the stop of another joint, at the joint.
+    /// Torque at this joint in the ramp and in the stop of another joint.
     reaction_nm: [f64; 2],
-    /// Largest torque in the joint's own ramp and in its own stop, at the joint.
+    /// Largest torque at this joint in its own ramp and in its own stop.
     own_nm: [f64; 2],
     /// The check with the smallest margin; `None` if no check could be made.
     binding: Option<Check>,
