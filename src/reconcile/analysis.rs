@@ -1,5 +1,6 @@
 //! Runs the whole analysis of displacements, frequencies and bench readings: whether they differ from the model, which
-//! effects are missing, how certain these are, and whether they predict held-out poses.
+//! effects are missing, how certain these are, and whether they predict held-out poses. Besides effects of the library,
+//! the analysis tries *laws without a name*: smooth functions that reveal physics which the library lacks.
 
 use super::fit::descent::{Effort, Fit, Weights};
 use super::fit::held_out::{self, HeldOut, rms};
@@ -31,8 +32,8 @@ use crate::arm::Arm;
 use serde_json::Value;
 use std::cell::OnceCell;
 
-/// If the best model is right and yet is expected to leave residuals larger than this on held-out poses, an effect
-/// shows in the poses of one fold alone \[standard deviations\]. Held-out poses cannot confirm such an effect.
+/// Limit of the residuals that the best model would leave on held-out poses even if it were right \[standard
+/// deviations\]. Above it, only the poses of one fold show some effect, so held-out poses cannot confirm it.
 const SHOWN_BY_ONE_FOLD: f64 = 1.5;
 /// An effect is only suspected if it raises the natural logarithm of the evidence by less than this. Such evidence is
 /// not yet strong (Kass and Raftery 1995, table of Bayes factors).
@@ -117,8 +118,8 @@ fn sought(campaign: &Campaign, forward: &Forward, nuisance: &Nuisance, few: bool
     candidates
 }
 
-/// Whether the evidence for the best effects is weak: their score exceeds that of the baseline by less than [`WEAK_EVIDENCE`].
-/// False if there are no effects.
+/// Whether the evidence for the best effects is weak: their score exceeds that of the baseline by less than
+/// [`WEAK_EVIDENCE`]. False if there are no effects.
 fn is_weak(selection: &Selection) -> bool {
     !selection.best.effects.is_empty() && selection.best.score - selection.baseline.score < WEAK_EVIDENCE
 }

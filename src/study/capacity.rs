@@ -143,8 +143,8 @@ fn capacity(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], own: &[us
     Capacity::new(window(&space.sizing_cases, &loaded), table, remarks)
 }
 
-/// A sentence that names the drives that are not judged: those that the study gives without gear and motor of the catalogs,
-/// and given drives of rails; `None` if there are none.
+/// A sentence that names the drives that are not judged; `None` if there are none. A given drive is not judged if the
+/// study does not name its gear and motor from the catalogs, or if it is the drive of a rail.
 fn unjudged_remark(problem: &ArmProblem, catalogs: &Catalogs) -> Option<String> {
     let pieces = problem.space().pieces.iter().enumerate();
     let unjudged = pieces.filter(|(piece, what)| match what {

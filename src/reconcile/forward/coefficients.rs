@@ -61,7 +61,7 @@ pub struct Layout {
     pub lacking: Vec<f64>,
     /// The arm with every elastic element present, so that mechanics lists all coordinates.
     pub template: Chain,
-    /// For each of the masses that a fit can change, the template with one unit of this mass added.
+    /// For each of the masses that a fit can change, the arm `template` with one unit of this mass added.
     pub with_mass: Vec<Chain>,
     /// Acceleration of gravity \[m/s²\].
     pub gravity_m_s2: f64,

@@ -279,7 +279,8 @@ impl<'a> Search<'a> {
         fits
     }
 
-    /// Whether a calibrated factor of the model is so far from its nominal value that something else is probably missing.
+    /// Whether a calibrated factor of the model is so far from its nominal value that something else is probably
+    /// missing.
     fn is_far_calibrated(&self, scored: &Scored) -> bool {
         scored.u[..self.model(&[]).len()].iter().any(|deviation| deviation.abs() > FAR_CALIBRATED)
     }
@@ -494,7 +495,8 @@ impl<'a> Search<'a> {
             let p = model.calibrated() + i;
             let prior = parameter.width(u[p]);
             let width = 1.0 / (curvature[(p, p)] + 12.0 / prior.powi(2)).sqrt();
-            // the Occam factor of the parameter; 0.9 is ln of the root of 2 pi
+            // the free parameter lowers the evidence by the width of its posterior over that of its prior; 0.9 is ln of
+            // the root of 2 pi
             score += libm::log(width / prior) + 0.9;
         }
         (u, score)

@@ -132,8 +132,8 @@ pub struct JointRecord {
     /// A sentence on a cause that explains the records better than a transmission error of the output and is no effect
     /// of the library; `None` if there is none.
     pub(crate) unnamed: Option<String>,
-    /// What the records leave open, such as a transmission error that they cannot tell from the twist by gravity. Then the
-    /// data are insufficient.
+    /// What the records leave open, such as a transmission error that they cannot tell from the twist by gravity. The
+    /// data are then insufficient.
     pub undecided: Vec<String>,
     /// Further sentences for the reader, such as a law that explains the record as well.
     pub remarks: Vec<String>,
