@@ -5,8 +5,8 @@
 //!   the crate `urdf-rs`, and `urdf_place` finds the lines of faults, which the crate does not report. `given` reads
 //!   the stiffness file, which states the stiffness of the joints. `keys` has the keys of the stiffness file and of
 //!   `import.json`. `report` says what became of every link and joint of the URDF.
-//! - Export: `request` has the input of an export, and `export` writes an arm in a load case. `snapshot` has the springs
-//!   of the arm at their working points. `tree` converts the arm to a chain of rigid bodies, which `mjcf` and
+//! - Export: `request` has the input of an export, and `export` writes an arm in a load case. `snapshot` has the
+//!   springs of the arm at their working points. `tree` converts the arm to a chain of rigid bodies, which `mjcf` and
 //!   `urdf_out` write. `motors` finds the inertia, peak torque and backlash of the drives in the catalogs. `calculix`
 //!   converts the arm to solids, `bill` and `design_table` to tables. `table_notes` names what the tables lack.
 //!   `left_out` lists what a file cannot represent, each with its part of the tip deflection.
