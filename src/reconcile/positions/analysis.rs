@@ -247,7 +247,8 @@ impl Positions {
     /// it begins with those that a part of the rows shows.
     pub(super) fn find_effects(&mut self, campaign: &Campaign) {
         self.take_screened(campaign);
-        // What follows a joint's angle can hide a compliance, so the search starts again after each one that is found.
+        // Effects that follow a joint's angle can hide a compliance, so the search starts again after each one that is
+        // found.
         loop {
             for class in CLASSES {
                 while self.add(campaign, class) {}
@@ -265,7 +266,8 @@ impl Positions {
         if starts.is_empty() {
             align::align(&self.tree, spec, &self.samples, &mut self.fitted.geometry);
         } else {
-            // the deflection of all rows is computed once, for the geometry that a part of them has
+            // in a long campaign, the deflection of all rows is computed once, for the geometry that fits a part of the
+            // rows
             self.fitted = starts[starts.len() - 1].clone();
             self.refresh(campaign);
         }

@@ -64,9 +64,9 @@ struct Tried {
     made: Vec<Change>,
     /// Scale of the position errors \[m\].
     scale_m: f64,
-    /// The number by which sets of changes are compared, without unit: the scale of the errors over the spread of the
-    /// positions, for an equally probable calibration whose geometry is nominal. It does not depend on the unit. It is
-    /// larger by [`AS_GOOD`] where the geometry is far from nominal.
+    /// The number by which sets of changes are compared: the smaller, the better. It is the scale of the errors over
+    /// the spread of the positions, so it does not depend on the unit. A calibration that is improbable before the
+    /// readings has a larger number, and so has (by the factor [`AS_GOOD`]) one whose geometry is far from nominal.
     judged: f64,
     /// Whether a link or an axis moved further than its prior expects.
     is_far: bool,
@@ -108,7 +108,7 @@ impl Asked<'_> {
 
     fn full(&self, made: Vec<Change>) -> Tried {
         let (fitted, numbers) = self.fitted(&made, self.groups.len(), LONG);
-        // the logarithm of the likelihood falls by that of the scale for every reading
+        // a scale that is smaller by the factor e raises the logarithm of the likelihood by one for every reading
         let part = fitted.improbability(&numbers) / readings(&self.samples).max(1) as f64;
         let is_far = fitted.is_far_from_nominal(&numbers);
         let far = if is_far { AS_GOOD } else { 1.0 };

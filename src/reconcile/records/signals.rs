@@ -329,8 +329,8 @@ impl JointRows {
     }
 }
 
-/// Standard deviation of the noise of the twist \[rad\]. It is not that of both angles: an error of the times is in each of them
-/// and leaves the twist.
+/// Standard deviation of the noise of the twist \[rad\]. It is computed from the difference of the two angles, because
+/// an error of the times is in both angles and cancels in the difference.
 fn twist_noise_rad(t_s: &[f64], signals: &JointSignals) -> f64 {
     let angles = signals.motor_rad.iter().zip(&signals.link_rad);
     noise(t_s, &angles.map(|(motor, link)| motor - link).collect::<Vec<_>>())
