@@ -266,9 +266,9 @@ impl<'t> Walk<'t> {
         }));
     }
 
-    /// Adds the body of the URDF link `link`, whose frame is `at`, and the bodies of all side branches that hang on it,
-    /// to the link of the arm that is being built. If the link is itself in a side branch, `by` is the joint by which
-    /// it hangs.
+    /// Adds bodies to the link of the arm that is being built: the body of the URDF link `link`, whose frame is `at`,
+    /// and the bodies of all side branches that hang on it. If `link` is itself in a side branch, `by` is the joint by
+    /// which it hangs.
     fn lump(&mut self, link: &str, at: Isometry3<f64>, by: Option<&urdf_rs::Joint>) {
         let tree = self.tree;
         let Some(found) = tree.link(link) else { return };

@@ -1,8 +1,8 @@
 //! An arm in a load case, with the springs of its joints at their working points.
 //!
-//! A torsion curve has no single stiffness. At the load of a case it has a *secant* stiffness (load over deflection),
-//! with which a linear program computes the right deflection, and a *tangent* stiffness, with which it computes the
-//! right frequencies.
+//! A torsion curve has no single stiffness. At the load of a case it has two. With the *secant* stiffness (load over
+//! deflection) a linear program computes the right deflection. With the *tangent* stiffness it computes the right
+//! frequencies.
 //!
 //! A file may lack loads that the arm has, such as that of a balance spring. The torque at which each gear works still
 //! depends on all loads of the arm. So the tangent stiffnesses in a file are those at the torques with all loads.

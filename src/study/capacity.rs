@@ -1,10 +1,11 @@
 //! Capacity: the payloads that an arm holds with its drives unchanged, in each pose of a study and in all of them, and
 //! the largest speed at which it holds the payloads of the study.
 //!
-//! The mass of the payload grows, and shrinks, from the one that the study states until a drive, an output bearing or
-//! the stress of a link exceeds its limit. The payload keeps its centre of gravity and its moments of inertia. The
-//! checks are those of sizing. For all poses together, the largest static torque and the largest inertia are combined,
-//! which may come from different poses. A pose that states a payload of its own keeps this payload.
+//! The mass of the payload is varied from the one that the study states, upwards and downwards, until a drive, an
+//! output bearing or the stress of a link exceeds its limit. The payload keeps its centre of gravity and its moments of
+//! inertia. The checks are those of sizing. For all poses together, the largest static torque and the largest inertia
+//! are combined, although they may come from different poses. A pose that states a payload of its own keeps this
+//! payload.
 //!
 //! An arm that is balanced for its payload may hold the payload and fail without it. Its payloads then have a lower
 //! limit too.

@@ -226,8 +226,8 @@ impl Positions {
         }
     }
 
-    /// A copy of this calibrated model with the sessions that begin at `boundaries` (what was moved, and the first
-    /// row of the later session), with a drift if it `drifts`, and with the effects that are then found.
+    /// A copy of this calibrated model in which sessions begin at `boundaries` (what was moved, and the first row of
+    /// the later session). It has a drift if it `drifts`. The effects that are then found are added.
     fn with_sessions(&self, campaign: &Campaign, (boundaries, drifts): &(Vec<(Kind, usize)>, bool)) -> Self {
         let mut out = self.clone();
         if *drifts {

@@ -1,9 +1,9 @@
 //! Competing laws of a joint's angle: errors that are no transmission error once and twice a turn, but look like one where
 //! the joint turns through a part of a turn only.
-//!
-//! A sensor whose scale is wrong errs in proportion to the angle, a cable or a magnet by a smooth curve, a gear's teeth many
-//! times a turn. Each law is tried in the place of a transmission error that was found, with the model made linear. A law
-//! that fits clearly better takes the name away. A law that fits as well with fewer numbers is said.
+//! A sensor with a wrong scale makes an error in proportion to the angle. The error of a cable or a magnet is a smooth
+//! curve. That of a gear's teeth repeats many times a turn. Each law is tried in the place of a transmission error that
+//! was found, with the model made linear. If a law fits clearly better, the transmission error is not named. If it fits
+//! as well with fewer numbers, the verdict says so.
 
 use super::analysis::Positions;
 use super::fit::fit;

@@ -1,14 +1,15 @@
-//! The torque scale of a joint's play and the preload of a base that lifts off: the best value, and the intervals of it and of
-//! the half width or stiffness that depends on it.
+//! The threshold of an effect is the torque scale of a joint's play, or the preload of a base that lifts off. This
+//! module finds its best value, and the intervals of the threshold and of the half width or stiffness that depends on
+//! it.
 //!
-//! A few thresholds are tried in the search for effects. The best is refined, since a threshold that is off changes the half
-//! width with it and leaves a structure in the errors. The intervals are those of the profile likelihood: at each threshold `s`
-//! the likelihood falls from its best value `L(s)` like a parabola in the half width `h`, so the interval of `h` is the union
-//! of `h(s) ± σ(s) √(2 (1.92 - (L_max - L(s))))` over all `s`.
+//! A few thresholds are tried in the search for effects. The best of them is refined, because a wrong threshold changes
+//! the half width too and leaves a structure in the errors. The intervals are those of the profile likelihood. At each
+//! threshold `s` the likelihood falls from its best value `L(s)` like a parabola in the half width `h`. So the interval
+//! of `h` is the union of `h(s) ± σ(s) √(2 (1.92 - (L_max - L(s))))` over all `s`.
 //!
-//! In a long campaign the rows on which effects are screened have refined the threshold already. The likelihood of all rows is
-//! close to a parabola in the logarithm of the threshold there, so that a few fits find its vertex, and only the nearest
-//! thresholds on both sides are tried for the interval.
+//! In a long campaign the threshold was refined already on the rows on which effects are screened. Near it, the
+//! likelihood of all rows is close to a parabola in the logarithm of the threshold. So a few fits find the vertex of
+//! this parabola, and only the nearest thresholds on both sides are tried for the interval.
 
 use super::analysis::Positions;
 use super::fitted::Sample;

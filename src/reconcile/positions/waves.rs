@@ -19,8 +19,9 @@ use std::f64::consts::PI;
 const MOST: f64 = 0.9;
 
 impl Positions {
-    /// Adds the stiffness that varies with a joint's angle, or the transmission error, that raises the likelihood most, if
-    /// the rise is worth its price and held-out poses confirm it. Returns whether one was added.
+    /// Finds the one addition that raises the likelihood most: a stiffness that varies with a joint's angle, or a
+    /// transmission error. Adds it if the rise is worth its price and held-out poses confirm it. Returns whether one
+    /// was added.
     pub(super) fn add_periodic(&mut self, campaign: &Campaign) -> bool {
         let uneven = self.best_transmission(campaign);
         let base = &self.fitted;

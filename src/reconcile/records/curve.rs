@@ -363,9 +363,9 @@ impl Curve {
             });
             // refitted with this law alone on the grid, so that its columns follow directly behind those of the laws
             // found before
-            // A fit without the curve may have a wrong rotor inertia, with which the best segments soften. With the
-            // inertia that follows from the curve they do not. So segments that stiffen are preferred.
             let torque = model.places.torque();
+            // a fit without the curve may have a wrong rotor inertia, with which the best segments soften; with the
+            // inertia that follows from the curve they do not, so segments that stiffen are preferred
             let softens = |(law, fit): &(Law, Fitted)| {
                 let at = self.shapes_of(*law, known, &single);
                 matches!(law, Law::Segments(..))

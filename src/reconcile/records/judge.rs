@@ -148,7 +148,8 @@ impl<'a> Judged<'a> {
         }
     }
 
-    /// Root mean square error of the twist on held-out blocks \[rad\] with an offset and, if it is in the model, the time shift.
+    /// Root mean square error of the twist on held-out blocks with an offset as model, and with the time shift too if
+    /// it is in the model \[rad\].
     fn unshifted_rad(&self) -> f64 {
         let shift: Vec<Group> = self.model.groups.iter().copied().filter(|g| *g == Group::Shift).collect();
         self.model.fit(&shift).map_or(0.0, |f| f.held_out_rms())

@@ -2,10 +2,10 @@
 //!
 //! - While a joint rests, friction may hold any torque up to that of Coulomb friction.
 //! - While it reverses, friction changes its sign somewhere, and no formula says where.
-//! - Where the torque jumps between two rows, its average over a window is uncertain by the jump times half a row. The
-//!   jumps of a motion that is planned by corners, such as a trapezoid of the speed, all stand at the same place between
-//!   the rows, because the controller begins each piece at one of its cycles. This error then has one sign and does not
-//!   average out.
+//! - Where the torque jumps between two rows, its average over a window is uncertain by the jump times half a row. A
+//!   motion that is planned with corners, such as a trapezoid of the speed, has such jumps. All of them are at the same
+//!   place between the rows, because the controller begins each piece at one of its cycles. The error then has one sign
+//!   and does not average out.
 
 use crate::reconcile::fit::stats::{MEDIAN_OF_NORMAL, median};
 

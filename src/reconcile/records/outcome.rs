@@ -386,8 +386,9 @@ fn located(joints: &[JointRecord]) -> Vec<Located> {
     all.into_iter().chain(each).collect()
 }
 
-/// Recommends one test for all joints whose compliance the records do not show because their torque is nearly all
-/// acceleration and friction of the joint itself, and one for those where a transmission error explains the same twist.
+/// Recommends at most two tests. One is for the joints whose compliance the records do not show, because the torque is
+/// nearly all acceleration and friction of the joint itself. The other is for joints at which a transmission error
+/// explains the same twist as the compliance.
 fn next_tests(joints: &[JointRecord]) -> Vec<NextTest> {
     let named = |start: &str, wanted: fn(&JointRecord) -> bool| -> Vec<&str> {
         let has = |j: &&JointRecord| {

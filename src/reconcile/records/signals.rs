@@ -238,8 +238,8 @@ impl JointRows {
         self.records[record].half
     }
 
-    /// Takes the torque of the load that the gear carries at each row, `load_nm`, for load-dependent friction and for the
-    /// torque of the spring where friction is not known.
+    /// Stores the torque of the load that the gear carries at each row, `load_nm`. It is needed for friction that
+    /// depends on the load, and for the torque of the spring at rows where friction is not known.
     pub(crate) fn take_load(&mut self, load_nm: &[f64]) {
         for (sample, load_nm) in self.samples.iter_mut().zip(load_nm) {
             sample.load_nm = *load_nm;

@@ -442,8 +442,8 @@ impl<'a> TwistModel<'a> {
             && self.fit(&others).is_some_and(|other| Group::Compliance.pays(fitted, &other))
     }
 
-    /// Fit of the twist by the groups `groups` and a transmission error of the output, in which compliance, friction and the
-    /// rotor's inertia have the values of the fit `without`, which lacks the error. `None` if a fit is impossible.
+    /// Fit of the twist by the groups `groups` and a transmission error of the output. Compliance, friction and the
+    /// rotor's inertia have the values of `without`, a fit without this error. `None` if a fit is impossible.
     fn at_compliance(&self, groups: &[Group], without: &Fitted) -> Option<Fitted> {
         let p = self.places;
         let elastic = [p.torque(), p.acceleration(), p.sense(), p.load_sense(), p.rate()];

@@ -40,8 +40,8 @@ const LARGEST_TWIST: f64 = 3.0;
 
 /// Channels in whose tests a joint may soften, in the order of their parameters.
 const SOFTENING_IN: [Channel; 2] = [Channel::Static, Channel::Modal];
-/// Values from which fits start, for the number of rows in which 63 % of a joint's softening takes place, as fractions
-/// of the rows of the file.
+/// A joint softens by 63 % of its total within a number of rows that is fitted. Fits start from these values of this
+/// number, as fractions of the rows of the file.
 const SOFTENED_AFTER: [f64; 2] = [0.08, 0.5];
 /// Smallest number of poses that must come before a turn of the base, and of poses that must come after it.
 const FEWEST_POSES: usize = 2;

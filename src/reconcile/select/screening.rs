@@ -22,8 +22,7 @@ use std::cell::OnceCell;
 /// zero, because two missing effects are less probable than one. A first effect needs no more than a rise, because a
 /// missing effect is as probable as none.
 const LEAST_GAIN: f64 = 3.0;
-/// The listed alternatives to an effect are as many as are needed so that the effect and they together contain the
-/// right one with this probability.
+/// So many alternatives to an effect are listed that the effect or one of them is right with this probability.
 const CREDIBLE_PROBABILITY: f64 = 0.95;
 /// A model whose score after a few steps of a fit is below the best score by more than this is not fitted further \[ln
 /// of the evidence\].
@@ -34,7 +33,7 @@ const PROMISING_DEFICIT: f64 = 12.0;
 /// Largest number of effects in a model.
 pub(crate) const MOST_EFFECTS: usize = 3;
 /// If a law without a name raises the logarithm of the evidence by this much more than the best effects do, these
-/// effects are not the cause, and the search ends.
+/// effects are not the cause. The search then ends.
 const SETTLING_GAIN: f64 = 12.0;
 /// Largest number of variants of one effect (the same effect with different parameters free) among the candidates
 /// that are fitted in full.
