@@ -10,7 +10,6 @@
 //! accelerations enter as free columns, joint by joint, where held-out blocks are predicted better with them. The
 //! torque of the load `T_l`, which the gear carries, is the sum of all terms of the load except the rotor's inertia. It
 //! comes first from a fit without load-dependent friction, then from a fit with it.
-//! with it: all terms of the load except the rotor's inertia.
 
 use super::blocks::Fitted;
 use super::intervals::is_positive;
