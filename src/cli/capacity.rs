@@ -101,7 +101,8 @@ fn of_arm(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     Ok(said(args, &arm.name, &capacity_of_arm(&arm, cases?, limits?, catalogs)?, &[]))
 }
 
-/// The largest payload of a window in words.
+/// The payload at the upper end of `window`, a range of payloads that hold, as text: kilograms, "no limit", or "none"
+/// if no payload holds.
 fn kilograms(window: &Window) -> String {
     match (window.holds(), window.most.payload_kg) {
         (false, _) => "none".into(),
@@ -110,7 +111,7 @@ fn kilograms(window: &Window) -> String {
     }
 }
 
-/// What fails beyond a limit, in words.
+/// The joint or link that fails beyond a limit, and the check that it fails, in words.
 fn failing(limit: &Limit) -> String {
     format!("{} (check: {})", limit.piece, limit.check)
 }
@@ -120,19 +121,21 @@ fn headline(name: &str, found: &Capacity) -> String {
     if found.window.holds() { held(name, found) } else { nothing_held(name, found) }
 }
 
-/// The pose in which the joint of an end fails first, as the end of a phrase.
+/// The words ", first in the pose NAME" for the end of a sentence. Empty if no pose is named.
 fn first_in(pose: &str) -> String {
     if pose.is_empty() { String::new() } else { format!(", first in the pose {pose}") }
 }
 
-/// "less than 2.000 kg is too little for j2 (...), first in the pose down".
+/// The words on payloads below the smallest one that holds in all poses: "less than 2.000 kg is too little for j2
+/// (...), first in the pose down".
 fn too_little(found: &Capacity) -> String {
     let least = &found.window.least;
     let (least_kg, joint) = (fixed(least.payload_kg, 3), failing(least));
     format!("less than {least_kg} kg is too little for {joint}{}", first_in(&found.least_pose))
 }
 
-/// No payload passes in all poses: what is too much for one joint is too little for another.
+/// The sentence for an arm that no payload suits in all poses: what is too much for one joint is too little for
+/// another.
 fn nothing_held(name: &str, found: &Capacity) -> String {
     let Window { least, most } = &found.window;
     let words = if least.payload_kg.is_finite() {
@@ -199,7 +202,8 @@ fn fastest(speed: &LargestSpeed) -> String {
     format!("\n{}", wrap(&words, TERMINAL, ""))
 }
 
-/// A table of the poses: the payload at one end of its window in words, and what fails beyond it.
+/// A table with one row for each pose: reach, payload at one end of the range that holds, and what fails beyond this
+/// end. `payload` and `end` are the headers of the payload and of the piece that fails.
 fn table([payload, end]: [&str; 2], rows: &[(&AtPose, String, &Limit)]) -> String {
     let widest = |head: &str, of: fn(&Limit) -> &str| {
         let widths = rows.iter().map(|(_, _, limit)| of(limit).chars().count());

@@ -71,8 +71,8 @@ fn exit_of(found: &[Found]) -> Exit {
     }
 }
 
-/// What must be read as a whole to check `file`: the folder of a campaign for one of its readings, the folder of a
-/// catalog for one of its files, the folder of a result for one of its files. Otherwise it is the file itself.
+/// The folder or file that must be read as a whole to check `file`. If `file` is a reading of a campaign, a file of a
+/// catalog or a file of a result, it is the folder of the campaign, catalog or result. Otherwise it is the file itself.
 fn unit_of(file: &Path) -> PathBuf {
     let name = file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let folder = folder_of(file);

@@ -7,9 +7,9 @@ use crate::input::key::{Kind, SCHEMA_ADDRESS, Shape};
 use crate::input::schema::FileKind;
 use serde_json::{Map, Value};
 
-/// The kind of file to which a document belongs: the one whose keys match most keys of the document, or "cases" for a
-/// list of cases. If several kinds match equally many keys, it is the first of them in the lists, where files that
-/// users write come before files that the program writes. `None` if no kind matches.
+/// The kind of file to which a document belongs. A list of cases is of the kind "cases". For an object it is the kind
+/// with which the object has most keys in common. If several kinds have equally many, files that users write come
+/// before files that the program writes. `None` if no kind has a key of the object.
 pub(super) fn kind_of(value: &Value) -> Option<&'static str> {
     let Value::Object(map) = value else {
         let is_case = |item: &Value| item.as_object().is_some_and(|map| map.keys().any(|key| CASE.has(key)));
@@ -51,7 +51,8 @@ fn may_be(kind: &Kind, value: &Value) -> bool {
     }
 }
 
-/// The keys that a file of this kind, which the program writes, must have and that a document lacks.
+/// The keys that a document lacks, although every file of this kind has them. `kind` is a kind of file that the program
+/// writes.
 pub(super) fn missing_keys(kind: &str, value: &Value) -> Vec<&'static str> {
     let file: Option<&FileKind> = OUTPUTS.iter().find(|file| file.name == kind);
     let Some(Kind::Object(shape)) = file.map(|file| file.root) else { return Vec::new() };

@@ -146,8 +146,9 @@ fn search_choice(
     }
 }
 
-/// Folder name of choice `at` (counted from 0). It contains a part of the study's hash, so that the result of an edited
-/// study does not replace one that a common front written earlier names.
+/// Folder name of choice `at` (counted from 0). It contains a part of the hash of this choice of the study. If the
+/// study is edited, its results go to new folders, so that the folders to which an earlier joint front refers keep
+/// their results.
 fn folder_of_choice(at: usize, choice: &BalanceChoice) -> String {
     format!("choice-{}-{}", at + 1, &hash(choice.text.as_bytes())[..HASH_LETTERS])
 }

@@ -101,7 +101,8 @@ pub(super) struct FoundExactly {
     pub boxes: [u64; 2],
     /// Optimality gap that was proved, as a fraction; 0 if the front is whole, `None` if no gap was proved.
     pub gap: Option<f64>,
-    /// Whether designs that differ only in drives of equal mass and torsion curve are all rows of the front.
+    /// Whether each design has a row of its own even if it differs from another one only in drives of equal mass and
+    /// torsion curve (ties). If not, one row stands for all of them.
     pub ties_listed: bool,
 }
 

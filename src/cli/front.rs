@@ -116,7 +116,8 @@ fn refuse_beyond_bounds(study: &Study) -> Result<(), Failure> {
     }
 }
 
-/// Faults of a folder whose study (`text`) or front (`table`) is not the one that `run.json` (`run`) states.
+/// Faults of a result whose files do not agree with its `run.json`. `run` is the content of this file, `text` is that
+/// of `study.json`, and `table` is the front.
 fn differences_from_run(run: &Value, text: &str, table: &FrontTable) -> Vec<String> {
     let mut faults = Vec::new();
     if run["study_hash"].as_str() != Some(hash(text.as_bytes()).as_str()) {

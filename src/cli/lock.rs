@@ -37,8 +37,8 @@ impl Lock {
                 // this file system has no locks, so the work continues without one
                 Err(TryLockError::Error(_)) => {}
             }
-            // the process that had the lock may have removed the file after it was opened here and before it was
-            // locked, or another one may have put a link there; nothing is written before this is known
+            // between opening and locking, the process that had the lock may have removed the file, or another one may
+            // have put a link there; nothing is written before this is checked
             if !is_the_file_at(&file, path) {
                 continue;
             }

@@ -37,7 +37,7 @@ impl Log {
         Self { form, is_quiet }
     }
 
-    /// The log that the words of a command line ask for, also if the command line is wrong otherwise.
+    /// The log that the words of a command line ask for. This also works for a command line that has other mistakes.
     pub fn asked_by(words: impl IntoIterator<Item = OsString>) -> Self {
         let words: Vec<OsString> = words.into_iter().take_while(|word| word != "--").collect();
         let is_json = words.iter().any(|word| word == "--log=json")

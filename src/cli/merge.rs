@@ -247,7 +247,7 @@ impl Shards {
         }
         let designs_total = first.manifest["designs_total"].as_f64().unwrap_or_default() as u128;
         let of = first.shard.of;
-        // if two folders have the same shard, one of them is used; they were compared above
+        // if two folders have the same shard, only one of them is used; the check above made sure that they agree
         let by_number = all.into_iter().map(|found| (found.shard.number, found)).collect();
         Ok(Self { by_number, of, designs_total })
     }

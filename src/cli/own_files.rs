@@ -1,7 +1,8 @@
-//! Files that a verb writes outside of results: it replaces its own and no other.
+//! Files that a verb writes outside of results: it replaces its own files, and no others.
 //!
-//! A file is a verb's own if it has the content that the verb would write, if the folder's list says that it was
-//! written by the program and is unchanged, or if its content shows it ([`write_recognized`]).
+//! A file is a verb's own in three cases: it has the content that the verb would write; it is unchanged since the
+//! program wrote it, by the list that the folder keeps (`.armwright/written.json`); or its content shows that the
+//! program wrote it ([`write_recognized`]).
 
 use super::failure::Failure;
 use super::links::{has_strange_parent, is_there, refuse_link};
@@ -30,7 +31,8 @@ pub(super) fn write_own(folder: &Path, files: &[(String, Vec<u8>)], inputs: &[&P
     write_all(folder, &[(LIST.into(), text.into_bytes())], &[])
 }
 
-/// Writes files into a folder. `is_own` says of the name and content of an existing file whether it may be replaced.
+/// Writes files into a folder. `is_own` takes the name and the content of an existing file, and says whether it may be
+/// replaced.
 ///
 /// # Errors
 /// A file cannot be written, is one of the `inputs`, belongs to a result, or would replace another file with other

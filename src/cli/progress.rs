@@ -126,8 +126,8 @@ impl<'r> Watch<'r> {
         Self { started, record, log }
     }
 
-    /// Looks at a search again and again until `finished` is set. Each time, `see` is called with the elapsed time to
-    /// show the progress, and the state of the search, which `now` returns, is added to the record if a line is due.
+    /// Observes a search every 50 ms until `finished` is set. Each time it calls `see` with the elapsed time, which
+    /// shows the progress. If a line of the record is due, it adds the state that `now` returns.
     fn look(&self, finished: &AtomicBool, now: impl Fn() -> Progress, mut see: impl FnMut(Duration)) {
         let (mut next, mut last_gap) = (Duration::ZERO, None);
         while !finished.load(Ordering::Relaxed) {

@@ -38,8 +38,8 @@ impl ResultFolder {
     /// is made if it is missing. Work that an earlier process left unfinished is completed or removed.
     ///
     /// # Errors
-    /// Another process writes the folder, the folder cannot be written, its unfinished work is reached over a symbolic
-    /// link, or it has files with some of the names `planned` that are not part of an earlier result.
+    /// The folder cannot be used: another process writes it, it cannot be written, its unfinished work is reached over
+    /// a symbolic link, or some name in `planned` is taken by a file that is not part of an earlier result.
     pub(super) fn open(
         folder: &Path,
         manifest: &'static str,
@@ -164,8 +164,8 @@ pub(super) fn settle(state: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The path of the file that saves the state of an unfinished search, in a folder of results. `name` tells the searches
-/// of the folder apart.
+/// The path of the file that saves the state of an unfinished search, in a folder of results. `name` distinguishes the
+/// searches that save their states in this folder.
 pub(super) fn unfinished_in(folder: &Path, name: &str) -> PathBuf {
     folder.join(STATE).join(format!("{name}{ENDING}"))
 }

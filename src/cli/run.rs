@@ -115,21 +115,22 @@ impl RunArgs {
         Ok(planned(&asked.study).into_iter().filter(|name| !stays || name != STUDY).collect())
     }
 
-    /// Refuses a record of progress in place of an input or of a file of a result.
+    /// Refuses the file of `--progress` if it is an input, or a file of a result.
     ///
     /// # Errors
-    /// The file for the record is such a file.
+    /// The file is one of these.
     fn refuse_record_over_input(&self) -> Result<(), Failure> {
         let inputs = [Some(Path::new(&self.study)), self.effects.as_deref()];
         let inputs: Vec<&Path> = inputs.into_iter().flatten().collect();
         refuse_overwriting(self.progress.as_slice(), &inputs)
     }
 
-    /// The record of progress, if the user asks for one. `planned` are the names of the files that the run will write
-    /// to the folder `dir`, and `unfinished` is the state of a search that was stopped, if it is there.
+    /// Opens the file of `--progress`, if the user asks for one. `dir` is the folder of the result, `planned` are the
+    /// names of the files that the run will write there, and `unfinished` is the file with the state of a search that
+    /// was stopped.
     ///
     /// # Errors
-    /// The record would be in the place of another file, or cannot be written.
+    /// The file is one of those that the run will write, or it cannot be written.
     fn record(&self, dir: &Path, planned: &[String], unfinished: &Path) -> Result<Option<Record>, Failure> {
         let Some(path) = &self.progress else { return Ok(None) };
         let is_planned =
@@ -356,10 +357,10 @@ fn run_paper(args: &RunArgs, catalogs: &Catalogs, log: Log) -> Result<String, Fa
 /// Significant digits of the numbers in the tables of a page. The files have all digits.
 const PAGE_DIGITS: usize = 5;
 
-/// Columns of the tables of the paper's studies that are for programs: the page leaves them out.
+/// Columns of the tables of the paper's studies that only programs use. The page leaves them out.
 const MACHINE_COLUMNS: [&str; 2] = ["id", "paper"];
 
-/// The header of a column of such a table in words.
+/// The header, in words, of a column of a table of the paper's studies.
 fn header_words(column: &str) -> String {
     match column {
         "paper_words" => "in the paper".into(),

@@ -212,7 +212,8 @@ pub(super) fn search(asked: &Asked, settings: &SearchSettings) -> Result<Written
 }
 
 impl SearchSettings<'_> {
-    /// The state that an earlier process saved of the same search, if any, and the means to save further states.
+    /// Reads the state that an earlier process saved of the same search, if there is one. The result also saves further
+    /// states.
     ///
     /// # Errors
     /// The state belongs to another search, or cannot be read.
@@ -363,8 +364,8 @@ fn search_exactly(asked: &Asked, settings: &SearchSettings) -> Result<Written, F
     }
 }
 
-/// The result of an exact search with the exit code that it ends with. `is_partial` tells whether something remains to
-/// be proved, `is_interrupted` whether the user stopped the search.
+/// The result of an exact search, with its exit code. `is_partial` is true if the front is not yet proved, and
+/// `is_interrupted` if the user stopped the search.
 fn after_exact_search(written: Written, is_partial: bool, is_interrupted: bool, log: Log) -> Written {
     let exit = |written: Written, exit: Exit| Written { exit, ..written };
     if is_interrupted && is_partial {

@@ -238,8 +238,8 @@ impl Incumbents {
     }
 }
 
-/// If the folder has the same shard already, complete and from the same inputs: a sentence that says so. Otherwise
-/// `None`. `manifest` describes the shard that is asked for.
+/// A sentence that says that the folder already has the shard that `manifest` describes. `None` unless the shard in the
+/// folder is complete and was made from the same inputs.
 fn already_done(dir: &Path, manifest: &Value) -> Option<String> {
     let done = read_manifest(dir).ok()?;
     let same = |key: &str| done[key] == manifest[key];

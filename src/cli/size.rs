@@ -90,8 +90,8 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs, log: Log) -> Result<Stri
     Ok(text)
 }
 
-/// The first lines of the table: the motion that is asked for, and the sections of the open links. If no design is
-/// named (`is_trial`), these are trials, which the lines say.
+/// The first lines of the table: the motion that is asked for, and the sections of the open links. `is_trial` is true
+/// if no design is named. The sections are then those of median mass, and the lines say so.
 fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32], is_trial: bool) -> String {
     let trial = if is_trial { " (trial: median mass of its options)" } else { "" };
     let motion = &study.space.motion;
@@ -171,7 +171,7 @@ fn all_fits(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<String,
     let mut out = format!("{}\n", demand_line(joint, &demand, table));
     let slides = table.gears().iter().any(|gear| gear.kind.slides());
     let stiffness = if slides { "N/m" } else { "K2 Nm/rad" };
-    // the straight curve of a gear of which K1 alone is known is used as it is
+    // a gear of which only K1 is known has a straight torsion curve, and its K1 is marked as such
     let straight = if slides { "" } else { "K1 " };
     let _ = writeln!(out, "{MASS:>21}  {stiffness:>14}  drive");
     for index in table.all_fits(&demand) {

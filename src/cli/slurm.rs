@@ -105,8 +105,8 @@ echo "{told}shards $shards, merge $merge"
     ))
 }
 
-/// The largest number of tasks in an array if `slurm.conf` does not set `MaxArraySize`, which is then 1001 and one more
-/// than the largest index (<https://slurm.schedmd.com/slurm.conf.html>).
+/// The largest number of tasks in an array if `slurm.conf` does not set `MaxArraySize`. The setting is one more than
+/// the largest index of a task, and its default is 1001 (<https://slurm.schedmd.com/slurm.conf.html>).
 const MOST_TASKS: u32 = 1000;
 
 /// Lines of a script that say which setting of Slurm its array needs.

@@ -1,8 +1,8 @@
 //! What happens when the user wants to stop the program by a signal, such as Ctrl-C or SIGTERM.
 //!
-//! A verb that looks at the flag of [`stopped_by_signal`] stops by itself. Any other verb that writes ends at once, but
-//! never between two files that belong together. Either way the exit code is that of [`Failure::Interrupted`], and a
-//! message says what was written.
+//! A signal sets a flag ([`stopped_by_signal`]). Verbs with long computations test this flag and stop by themselves.
+//! Any other verb that writes ends at once, but never between two files that belong together. Either way the exit code
+//! is that of [`Failure::Interrupted`], and a message says what was written.
 
 use super::failure::Failure;
 use super::log::Log;
@@ -12,19 +12,19 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Mutex, Once, OnceLock, PoisonError};
 use std::time::Duration;
 
-/// Time between two looks at the flag while a computation that does not look at it runs.
+/// Time between two tests of the flag, while a computation runs that does not test the flag itself.
 const LOOK_EVERY: Duration = Duration::from_millis(50);
 
 /// Set when the user wants to stop the program.
 static STOP: AtomicBool = AtomicBool::new(false);
-/// Whether the first signal ends the program, because the verb does not look at the flag.
+/// Whether the first signal ends the program, because the verb does not test the flag.
 static ENDS_AT_ONCE: AtomicBool = AtomicBool::new(false);
 /// Held while files that belong together are written.
 static WRITING: Mutex<()> = Mutex::new(());
 /// The log for the last message.
 static LOG: OnceLock<Log> = OnceLock::new();
 
-/// Reacts to signals from now on. `looks` says whether the verb looks at the flag.
+/// Reacts to signals from now on. `looks` says whether the verb tests the flag.
 pub(super) fn listen(looks: bool, log: Log) {
     let _ = LOG.set(log);
     ENDS_AT_ONCE.store(!looks, Ordering::Relaxed);
@@ -68,7 +68,7 @@ pub(super) fn together<T>(write: impl FnOnce() -> T) -> T {
     write()
 }
 
-/// Fails if the user wants to stop the program and nothing is written yet.
+/// Fails if the flag is set. The error says that nothing was written, so it is called before anything is written.
 ///
 /// # Errors
 /// The flag is set.
@@ -79,8 +79,8 @@ pub(super) fn refuse_if_stopped() -> Result<(), Failure> {
     }
 }
 
-/// The result of `work`, which does not look at the flag itself. It is left running when the user wants to stop the
-/// program; the caller then ends the process.
+/// Runs `work`, which does not test the flag itself, on another thread, and returns its result. If the user wants to
+/// stop the program first, the function fails and leaves `work` running; the caller then ends the process.
 ///
 /// # Errors
 /// The user wants to stop the program.

@@ -60,7 +60,8 @@ pub(super) struct Found<'a> {
     pub near: Option<&'a NearDesigns>,
     /// Whether the search was exact.
     pub is_exact: bool,
-    /// Whether designs that differ only in drives of equal mass and torsion curve are all rows of the front.
+    /// Whether each design has a row of its own even if it differs from another one only in drives of equal mass and
+    /// torsion curve (ties). If not, one row stands for all of them.
     pub ties_listed: bool,
     /// Set when the user wants to stop the program.
     pub stop: &'a AtomicBool,

@@ -49,8 +49,8 @@ pub(super) struct Unfinished {
 
 struct Due {
     at: Instant,
-    /// Time at which a state was found to be due, while it is not saved yet. The time from then on counts as the cost
-    /// of saving.
+    /// Time at which the next state became due, while it is not saved yet. The time from then on counts as the cost of
+    /// saving.
     since: Option<Instant>,
     every: Duration,
     has_failed: bool,
@@ -77,7 +77,7 @@ impl Unfinished {
         Ok(out)
     }
 
-    /// As [`open`](Self::open), but a state of another search or a damaged one is removed, and the search begins.
+    /// Like [`open`](Self::open), but removes a damaged state, or one of another search, and begins the search anew.
     ///
     /// # Errors
     /// The state cannot be read or removed.

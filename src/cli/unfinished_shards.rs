@@ -35,7 +35,7 @@ pub(super) fn begun_in(folder: &Path, depth: usize) -> Result<Vec<Begun>, Failur
     }
     let state = unfinished_in(folder, "search");
     let is_running = is_being_written(folder);
-    // a folder of another search has neither, and may have shards in it
+    // if neither the saved state nor the name of the folder is that of a shard, the folders in it are searched
     let shard = shard_of_state(&state).or_else(|| shard_of_name(folder));
     if let Some(shard) = shard
         && (is_running || state.is_file())

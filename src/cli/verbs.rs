@@ -87,8 +87,8 @@ enum Verb {
 }
 
 impl Verb {
-    /// Whether the verb looks at the flag that a signal sets. `None` if it writes nothing, so that a signal may end it
-    /// at any moment.
+    /// Whether the verb tests the flag that a signal sets, and stops by itself. False if it does not, although it
+    /// writes files. `None` if it writes nothing, so that a signal may end it at any moment.
     fn stops(&self) -> Option<bool> {
         match self {
             Verb::Run(_) | Verb::Front(_) | Verb::Merge(_) | Verb::Reconcile(_) => Some(true),

@@ -9,8 +9,8 @@ use crate::study::load::load_study;
 use serde_json::Value;
 use std::path::Path;
 
-/// Refuses a file that is more likely of another kind than `wanted` (`arm`, `study`, `cases`). A file that cannot be
-/// read, or is not JSON, is left to its reader, which says so.
+/// Refuses a file that is more likely of another kind than `wanted` (`arm`, `study`, `cases`). It accepts a file that
+/// cannot be read or is not JSON, because the function that reads the file reports this.
 ///
 /// # Errors
 /// One fault that says of which kind the file is and which verb takes it.
@@ -18,7 +18,7 @@ pub(super) fn refuse_other_kind(path: &Path, wanted: &str) -> Result<(), Failure
     let text = std::fs::read_to_string(path).unwrap_or_default();
     let Ok(value) = serde_json::from_str::<Value>(&text) else { return Ok(()) };
     let Some(kind) = kind_of(&value).filter(|kind| *kind != wanted) else { return Ok(()) };
-    // an object may have as many keys of the kind that is wanted
+    // if the object has as many keys of the kind that is wanted, it is accepted
     match kind == "cases" || keys_of_kind(kind, &value) > keys_of_kind(wanted, &value) {
         true => Err(Faults(vec![Fault {
             file: path.display().to_string(),

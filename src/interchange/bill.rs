@@ -111,8 +111,8 @@ fn joint_parts(joint: &Joint, catalogs: &Catalogs, elsewhere: &[Elsewhere]) -> V
     out
 }
 
-/// The rows of a prismatic joint. What stays of it may have a screw or rack and a motor, which then have rows of their
-/// own.
+/// The rows of a prismatic joint: the mass that travels, and the mass that stays. A motor and a screw or rack are part
+/// of the mass that stays. Each of them has a row of its own, and the mass that remains has another.
 fn prismatic_parts(joint: &Prismatic, catalogs: &Catalogs) -> Vec<Row> {
     let at = joint.name.as_str();
     let mut out = Vec::new();
@@ -128,13 +128,14 @@ fn prismatic_parts(joint: &Prismatic, catalogs: &Catalogs) -> Vec<Row> {
         });
     }
     if let Some(gear) = &joint.gear {
-        // the rounding of the sum goes to the screw or rack, so that the rows add up to the mass of the arm
+        // if nothing but rounding remains after the screw or rack, its row takes the remainder too, so that the rows
+        // add up to the mass of the arm
         let is_all = stays_kg - gear.mass_kg <= ROUNDED_KG;
         let gear_kg = if is_all { stays_kg } else { gear.mass_kg };
         stays_kg -= gear_kg;
         out.push(stated(at, gear.name.clone(), "screw or rack", gear_kg));
     }
-    // if the mass of a motor was subtracted, a very small rest is the rounding error of the difference
+    // after the mass of a motor was subtracted, a remainder this small is a rounding error, and it gets no row
     let least_kg = if joint.motor.is_some() { ROUNDED_KG } else { 0.0 };
     if stays_kg > least_kg {
         out.push(stated(at, format!("what stays of {at}"), "prismatic", stays_kg));

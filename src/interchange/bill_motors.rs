@@ -14,7 +14,8 @@ use nalgebra::Matrix3;
 pub(super) struct Elsewhere {
     /// Name of the joint that it drives.
     pub joint: String,
-    /// The body that it is: index of the element, and of the body among those of the element.
+    /// The body of the arm that is this motor, or this motor with its gear: index of the element, and index of the body
+    /// among those of the element.
     pub body: (usize, usize),
     /// The rows of this body: the motor, and the gear if it sits at the motor.
     pub rows: Vec<Row>,
@@ -58,7 +59,8 @@ struct Split {
 /// none if the mass of the joint shows that the motor sits at it.
 fn splits(joint: &Joint, gear: Option<&Gear>, motor_kg: f64) -> Vec<Split> {
     let Some(gear) = gear.filter(|gear| gear.kind != GearKind::Actuator) else {
-        // a gear in numbers, or none: only stages tell that the motor may sit elsewhere
+        // the gear is given in numbers or there is none; the motor may sit elsewhere only if stages (belts) lie between
+        // it and the joint
         let may_be = joint.stages != Default::default() && joint.mass_kg < motor_kg;
         return if may_be { vec![Split::default()] } else { Vec::new() };
     };
@@ -73,7 +75,7 @@ fn splits(joint: &Joint, gear: Option<&Gear>, motor_kg: f64) -> Vec<Split> {
     known.map(|at_motor| Split { gear_at_motor: Some(at_motor), ..Split::default() }).collect()
 }
 
-/// The first body of this mass \[kg\] without inertia that is not yet `taken`; `None` if there is none.
+/// The first body that has this mass \[kg\] and no inertia, and is not in the list `taken`; `None` if there is none.
 fn body_of_mass(arm: &Arm, mass_kg: f64, taken: &[(usize, usize)]) -> Option<(usize, usize)> {
     let bodies = arm.chain.iter().enumerate().flat_map(|(element, item)| {
         bodies_of(item).into_iter().enumerate().map(move |(i, body)| ((element, i), body))

@@ -203,8 +203,8 @@ fn to_calculix(asked: &Asked) -> Export {
     out
 }
 
-/// Remarks on what solids with rigid end faces do otherwise than the links of an arm. `impossible` names bodies whose
-/// inertia no solid has.
+/// Remarks on differences between the arm and the model of solids, in which both ends of a link are rigid. `impossible`
+/// names bodies whose inertia no solid has.
 fn solids_notes(asked: &Asked, links: LinkModel, impossible: &[String]) -> Vec<String> {
     let mut out = Vec::new();
     let open = asked
@@ -275,7 +275,7 @@ fn to_mjcf(asked: &Asked, catalogs: &Catalogs) -> Export {
     }
 }
 
-/// Remarks on what an MJCF file does otherwise than the arm. `pieces` is the number of parts of each link; 0 if links
+/// Remarks on differences between an MJCF file and the arm. `pieces` is the number of parts of each link; 0 if links
 /// are rigid.
 fn mjcf_notes(pieces: usize, file: &Mjcf) -> Vec<String> {
     let mut out = vec![match pieces {
@@ -349,7 +349,7 @@ fn to_urdf(asked: &Asked) -> Export {
         ],
         left_out: rest.left_out,
         notes,
-        // a rigid arm has torques and nothing else
+        // the expected results of a rigid arm are the torques and forces alone
         expected: torques_and_forces(&snapshot),
     }
 }
@@ -365,8 +365,8 @@ fn links_in_pieces(arm: &Arm) -> Vec<String> {
     .collect()
 }
 
-/// A note for files that lack some loads of the arm: at which torques the tangents of their springs are taken. `None`
-/// if they lack none.
+/// A note for files that lack some loads of the arm. It says that the springs in the files have the tangent stiffnesses
+/// at the torques with all loads. `None` if the files lack no load.
 fn working_points_note(left_out: &[LeftOut]) -> Option<String> {
     const LOADS: [&str; 5] = ["water", "balance_spring", "joint_torque", "turns_with", "tip_load"];
     let loads: Vec<&str> =

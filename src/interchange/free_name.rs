@@ -1,4 +1,4 @@
-//! Names that nothing else has: of links and joints that a conversion adds to those of an arm or a robot.
+//! Unique names for the links and joints that a conversion adds to those of an arm or a robot.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +14,8 @@ impl FreeNames {
         Self { taken: taken.into_iter().collect() }
     }
 
-    /// Takes the name `name` if it is free. Else `end` is added to it until it is.
+    /// Takes the name `name` if it is free. Otherwise appends `end` until the name is free. Returns the name that was
+    /// taken.
     pub(super) fn take(&mut self, name: &str, end: &str) -> String {
         let mut free = name.to_string();
         while !self.taken.insert(free.clone()) {

@@ -4,10 +4,9 @@
 //! A URDF gives every link a frame of its own, rotated against the frame of its parent. In an arm all frames are
 //! parallel to the world's when all joint angles are zero. So every position, axis and inertia is converted to the
 //! root frame of the URDF at zero angles. The path from the root to the tip is the arm. Each moving joint on this
-//! path becomes a joint. Everything between two of them becomes one rigid link, which takes over the bodies of its
-//! URDF links. Side branches, which leave the path, are held where they stand
-//! while the arm is at zero angles, and their bodies are added to the link on
-//! which they hang.
+//! path becomes a joint. Everything between two of them becomes one rigid link, which takes over the bodies of its URDF
+//! links. The joints of side branches are held at one position each. The bodies of a side branch are added to the link
+//! on which it hangs.
 //!
 //! A URDF has no stiffness. A joint that the stiffness file does not name is rigid.
 
@@ -267,9 +266,9 @@ impl<'t> Walk<'t> {
         }));
     }
 
-    /// Adds the body of the URDF link `link`, whose frame is `at`, and the bodies of all side branches that hang on it,
-    /// to the link of the arm that is being built. If the link is itself in a side branch, `by` is the joint by which
-    /// it hangs.
+    /// Adds bodies to the link of the arm that is being built: the body of the URDF link `link`, whose frame is `at`,
+    /// and the bodies of all side branches that hang on it. If `link` is itself in a side branch, `by` is the joint by
+    /// which it hangs.
     fn lump(&mut self, link: &str, at: Isometry3<f64>, by: Option<&urdf_rs::Joint>) {
         let tree = self.tree;
         let Some(found) = tree.link(link) else { return };

@@ -33,7 +33,8 @@ pub(crate) struct Remainder {
     /// The arm without the properties that were removed so far.
     pub structure: Structure,
     case: LoadCase,
-    /// The arm as it stands: with all loads, and without the compliances that were removed so far.
+    /// The arm that determines the working points of the springs. It keeps the loads that were removed from
+    /// `structure`, and lacks only the compliances that were removed.
     whole: Structure,
     whole_case: LoadCase,
     springs: FileSprings,
@@ -117,8 +118,8 @@ impl Remainder {
         self.structure.joints().filter(|joint| has(joint)).map(|joint| joint.name.clone()).collect()
     }
 
-    /// Removes, joint by joint, that a joint turns with other joints because its motor sits inboard of them. Each joint
-    /// is then turned by its own drive alone. This is for files that cannot state motors that sit elsewhere.
+    /// Makes each joint turn by its own drive alone, joint by joint. In the arm, a joint whose motor sits inboard of
+    /// other joints also turns when those joints turn. Files that cannot state where motors sit lose this coupling.
     pub(crate) fn without_turning_with_others(&mut self) {
         for name in self.joints_that(|joint| !joint.turns_with.is_empty()) {
             let why = "the file has no motor that sits elsewhere: the joint does not turn with the joints that its belts cross";

@@ -25,7 +25,7 @@ const LEAST_MASS: f64 = 1e-10;
 const LEAST_RADIUS2_M2: f64 = 1e-7;
 /// Least armature of the hinge of a backlash, relative to the motor's.
 const PLAY_ARMATURE: f64 = 1e-3;
-/// Time step that a backlash may not shorten \[s\]: the armature of its hinge is large enough for it.
+/// Time step that stays stable in spite of a backlash \[s\]: the armature of its hinge is made large enough for it.
 const PLAY_STEP_S: f64 = 1e-4;
 
 /// An MJCF file, and what the reader must know of it.
@@ -106,7 +106,8 @@ fn step_words(step: TimeStep) -> String {
     }
 }
 
-/// The exported arm as MuJoCo moves it, in the pose of the case with straight springs.
+/// The exported arm as MuJoCo moves it, for the choice of the time step. The arm is in the pose of the case, and its
+/// springs are undeflected.
 fn moving<'n>(
     snapshot: &Snapshot,
     nodes: &'n [Node],
@@ -205,11 +206,13 @@ fn armature_kgm2(hinge: &Hinge, motors: &BTreeMap<String, Motor>) -> Option<f64>
     }
 }
 
-/// Armature of the hinge of a backlash \[kg m²\]. Without one, this hinge and that of the gear would have one axis and
-/// nothing between them, and the mass matrix would be singular. With a very small one, it would vibrate on the spring
-/// of the gear so fast that it alone would shorten the time step: an explicit step of `h` is stable up to an angular
-/// frequency of `2/h`, and half of that is permitted. `motor_kgm2` is the armature of the motor, `gear` the spring of
+/// Armature of the hinge of a backlash \[kg m²\]. `motor_kgm2` is the armature of the motor, and `gear` the spring of
 /// the gear.
+///
+/// Without any armature, this hinge and that of the gear would have one axis and no mass between them, and the mass
+/// matrix would be singular. With a very small armature, the hinge would vibrate very fast on the spring of the gear,
+/// and the time step would have to be shorter. A step of `h` is stable up to an angular frequency of `2/h`; the
+/// armature is chosen such that the hinge has half of this frequency at the step `PLAY_STEP_S`.
 fn play_armature_kgm2(motor_kgm2: f64, gear: &Working) -> f64 {
     let steady_kgm2 =
         if gear.is_rigid() { 0.0 } else { gear.tangent_nm_per_rad() * PLAY_STEP_S * PLAY_STEP_S };
@@ -217,9 +220,10 @@ fn play_armature_kgm2(motor_kgm2: f64, gear: &Working) -> f64 {
 }
 
 /// Writes the couplings of passive joints as tendons. The length of such a tendon is the angle of the passive joint
-/// minus the one that its driving joints ask for (with motor, backlash and gear of each). A rigid coupling keeps the
-/// length at zero. A compliant one has the spring of the passive joint: a hinge of its own for this spring would have
-/// the axis of the joint and nothing between, and the mass matrix would be singular.
+/// minus the angle that follows from its driving joints. The angle of a driving joint is the sum of its motor, backlash
+/// and gear. A rigid coupling keeps the length at zero. In a compliant coupling the tendon has the spring of the
+/// passive joint. A separate hinge for this spring would lie on the axis of the joint without mass between them, and
+/// the mass matrix would be singular.
 fn couplings(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
     let hinges: Vec<&Hinge> = nodes.iter().flat_map(|node| &node.hinges).collect();
     let mut followers: Vec<(usize, &Hinge, Working)> = Vec::new();
@@ -292,8 +296,8 @@ fn actuators(xml: &mut Xml, snapshot: &Snapshot, motors: &BTreeMap<String, Motor
     xml.close();
 }
 
-/// Writes the pose of the case as two keyframes. In the first all springs are undeflected, for the comparison of
-/// frequencies and torques; in the second they are deflected by the load of the case.
+/// Writes the pose of the case as two keyframes. In the first, all springs are undeflected; frequencies and torques are
+/// compared in it. In the second, they are deflected by the load of the case.
 fn keyframes(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
     let position = |deflected: bool| numbers(&positions(snapshot, nodes, deflected));
     xml.open("keyframe", &[]);
@@ -302,7 +306,8 @@ fn keyframes(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
     xml.close();
 }
 
-/// The position of every hinge in the pose of the case \[rad, m\], with springs straight or deflected by the load.
+/// The position of every hinge in the pose of the case \[rad, m\]. If `deflected`, the springs are deflected by the
+/// load of the case; otherwise they are undeflected.
 fn positions(snapshot: &Snapshot, nodes: &[Node], deflected: bool) -> Vec<f64> {
     let (driven, pose) = (snapshot.case_joints(), snapshot.pose_si());
     let hinges = || nodes.iter().flat_map(|node| &node.hinges);

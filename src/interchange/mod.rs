@@ -1,16 +1,15 @@
 //! Exchange with other tools: robots of URDF files become arms, and arms become models for finite elements,
 //! simulation and purchase.
 //!
-//! - Import: `import` makes an arm of the path from the root of a URDF file (`urdf_file`, read by the crate `urdf-rs`;
-//!   `urdf_place` finds the lines that the crate does not name)
-//!   to a tip. `given` reads the stiffness of the joints, which a URDF does not have; `keys` has the
-//!   keys of these files. `report` says what became of
-//!   every link and joint of the URDF.
-//! - Export: `request` is what is asked for, and `export` writes an arm in a load case. `snapshot` has its springs at
-//!   their working points, and `tree` converts it to a chain of rigid bodies for `mjcf` and `urdf_out`. `motors` has
-//!   what catalogs know of its drives. `calculix` converts it to solids, `bill` and `design_table` to tables;
-//!   `table_notes` says what these do not have. `left_out` lists what a file cannot represent, each with its part of
-//!   the tip deflection.
+//! - Import: `import` makes an arm of the path from the root of a URDF file to a tip. `urdf_file` reads the file with
+//!   the crate `urdf-rs`, and `urdf_place` finds the lines of faults, which the crate does not report. `given` reads
+//!   the stiffness file, which states the stiffness of the joints. `keys` has the keys of the stiffness file and of
+//!   `import.json`. `report` says what became of every link and joint of the URDF.
+//! - Export: `request` has the input of an export, and `export` writes an arm in a load case. `snapshot` has the
+//!   springs of the arm at their working points. `tree` converts the arm to a chain of rigid bodies, which `mjcf` and
+//!   `urdf_out` write. `motors` finds the inertia, peak torque and backlash of the drives in the catalogs. `calculix`
+//!   converts the arm to solids, `bill` and `design_table` to tables. `table_notes` names what the tables lack.
+//!   `left_out` lists what a file cannot represent, each with its part of the tip deflection.
 
 pub(crate) mod bill;
 mod bill_motors;

@@ -1,4 +1,4 @@
-//! What is asked of an export, and its answer: the files, and what they leave out.
+//! The request for an export, and its answer: the files, and what they leave out.
 
 use super::export::{Asked, Format, export};
 use super::left_out::LeftOut;

@@ -1,11 +1,11 @@
 //! An arm in a load case, with the springs of its joints at their working points.
 //!
-//! A torsion curve has no single stiffness. At the load of a case it has a *secant* stiffness (load over deflection),
-//! with which a linear program computes the right deflection, and a *tangent* stiffness, with which it computes the
-//! right frequencies.
+//! A torsion curve has no single stiffness. At the load of a case it has two. With the *secant* stiffness (load over
+//! deflection) a linear program computes the right deflection. With the *tangent* stiffness it computes the right
+//! frequencies.
 //!
-//! A file may lack loads that the arm has, such as that of a balance spring. The gears of the arm still work where all
-//! loads put them, so the tangents of a file are those of the arm as it stands.
+//! A file may lack loads that the arm has, such as that of a balance spring. The torque at which each gear works still
+//! depends on all loads of the arm. So the tangent stiffnesses in a file are those at the torques with all loads.
 
 use crate::arm::LinkModel;
 use crate::arm::load::LoadCase;
@@ -85,14 +85,15 @@ impl Working {
     }
 }
 
-/// The springs that a file has in place of torsion curves. Their tangents are those of the arm as it stands, with all
-/// its loads.
+/// The springs that a file has in place of torsion curves. Their tangent stiffnesses are those at the loads of the
+/// whole arm, including loads that the file lacks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum FileSprings {
-    /// One linear spring for each curve, with its tangent. Its position of rest is such that it deflects as much as the
-    /// curve under the loads of the arm as it stands.
+    /// One linear spring for each curve, with its tangent stiffness. The rest position of the spring is chosen such
+    /// that it deflects as much as the curve does under all loads of the arm.
     Tangents,
-    /// The secant at the loads in the file for deflections, and the tangent for frequencies.
+    /// Two stiffnesses for each curve: the secant stiffness at the loads in the file, for deflections, and the tangent
+    /// stiffness, for frequencies.
     SecantsAndTangents,
 }
 
@@ -116,8 +117,8 @@ impl Snapshot {
         Self { case: LoadCase { links, ..case.clone() }, structure, chain, in_file: None }
     }
 
-    /// This arm with the springs of a file. `whole` is the arm as it stands: it has the same elastic elements, and all
-    /// loads.
+    /// This arm with the springs of a file. `whole` has the same elastic elements and all loads; this arm may lack some
+    /// of the loads.
     pub(crate) fn with_springs(self, springs: FileSprings, whole: &Snapshot) -> Self {
         let joined = |(here, whole): (&Working, &Working)| match springs {
             FileSprings::Tangents => whole.linear_under(here.load_nm),
@@ -146,7 +147,8 @@ impl Snapshot {
         self.statics().tip_displacement_m
     }
 
-    /// The static state of the arm in the case. With the springs of a file, its deflections and tangents are theirs.
+    /// The static state of the arm in the case. If the arm has the springs of a file, the deflections and the tangent
+    /// compliances are those of these springs.
     fn statics(&self) -> Statics {
         let posed = self.posed();
         let mut statics = posed.statics();

@@ -1,8 +1,9 @@
-//! What the tables of an arm, `design.csv` and `bom.csv`, do not have of it.
+//! Notes that name the properties of an arm that its tables `design.csv` and `bom.csv` do not show.
 
 use crate::arm::{Arm, Element, Extras, LinkBody, Section};
 
-/// A note that names what `design.csv` has no columns for; `None` if the arm has nothing of it.
+/// A note that names the properties of the arm for which `design.csv` has no columns; `None` if the arm has no such
+/// properties.
 pub(super) fn not_in_design_table(arm: &Arm) -> Option<String> {
     let joints = |has: &dyn Fn(&crate::arm::Joint) -> bool| -> Vec<String> {
         arm.joints().filter(|joint| has(joint)).map(|joint| joint.name.clone()).collect()
@@ -29,8 +30,8 @@ pub(super) fn not_in_design_table(arm: &Arm) -> Option<String> {
     sentence("design.csv", &parts)
 }
 
-/// A note that names what `bom.csv` has no row for; `None` if the arm has nothing of it. `effects_mass_kg` is the mass
-/// that effects add.
+/// A note that names the properties of the arm for which `bom.csv` has no row; `None` if the arm has no such
+/// properties. `effects_mass_kg` is the mass that effects add.
 pub(super) fn not_in_bill(arm: &Arm, effects_mass_kg: f64) -> Option<String> {
     let added = match effects_mass_kg == 0.0 {
         true => Vec::new(),

@@ -50,7 +50,7 @@ impl TimeStep {
         Self { step_s: digits / digits_per_s, highest_hz: highest_rad_per_s / TAU }
     }
 
-    /// Whether a simulation needs many more steps than that of an arm without light bodies.
+    /// Whether a simulation needs more than ten times as many steps as with the longest step that a file states.
     pub(super) fn is_short(self) -> bool {
         self.step_s < 0.1 * LONGEST_S
     }
@@ -128,7 +128,8 @@ fn turned(hinge: &Hinge, by: f64) -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::from(hinge.at_m - rotation * hinge.at_m), rotation)
 }
 
-/// The matrix that turns a twist at zero joint angles to that of the same axis on a body that was moved.
+/// The matrix that converts a twist to the twist of the same motion after its axis was moved by `by`. Before that, the
+/// axis is where it stands at zero joint angles.
 fn moved(by: &Isometry3<f64>) -> Matrix6<f64> {
     let mut out = Matrix6::zeros();
     for (i, mut column) in out.column_iter_mut().enumerate() {

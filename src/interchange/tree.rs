@@ -93,8 +93,9 @@ pub(crate) fn mass_properties(inertia: &Matrix6<f64>) -> (f64, Vector3<f64>, Mat
     (mass_kg, cg_m, without_rounding(0.5 * (about_cg + about_cg.transpose()), rounding_kgm2))
 }
 
-/// An inertia tensor without what is left of the difference of two larger ones: without a tensor that is no larger than
-/// this rounding error \[kg m²\], and without principal moments below zero.
+/// An inertia tensor without rounding errors. It was computed as the difference of two larger tensors, so its entries
+/// have errors of up to `rounding_kgm2` \[kg m²\]. A tensor without a larger entry becomes zero. A negative principal
+/// moment of this size becomes zero, and the other two moments rise by the same amount.
 fn without_rounding(tensor: Matrix3<f64>, rounding_kgm2: f64) -> Matrix3<f64> {
     if tensor.amax() <= rounding_kgm2 {
         return Matrix3::zeros();
@@ -152,7 +153,7 @@ struct Builder<'o> {
     nodes: Vec<Node>,
     /// Names of the passive joints.
     passive: BTreeSet<String>,
-    /// Names for hinges other than those of motors, which are called as their joints.
+    /// Free names for hinges. The hinge of a motor is not among them: it has the name of its joint.
     free: FreeNames,
 }
 

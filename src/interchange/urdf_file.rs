@@ -15,7 +15,7 @@ use urdf_rs::{Joint, JointType, Link, Pose, Robot};
 /// Largest negative principal moment that counts as rounding, relative to the largest entry of the tensor.
 const ROUNDING: f64 = 1e-6;
 /// Largest negative principal moment that counts as rounding, relative to mass times squared distance of the centre of
-/// gravity. Programs compute the tensor of a body as the difference of two that are so large.
+/// gravity. Programs often compute the tensor of a body as the difference of two tensors of about this size.
 const ROUNDING_AT_ORIGIN: f64 = 1e-12;
 
 /// A robot as a tree of links.
@@ -141,7 +141,8 @@ impl UrdfTree {
         self.path_to(link).into_iter().all(|joint| !moves(joint))
     }
 
-    /// Links that never move and have a negative principal moment of inertia. It does not matter for any arm.
+    /// Links that never move and have a negative principal moment of inertia. This is no fault, because the inertia of
+    /// a link that never moves has no effect on an arm.
     pub(crate) fn impossible_and_still(&self) -> Vec<&str> {
         let links = self.links.iter().filter(|link| self.stands_still(&link.name));
         links.filter(|link| least_moment_beyond_rounding(link).is_some()).map(|l| l.name.as_str()).collect()
@@ -363,7 +364,8 @@ mod tests {
         assert!(refused(&far.replace('X', "1e300")).contains("m away"));
     }
 
-    /// A product of inertia of 1e-20 beside zeros is rounding of a tensor that was moved from the origin.
+    /// A product of inertia of 1e-20, where all other entries are zero, is a rounding error of a tensor that was moved
+    /// from the origin.
     #[test]
     fn a_tensor_within_rounding_has_no_negative_moments_and_a_link_that_stands_still_may_have_any() {
         let inertial = |ixx: &str, ixz: &str| {

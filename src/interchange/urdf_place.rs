@@ -45,7 +45,8 @@ fn value_of<'t>(line: &'t str, key: &str) -> Option<&'t str> {
     rest[1..].split(quote).next()
 }
 
-/// The last line of a text that is cut off: it has no `<robot>`, or one that nothing ends. `None` if it is whole.
+/// The last line of a text that is cut off; `None` if it is whole. A text is cut off if it has no tag at all, or if it
+/// has a `<robot` and no `</robot`.
 pub(super) fn cut_off_at(text: &str) -> Option<usize> {
     let is_other = text.contains('<') && !text.contains("<robot");
     let is_whole = text.contains("</robot") || is_other;

@@ -1,5 +1,6 @@
 //! Runs the whole analysis of displacements, frequencies and bench readings: whether they differ from the model, which
-//! effects are missing, how certain these are, and whether they predict held-out poses.
+//! effects are missing, how certain these are, and whether they predict held-out poses. Besides effects of the library,
+//! the analysis tries *laws without a name*: smooth functions that reveal physics which the library lacks.
 
 use super::fit::descent::{Effort, Fit, Weights};
 use super::fit::held_out::{self, HeldOut, rms};
@@ -31,8 +32,8 @@ use crate::arm::Arm;
 use serde_json::Value;
 use std::cell::OnceCell;
 
-/// Poses that are held out together are the only ones that show an effect if the right model leaves more than this on them
-/// \[standard deviations\].
+/// Limit of the residuals that the best model would leave on held-out poses even if it were right \[standard
+/// deviations\]. Above it, only the poses of one fold show some effect, so held-out poses cannot confirm it.
 const SHOWN_BY_ONE_FOLD: f64 = 1.5;
 /// An effect is only suspected if it raises the natural logarithm of the evidence by less than this. Such evidence is
 /// not yet strong (Kass and Raftery 1995, table of Bayes factors).
@@ -104,7 +105,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
 }
 
 /// The candidates (effects at places) that the search tries: every effect that the campaign admits and the readings
-/// could show. `few`: there are only a handful of rows, and rare effects are left out.
+/// could show. If `few`, the campaign has only a handful of rows, and rare effects are left out.
 fn sought(campaign: &Campaign, forward: &Forward, nuisance: &Nuisance, few: bool) -> Vec<Candidate> {
     let mut candidates = candidates(forward);
     candidates.retain(|c| campaign.statement.considers(c.kind.name));
@@ -117,8 +118,8 @@ fn sought(campaign: &Campaign, forward: &Forward, nuisance: &Nuisance, few: bool
     candidates
 }
 
-/// Whether the evidence for the best effects is weak: their score exceeds that of the baseline by less than [`WEAK_EVIDENCE`].
-/// False if there are no effects.
+/// Whether the evidence for the best effects is weak: their score exceeds that of the baseline by less than
+/// [`WEAK_EVIDENCE`]. False if there are no effects.
 fn is_weak(selection: &Selection) -> bool {
     !selection.best.effects.is_empty() && selection.best.score - selection.baseline.score < WEAK_EVIDENCE
 }
@@ -309,7 +310,7 @@ impl Analysis<'_> {
                 return (Verdict::InsufficientData, vec![text]);
             }
         }
-        // without the poses that alone show an effect nothing is known of it, so nothing can be predicted either
+        // if only the poses of one fold show an effect, a fit without them knows nothing of it and cannot predict them
         let held_out =
             held_out.filter(|k| !self.shows_in_one_fold() || k.rms_after > TOO_FAR_OFF * self.expected_rms);
         if let Some(k) = held_out.filter(|k| k.rms_after > k.rms_before + 0.02) {

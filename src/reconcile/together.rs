@@ -333,8 +333,9 @@ impl Both<'_> {
     }
 
     /// Root mean squares of the held-out residuals of both kinds of readings together \[standard deviations\].
-    /// `rms_before` is with calibration alone. Its part for positions is scaled by the ratio of median errors, because
-    /// the fit with the findings of the other readings already contains effects.
+    /// `rms_before` is to be that of calibration alone. But the fit of the positions already has effects that the other
+    /// readings showed. So its root mean square is multiplied by the ratio of two median errors: with calibration
+    /// alone, and with these effects.
     fn held_out(&self) -> Option<HeldOut> {
         let (Some(loaded), Some(placed)) = (self.loaded.held_out, self.placed.held_out) else {
             return self.loaded.held_out.or(self.placed.held_out);

@@ -81,8 +81,8 @@ pub struct Analysis {
     unbent: Vec<String>,
     /// Name of each balance spring, with its length and force, or its torque, in the pose of the case.
     springs: Vec<(String, Drawn)>,
-    /// The lowest mode with every tube divided at the bodies on it \[Hz\]; `None` if no tube has a body between its
-    /// ends, or no mode was asked for.
+    /// The lowest mode, computed with every tube cut into several tubes at the bodies on it \[Hz\]. `None` if no tube
+    /// has a body between its ends, or no mode was asked for.
     divided_hz: Option<f64>,
 }
 
@@ -408,7 +408,8 @@ fn joints_remarks_text(arm: &Arm, out: &mut String) {
     }
 }
 
-/// Lines on the guides for which the arm states some of the loads that they hold, and not all.
+/// Lines on the guides of which the arm states some load limits and not all. Each line names the limits that are
+/// missing.
 fn not_in_the_part(arm: &Arm) -> String {
     let lines = arm.prismatics().filter_map(|joint| {
         let keys = joint.guide.limits.unknown();

@@ -158,8 +158,9 @@ impl PickBudget {
         }
     }
 
-    /// Words that say what one more kilogram changes at the best piece `row` of the other kind. If it lowers the
-    /// deflection at no piece of this kind, they name the next part that does.
+    /// Words on the other kind of piece (links if the sentence is about a joint, and joints if it is about a link).
+    /// `row` is the best piece of this kind, and `gain` is what one more kilogram changes there. If more mass raises
+    /// the deflection at every piece of this kind, the words name a heavier catalog part that lowers it.
     fn elsewhere(&self, row: &BudgetRow, gain: &Gain) -> String {
         let kind = row.kind.word();
         if gain.mm_per_kg <= 0.0 {

@@ -1,5 +1,6 @@
-//! The remark that a body with its centre of gravity beside the axis of a link makes the true lowest mode lower than
-//! the printed one, which is computed with undivided links (see `src/arm/divided.rs`).
+//! The remark that the true lowest mode is lower than the printed one. The printed mode is computed with undivided
+//! links. It is too high if a body on a link, between its ends, has its centre of gravity away from the axis of the
+//! link (see `src/arm/divided.rs`).
 
 use super::number::{percent, significant};
 use crate::arm::Arm;

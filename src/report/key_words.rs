@@ -1,6 +1,7 @@
 //! Names of keys and columns in words, for people: `elapsed_s` is `elapsed [s]`.
 
-/// Endings of keys that are units, and the units as they are printed. An ending comes before its own endings.
+/// Endings of keys that are units, and the units as they are printed. A long ending comes before a shorter one that it
+/// ends with (`_um_per_n` before `_n`).
 const UNITS: [(&str, &str); 20] = [
     ("_n_per_m", "N/m"),
     ("_kg_per_m", "kg/m"),

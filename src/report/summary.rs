@@ -20,7 +20,8 @@ const PLOT_ROWS: usize = 8;
 /// The front of the designs of one material.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MaterialFront {
-    /// Whether designs that differ only in drives of equal mass and torsion curve are all rows of the front.
+    /// Whether each design has a row of its own even if it differs from another one only in drives of equal mass and
+    /// torsion curve (ties). If not, one row stands for all of them.
     pub ties_listed: bool,
     /// Name of the material.
     pub name: String,

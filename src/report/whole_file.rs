@@ -31,8 +31,8 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     builder.prefix(prefix).suffix(suffix);
     as_any_new_file(&mut builder);
     let mut file = builder.tempfile_in(&folder)?;
-    // the lock tells other processes that the file is in use; where locks do not exist, they go by the age of the
-    // file
+    // the lock tells other processes that the file is in use; on a system without locks they judge this by the age of
+    // the file
     let _ = file.as_file().try_lock();
     file.write_all(bytes)?;
     file.as_file().sync_all()?;

@@ -38,9 +38,9 @@ pub(super) fn alternatives(
     Some(others)
 }
 
-/// The joint `asked` with each of `drives` (drives that meet the demand, lightest first), as the name of the gear and
-/// an element. The element includes bearing and extras. A drive is listed only if it is stiffer than every lighter one,
-/// in a segment of its torsion curve or in its bearing.
+/// The joint `asked` with each of `drives` (drives that meet the demand, lightest first). Each entry is the name of the
+/// gear, and the joint as an element with bearing and extras. A drive is listed only if it is stiffer than every
+/// lighter one, in a segment of its torsion curve or in its bearing.
 fn drives<'c>(asked: &SpaceJoint, drives: impl Iterator<Item = Drive<'c>>) -> Vec<(String, Element)> {
     let mut out: Vec<(String, Element)> = Vec::new();
     let mut kept: Vec<[f64; 4]> = Vec::new();

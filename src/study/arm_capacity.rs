@@ -165,9 +165,9 @@ fn has_rated_bearings(arm: &Arm) -> bool {
     })
 }
 
-/// The payloads in a case with which all output bearings pass their checks at rest, if there are any from `least_kg` to
-/// `most_kg`. The loads are norms of forces and moments that are affine in the payload's mass, so they are convex
-/// functions of this mass, and their smallest value is found by narrowing an interval.
+/// The payloads from `least_kg` to `most_kg` with which all output bearings pass their checks at rest in a case. The
+/// loads on bearings are norms of forces and moments, which are affine in the payload's mass. So the loads are convex
+/// functions of this mass, and their smallest values are found by narrowing an interval.
 fn held_by_bearings(arm: &Arm, case: &LoadCase, least_kg: f64, most_kg: f64) -> Window {
     let chain = Chain::new(&arm.structure_in(case), case.links);
     let bearings: Vec<(&str, Bearing)> = bearings_of(arm).collect();

@@ -36,9 +36,9 @@ impl<L: PartialEq> ByLack<L> {
     }
 }
 
-/// Remarks on the output bearings of the designs of a front, in sentences. They name the bearings that count as rigid
-/// because no stiffness is known, the bearings that lack ratings, the bearings of drives that are given without the
-/// names of gear and motor, and the bearings of given drives that are overloaded.
+/// Remarks on the output bearings of the designs of a front, in sentences. They name four kinds of bearings: those that
+/// count as rigid because no stiffness is known; those that lack ratings; those of given drives that cannot be checked
+/// (`is_unnamed`); and those of given drives that are overloaded.
 pub(crate) fn bearing_remarks(space: &DesignSpace, catalogs: &Catalogs, front: &FrontTable) -> Vec<String> {
     let joints = || {
         space.pieces.iter().filter_map(|piece| match piece {
@@ -65,8 +65,8 @@ pub(crate) fn bearing_remarks(space: &DesignSpace, catalogs: &Catalogs, front: &
         .collect()
 }
 
-/// Whether the joint has a bearing and a given drive without the name of its gear or its motor, or with the gear at the
-/// motor, so that the bearing is not checked.
+/// Whether the bearing of a joint with a given drive cannot be checked. That is so if the drive has no names of gear
+/// and motor, or if its gear sits at the motor.
 fn is_unnamed(joint: &SpaceJoint, catalogs: &Catalogs) -> bool {
     let is_checked = joint.drive.named_parts(catalogs).is_some() && joint.stages.after == Stage::NONE;
     !joint.drive.is_sized() && !is_checked && joint.bearing.stated().is_some()

@@ -1,12 +1,15 @@
 //! The stiffness budget of a front's picks: by how much one more kilogram at each joint and link changes deflection and
 //! lowest mode, and how far a pick is from the lightest arm that could be as good.
 //!
-//! For each piece there are two such changes. Both are computed by the full model with all other parts unchanged. *In
-//! place*: mass and stiffness of the piece grow in proportion (a thicker wall, or a gear scaled up together with its
-//! output bearing); the derivative is a central difference over 0.1 % of the piece's mass. *Next part*: among the
-//! heavier catalog parts that fit in the place of the piece and improve deflection or lowest mode, the part with the
-//! best change of deflection per kilogram. This is a difference between two parts that one can buy. Drives further
-//! inboard are not sized again. The output bearing of a joint has a row of its own, with its part of the deflection.
+//! For each piece there are two such changes. Both are computed by the full model with all other parts unchanged:
+//!
+//! - *In place*: mass and stiffness of the piece grow in proportion, as with a thicker wall, or with a gear that is
+//!   scaled up together with its output bearing. The derivative is a central difference over 0.1 % of the piece's mass.
+//! - *Next part*: the piece is replaced by a heavier catalog part that fits there and improves deflection or lowest
+//!   mode. Of all such parts it is the one with the best change of deflection per kilogram. Drives further inboard are
+//!   not sized again.
+//!
+//! The output bearing of a joint has a row of its own, with its part of the deflection.
 
 use super::alternatives::alternatives;
 use super::bounds::MassBounds;
@@ -121,7 +124,7 @@ fn budget(
     Some(rows.concat())
 }
 
-/// The part among `others` (heavier parts) with the best change of deflection per kilogram that improves the arm; of
+/// Among the heavier parts `others` that improve the arm, the one with the best change of deflection per kilogram; of
 /// equal parts the first.
 ///
 /// The parts are sorted by their change of deflection. Modes, which take most of the time of the full model, are

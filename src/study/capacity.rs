@@ -1,10 +1,11 @@
 //! Capacity: the payloads that an arm holds with its drives unchanged, in each pose of a study and in all of them, and
 //! the largest speed at which it holds the payloads of the study.
 //!
-//! The mass of the payload grows, and shrinks, from the one that the study states until a drive, an output bearing or
-//! the stress of a link exceeds its limit. The payload keeps its centre of gravity and its moments of inertia. The
-//! checks are those of sizing. For all poses together, the largest static torque and the largest inertia are combined,
-//! which may come from different poses. A pose that states a payload of its own keeps this payload.
+//! The mass of the payload is varied from the one that the study states, upwards and downwards, until a drive, an
+//! output bearing or the stress of a link exceeds its limit. The payload keeps its centre of gravity and its moments of
+//! inertia. The checks are those of sizing. For all poses together, the largest static torque and the largest inertia
+//! are combined, although they may come from different poses. A pose that states a payload of its own keeps this
+//! payload.
 //!
 //! An arm that is balanced for its payload may hold the payload and fail without it. Its payloads then have a lower
 //! limit too.
@@ -116,9 +117,10 @@ pub fn capacity_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Resu
     Ok(found)
 }
 
-/// The capacity of the design with these options, one for each slot of the arm (joint or link, in the order in which
-/// the arm is built), tip first. `space` is the space to which the options belong. The cases with the indices `own`
-/// state a payload of their own and keep it; if all sizing cases do, the payload of all of them changes.
+/// The capacity of the design with these options, tip first. There is one option for each slot (joint or link, in the
+/// order in which the arm is built), and `space` is the space to which the options belong. The cases with the indices
+/// `own` state a payload of their own and keep it. If this is so of all sizing cases, all of them take the same
+/// payload, which varies.
 fn capacity(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], own: &[usize]) -> Capacity {
     let (kept, mut loaded): (Vec<usize>, Vec<usize>) =
         space.sizing_cases.iter().partition(|case| own.contains(case));
@@ -142,8 +144,8 @@ fn capacity(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], own: &[us
     Capacity::new(window(&space.sizing_cases, &loaded), table, remarks)
 }
 
-/// A sentence that names the drives that are not judged: those that the study gives without gear and motor of the catalogs,
-/// and given drives of rails; `None` if there are none.
+/// A sentence that names the drives that are not judged; `None` if there are none. A given drive is not judged if the
+/// study does not name its gear and motor from the catalogs, or if it is the drive of a rail.
 fn unjudged_remark(problem: &ArmProblem, catalogs: &Catalogs) -> Option<String> {
     let pieces = problem.space().pieces.iter().enumerate();
     let unjudged = pieces.filter(|(piece, what)| match what {

@@ -30,8 +30,8 @@ const ROUNDING: f64 = 1e-6;
 /// Largest relative difference that is allowed between an objective that a row states and the same objective by the
 /// full model.
 const AGREEMENT: f64 = 1e-9;
-/// Part of the claimed gap by which two designs may differ so that one of them may represent the other. The search for
-/// missing designs then reports only one of such designs.
+/// One missing design stands for all that differ from it by less than this fraction of the claimed gap. The search for
+/// missing designs reports only the one.
 const PART_OF_GAP: f64 = 0.45;
 /// Largest number of faults of one kind that are listed one by one.
 const FAULTS_LISTED: usize = 10;
@@ -152,8 +152,8 @@ pub fn resume_check(
     Ok(FrontCheck { faults, rows: table.rows.len(), completeness })
 }
 
-/// The design that a row of a front states, with its parts as the verifier names them: by their places in catalogs and
-/// lists.
+/// The design that a row of a front states. `picks` are its parts as the verifier names them, by their places in
+/// catalogs and in the study's lists.
 struct Row<'f> {
     design: &'f super::outcome::Judged,
     picks: Vec<Pick>,
@@ -185,8 +185,8 @@ struct Look {
     lacks_ties: bool,
 }
 
-/// Searches for designs that are missing from the front. It uses the independent bounds of `verify` if they can handle
-/// the study, else those of the exact search.
+/// Searches for designs that are missing from the front. It uses bounds that `verify` computes without the code of the
+/// search, if they cover the study. Otherwise it uses the bounds of the exact search.
 fn look_for_missing(
     study: &Study,
     judge: &Judge,

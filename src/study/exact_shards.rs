@@ -23,8 +23,9 @@ pub fn fronts_of(space: &DesignSpace, gap: f64) -> Vec<Option<usize>> {
 
 /// Searches one shard of a study to a gap. Returns what the search found for each of the [`fronts_of`] the study.
 /// `given` is what other searches of the study found: first index the search, second the front. The search continues
-/// from the state in `resume`, and saves its own states there. `watch` is as in [`run_exact`](super::run_exact). A
-/// search that was stopped returns fewer fronts, and the last of them has open boxes.
+/// from the state in `resume`, and saves its own states there. `watch` runs on another thread and shows the progress
+/// (see [`run_exact`](super::run_exact)). A search that was stopped returns fewer fronts, and the last of them has open
+/// boxes.
 ///
 /// # Errors
 /// A message if the saved state belongs to another search.

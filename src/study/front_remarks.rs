@@ -45,15 +45,16 @@ pub(crate) fn caveats_of(study: &Study, catalogs: &Catalogs) -> Caveats {
     Caveats::of(catalogs).with_given(given_parts(&study.space))
 }
 
-/// A sentence on parts whose ratings were not read in a document of their vendor. It names the picks of the front that
-/// use them. It is the one that `run.json` has under `caveats`. `None` if there is no such part.
+/// A sentence on parts whose ratings were not read in a document of their vendor, with the picks of the front that use
+/// them. `run.json` has this sentence under `caveats`. `None` if there is no such part.
 pub fn caveats_on(study: &Study, catalogs: &Catalogs, front: &FrontTable) -> Option<String> {
     let picked = picks::rows_and_names(&picks::picks(&picks::designs(front)));
     let sentence = caveats_of(study, catalogs).sentence(front, &picked);
     (!sentence.is_empty()).then(|| sentence.split_whitespace().collect::<Vec<_>>().join(" "))
 }
 
-/// The effects of a study as JSON. An effect that describes a test is marked as one that does not count.
+/// The effects of a study as JSON. The key `counts` of an effect is false if it describes a test, because its results
+/// then ignore the effect.
 pub fn effects_json(study: &Study) -> Vec<Value> {
     let counted = |effect: &Effect| {
         let mut value = effect.to_json();

@@ -1,9 +1,9 @@
-//! Remarks on the gears of a result: on lives that rest on a figure which the catalog's row does not have or that are
-//! not checked, and on the play that the deflection leaves out.
+//! Remarks on the gears of a result. They name lives that come from a usual value because the row of the catalog states
+//! none, lives that are not checked, and the play that the deflection leaves out.
 //!
-//! A gear with a play of β (the whole angle between its two stops) leaves the tip loose by β ρ, where ρ is the largest
-//! displacement of the tip per radian of the joint in the judged cases: the distance of the tip from the axis, unless
-//! the joint drives others. A screw or rack leaves it loose by its own play along the travel.
+//! The play β of a gear is the whole angle between its two stops. It leaves the tip loose by β ρ, where ρ is the
+//! largest displacement of the tip per radian of the joint in the judged cases. Unless the joint drives other joints, ρ
+//! is the distance of the tip from the axis. A screw or rack leaves the tip loose by its own play along the travel.
 
 use super::bearing_remarks::gears_of;
 use crate::arm::effect::lost_motion::KIND as LOST_MOTION;
@@ -21,7 +21,8 @@ const MOST_NAMES: usize = 4;
 /// Play is not reported if it moves the tip by less than this fraction of the deflection of every pick.
 const LEAST_SHARE: f64 = 0.02;
 
-/// Names of gears, grouped by what is to be said of them, in the order of the first name.
+/// Lists of names of gears. Each list has the gears on which the same remark is made. The lists are in the order of
+/// their first names.
 struct ByWords<W>(Vec<(W, Vec<String>)>);
 
 impl<W: PartialEq> ByWords<W> {
@@ -38,8 +39,8 @@ impl<W: PartialEq> ByWords<W> {
     }
 }
 
-/// Remarks on the lives of the gears in a front: those of [`life_remarks`] on every gear that some design has at a
-/// joint whose drive is checked.
+/// Remarks on the kind and the life of the gears in a front (see [`life_remarks`]): of every gear that some design has
+/// at a joint whose drive is checked.
 pub(crate) fn life_remarks_on(space: &DesignSpace, catalogs: &Catalogs, front: &FrontTable) -> Vec<String> {
     let is_checked = |joint: &SpaceJoint| !matches!(joint.drive, DriveChoice::Given { motor: None, .. });
     let joints = space.joints().map(|(_, joint)| joint).filter(|joint| is_checked(joint));
@@ -105,8 +106,8 @@ pub(crate) fn play_remarks(space: &DesignSpace, catalogs: &Catalogs, front: &Fro
     joints.flat_map(of_joint).chain(space.pieces.iter().flat_map(of_rail)).collect()
 }
 
-/// The remarks on the play of the gears that the picks have at one joint. `reach_m` is the way of the tip per radian of
-/// the joint \[m\], or per metre of a rail; `gear` finds a gear by its name.
+/// The remarks on the play of the gears that the picks have at one joint. `reach_m` is the displacement of the tip per
+/// radian of the joint \[m\], or per metre of a rail. `gear` finds a gear by its name.
 fn said_of<'g>(
     joint: &str,
     reach_m: f64,
@@ -136,7 +137,7 @@ fn said_of<'g>(
 /// The play of a gear: the larger of the backlash and the lost motion that its row states.
 #[derive(Debug, PartialEq)]
 struct Play {
-    /// The play as an angle. For a screw or rack a metre of travel stands in the place of a radian.
+    /// The play as an angle. For a screw or rack it is a travel, converted as if a metre were a radian.
     arcmin: f64,
     word: &'static str,
     slides: bool,
@@ -160,7 +161,8 @@ impl Play {
         }
     }
 
-    /// How far the tip moves from one stop to the other \[mm\], if it moves by `reach_m` \[m\] per radian of the joint.
+    /// How far the tip moves from one stop to the other \[mm\]. `reach_m` is the displacement of the tip per radian of
+    /// the joint \[m\].
     fn loose_mm(&self, reach_m: f64) -> f64 {
         1e3 * reach_m * (self.arcmin / 60.0).to_radians()
     }

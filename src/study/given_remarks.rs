@@ -1,5 +1,5 @@
-//! Remarks on given drives that are too weak for some designs of a front, or of which a check cannot be made. They are
-//! printed with the front.
+//! Remarks on given drives. They say which drives are too weak for some designs of a front, and which checks cannot be
+//! made because ratings are blank. They are printed with the front.
 
 use crate::catalog::Catalogs;
 use crate::sizing::check::{Check, CheckState};
@@ -57,11 +57,11 @@ impl Overloaded {
     }
 }
 
-/// The given drives of a study, with what they fail in the designs that were taken so far.
+/// The given drives of a study, with the checks that they fail in the designs examined so far.
 pub(crate) struct GivenDrives(Vec<Overloaded>);
 
 impl GivenDrives {
-    /// The given drives of a study; no design was taken yet.
+    /// The given drives of a study, before any design is examined.
     pub(crate) fn of(problem: &ArmProblem, catalogs: &Catalogs) -> Self {
         let given = problem.space().pieces.iter().enumerate().filter_map(|(piece, what)| {
             let drive = problem.fixed_drive(piece, catalogs)?.drive.name();
@@ -76,7 +76,7 @@ impl GivenDrives {
         Self(given.collect())
     }
 
-    /// Takes the sizing rows of a design.
+    /// Examines the sizing rows of one design.
     pub(crate) fn take(&mut self, rows: &[JointSizingRow]) {
         for drive in &mut self.0 {
             if let Some(row) = rows.iter().find(|row| row.joint == drive.joint) {

@@ -136,11 +136,11 @@ pub(crate) fn first_fit_at(problem: &ArmProblem, outboard: &[u32], piece: usize)
 }
 
 /// Sections with which the joint at which the arm is `stuck` gets a drive, so that the arm can be built further inward.
-/// Starting from `sections`, one link at a time is given each of its sections.
+/// Starting from the arm with `sections`, one link outboard of the joint at a time is given each of its other sections.
 ///
 /// # Errors
-/// If there are no such sections: of all demands on this joint that were tried, the one that a drive comes nearest to
-/// meeting.
+/// No such sections were found. The error is a demand on this joint: of all demands that were tried, a drive comes
+/// nearest to meeting this one.
 fn easier_sections(
     problem: &ArmProblem,
     sections: &[u32],
@@ -229,8 +229,8 @@ fn missing_words(table: &DriveTable) -> String {
 /// Where to state a rating that the catalogs lack.
 const OWN_CATALOG: &str = " (state what you know of them in a catalog of your own, --catalogs DIR)";
 
-/// The actuators of the catalogs that have the passage for cables which the study asks for, but are not among the
-/// drives that it allows, as the end of a sentence. Empty if there are none, or if the study asks for no passage.
+/// The end of a sentence on cables. It names actuators of the catalogs that leave the passage for cables which the
+/// study asks for, and that the study does not allow yet. Empty if there are none, or if the study asks for no passage.
 fn passage_advice(table: &DriveTable, catalogs: &Catalogs) -> String {
     let fit = &table.motion().fit;
     if fit.cable_bore_min_m.is_none() {

@@ -102,8 +102,8 @@ impl Quantity {
         }
     }
 
-    /// The keys of a study file that limit this quantity and that a design with the value `reached` violates. Each key
-    /// comes with a value that would admit the design.
+    /// The keys of a study file that limit this quantity, as far as a design with the value `reached` violates them.
+    /// Each key comes with a value that would admit the design.
     fn enough(self, constraints: &Constraints, reached: f64) -> Vec<(&'static str, f64)> {
         let round = |x: f64| toward(x, !self.is_least());
         let key = match self {

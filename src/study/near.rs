@@ -54,7 +54,8 @@ pub fn near_front(
     slack: Slack,
     stop: &AtomicBool,
 ) -> Option<NearFront> {
-    // candidates of the sweep that the full model removed from the front are near it, so they must not count as front
+    // the full model removed some candidates of the sweep from the front; they may be near it, so they do not count as
+    // front
     let numbers: HashSet<u128> = outcome.front.iter().map(|j| j.design.number).collect();
     let on_front: Vec<_> =
         outcome.sweep.front.iter().filter(|c| numbers.contains(&c.number)).copied().collect();

@@ -146,8 +146,8 @@ fn places_of<'a>(space: &'a DesignSpace, effect: &str) -> Vec<&'a str> {
     space.effects.iter().filter(|e| e.effect == effect).map(|e| e.at.as_str()).collect()
 }
 
-/// What no number says of the guides of the study; `None` if no joint slides. The loads on a guide are compared with
-/// what the study says that it holds.
+/// The properties of guides that no number of the study includes, in words; `None` if no joint slides. If the study
+/// states all limits of all guides, strength is not among these properties.
 fn guide_words(space: &DesignSpace) -> Option<&'static str> {
     let guide = |piece: &SpacePiece| match piece {
         SpacePiece::Prismatic(rail) => Some(rail.joint.guide.limits.unknown().is_empty()),
@@ -162,8 +162,8 @@ fn has_sized_rail(space: &DesignSpace) -> bool {
     space.pieces.iter().any(|piece| matches!(piece, SpacePiece::Prismatic(rail) if rail.drive.is_some()))
 }
 
-/// By how much a built arm may differ from the computed one because of all that is left out: the row "together" of
-/// docs/left-out.md.
+/// By how much a built arm may differ from the computed one because of all omissions together. The numbers are those of
+/// the row "together" of docs/left-out.md.
 const SIZE_OF_ALL_TOGETHER: &str = "How much this may be: on the knees of two named studies, the starred rows of docs/left-out.md \
     together add 77 to 79 % to the deflection and 40 to 47 % to the mass, and take 18 to 22 % from the lowest mode. They \
     are gears and bearings 20 % softer, connections, a compliant floor, drives 1.5 times as heavy (31 to 34 % of the mass), \

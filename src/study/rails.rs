@@ -154,7 +154,7 @@ fn read_rack(node: &Node) -> Option<Gear> {
 
 /// A screw or rack with this backlash along the travel.
 fn with_backlash(gear: Gear, backlash_mm: f64) -> Gear {
-    // as everywhere in the gear of a rail, a metre stands in the place of a radian
+    // in the data of the gear of a rail, a metre of travel takes the place of a radian
     let backlash_arcmin = 60.0 * (backlash_mm / 1e3).to_degrees();
     Gear { backlash_arcmin: (backlash_mm > 0.0).then_some(backlash_arcmin), ..gear }
 }

@@ -1,5 +1,5 @@
-//! What the drives of a design must hold while another joint moves, in sentences. Drives are sized for their own joints'
-//! ramps and stops, so that such a torque is in no check of the search.
+//! Remarks on reactions: the torques that the drives of a design must hold while another joint moves. Drives are sized
+//! for the ramps and stops of their own joints, so no check of the search includes these torques.
 
 use super::table::{DrivenJoint, driven_joints};
 use crate::catalog::Catalogs;
@@ -15,16 +15,17 @@ use crate::space::reaction::Reaction;
 /// A joint is named if its reaction exceeds the torque of its own motion by more than this fraction.
 const NAMED_FROM: f64 = 0.02;
 
-/// The reaction on one joint, next to what its own motion asks.
+/// The reaction on one joint (what it must hold while another joint moves), and the torque of its own motion.
 struct Held {
     joint: String,
-    /// The joint whose ramp gives the largest torque in a ramp, and the one whose stop gives the largest in a stop.
+    /// The joint whose ramp gives the largest torque in a ramp, and the joint whose stop gives the largest torque in a
+    /// stop.
     movers: [String; 2],
     /// Unit of the torques: N m, or N of a prismatic joint.
     unit: &'static str,
-    /// Torque in the ramp and in the stop of another joint, at the joint.
+    /// Torque at this joint in the ramp and in the stop of another joint.
     reaction_nm: [f64; 2],
-    /// Largest torque in the joint's own ramp and in its own stop, at the joint.
+    /// Largest torque at this joint in its own ramp and in its own stop.
     own_nm: [f64; 2],
     /// The check with the smallest margin; `None` if no check could be made.
     binding: Option<Check>,
@@ -54,7 +55,7 @@ impl Held {
         }
     }
 
-    /// Whether the reaction exceeds what the joint's own motion asks.
+    /// Whether the reaction exceeds the torque of the joint's own motion.
     fn exceeds(&self) -> bool {
         (0..2).any(|i| self.reaction_nm[i] > (1.0 + NAMED_FROM) * self.own_nm[i])
     }
@@ -86,8 +87,8 @@ impl Held {
     }
 }
 
-/// The reactions of one design that exceed what the joints' own motions ask. `chosen` are the options of the design, one
-/// for each level, tip first. `None` if the design breaks a limit.
+/// The reactions of one design that exceed the torques of the joints' own motions. `chosen` are the options of the
+/// design, one for each level, tip first. `None` if the design breaks a limit.
 fn held(problem: &ArmProblem, catalogs: &Catalogs, chosen: &[u32]) -> Option<Vec<Held>> {
     let driven = driven_joints(problem, catalogs, chosen).ok()?;
     let of_joint = |reaction: Reaction| {
@@ -97,9 +98,9 @@ fn held(problem: &ArmProblem, catalogs: &Catalogs, chosen: &[u32]) -> Option<Vec
     Some(problem.reactions(chosen)?.into_iter().filter_map(of_joint).collect())
 }
 
-/// A sentence on the reactions that exceed what the joints' own motions ask; `None` if there are none. It names the joints
-/// whose drives do not hold their reactions, each in the design with the smallest margin, or the smallest margin if all
-/// hold. `whose` says of which designs it tells.
+/// A sentence on the reactions `all`. If drives fail under their reactions, it names their joints, each in the design
+/// with the smallest margin. If all drives hold, it states the smallest margin. `whose` are words that say which
+/// designs were examined. `None` if there are no reactions.
 fn sentence(all: Vec<Held>, whose: &str) -> Option<String> {
     let mut worst: Vec<Held> = Vec::new();
     for held in all {

@@ -1,9 +1,9 @@
 //! Finds the limits that exclude every design, and by how much they have to be relaxed.
 //!
-//! A limit is dropped, and an exact search finds the design that is best in the limited quantity and meets all other
-//! limits. If the quantity is no objective, the search finds any design, and the limit is bisected between the stated
-//! limit and the value of that design; each step searches for any design that meets the middle. If no limit helps
-//! alone, pairs of limits are tried, then triples.
+//! One limit is dropped at a time. An exact search then finds the design that is best in the limited quantity and meets
+//! all other limits. If the quantity is no objective, the search finds any such design. The limit is then bisected
+//! between the stated limit and the value of this design, and each step searches for any design that meets the middle.
+//! If no limit helps alone, pairs of limits are tried, then triples.
 
 use super::limit::Quantity;
 use crate::catalog::Catalogs;

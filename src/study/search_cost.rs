@@ -1,10 +1,10 @@
 //! Estimates the cost of evaluating every design of a study and the cost of an exact search.
 //!
-//! Evaluating every design costs a known time for each design, piece and case, and less where drives or stresses
-//! exclude a design early. No formula tells how much an exact search can discard. Both searches are therefore tried
-//! on thinned spaces, which have some of the sections and gears of the study. From these come the fraction of
-//! feasible designs, and the exponent with which the number of boxes grows with the number of designs. Only counts
-//! are used and no clock, so the same study gets the same search on every machine.
+//! Evaluating every design costs a known time for each design, piece and case. It costs less where drives or stresses
+//! exclude a design early. No formula tells how much an exact search can discard. Both searches are therefore tried on
+//! two thinned spaces, which have some of the sections and gears of the study. The trials give the fraction of feasible
+//! designs, and the exponent with which the number of boxes grows with the number of designs. Only counts are used and
+//! no clock, so the same study gets the same search on every machine.
 
 use crate::catalog::Catalogs;
 use crate::exact::run::Exact;

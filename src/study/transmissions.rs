@@ -10,8 +10,8 @@ use crate::sizing::select::DriveFilter;
 use crate::space::design_space::{DriveChoice, MotorPlace, SpaceJoint, SpacePiece};
 use crate::space::effects::along;
 
-/// Puts the motors of a study where they sit, and stores in every joint the other joints with which it turns. Returns
-/// `None` after recording a fault.
+/// Adds the motors that do not sit at their joints to the pieces that carry them. Stores in every joint the other
+/// joints with which it turns. Returns `None` after recording a fault.
 pub(super) fn place_transmissions(
     pieces: &mut [SpacePiece],
     mut driven: Vec<Driven>,
@@ -76,9 +76,9 @@ fn behind_one_ratio(
     Some(())
 }
 
-/// Stores in the joint with the number `number` where its motor stands, if the drive is sized and the motor does not
-/// stand at the joint. A motor along a tube is a fault, for which `None` is returned. The mass of the motor is known
-/// only when a drive is chosen.
+/// If the drive of the joint number `number` is sized and its motor does not stand at the joint, stores in the joint
+/// where the motor stands. The mass of the motor is known only when a drive is chosen. Returns `None` after recording a
+/// fault: such a motor must not sit along a tube.
 fn of_sized(driven: &[Driven], number: usize, placed: &Placed, pieces: &mut [SpacePiece]) -> Option<()> {
     let of = driven.iter().find(|of| of.joint == number)?;
     let (piece, on, point_m) = placed.motor;
@@ -107,8 +107,8 @@ fn of_sized(driven: &[Driven], number: usize, placed: &Placed, pieces: &mut [Spa
     Some(())
 }
 
-/// The joint number `number` of the chain in the form in which motors are put in their places: with its transmission
-/// and the joints with which it turns.
+/// What the placing of motors needs to know of the joint number `number` of the chain: its transmission, and the joints
+/// with which it turns.
 pub(super) fn of_joint<'n>(
     node: &Node<'n>,
     joint: &SpaceJoint,
@@ -118,8 +118,8 @@ pub(super) fn of_joint<'n>(
     Driven { node: node.clone(), joint: number, transmission, turns_with: joint.turns_with.clone() }
 }
 
-/// The same drive. If it is given, its torsion curve is replaced by that of its gear and the stages of `transmission`
-/// together.
+/// The drive of a joint with a transmission. If the drive is given, its torsion curve is replaced by that of its gear
+/// and the stages of `transmission` together. All else stays.
 pub(super) fn with_stages(drive: DriveChoice, transmission: Option<&Transmission>) -> DriveChoice {
     match (drive, transmission) {
         (DriveChoice::Given { curve, mass_kg, gear, motor }, Some(transmission)) => {

@@ -11,10 +11,11 @@ use std::fmt::Write;
 const GROUNDING_N_PER_M: f64 = 1e-3;
 /// Range of Poisson's ratio E / (2 G) - 1 within which E and G can belong to an isotropic material.
 const ISOTROPIC: std::ops::Range<f64> = -0.9..0.49;
-/// Equations that the solver of `ccx` for frequencies (ARPACK) needs for each of them, as tried with CalculiX 2.20.
+/// Number of equations that a model must have for each frequency that CalculiX computes. With fewer, its eigenvalue
+/// solver (ARPACK) fails. The number was found by trials with `ccx` 2.20.
 const EQUATIONS_PER_MODE: usize = 5;
-/// Spring of a node that adds an equation, and no frequency that matters \[N/m\]. With a mass of 1 kg it vibrates at
-/// 160 kHz.
+/// Stiffness of the spring of a node that only adds an equation to the model (see `fillers`) \[N/m\]. With its mass of
+/// 1 kg the node vibrates at 160 kHz, far above the frequencies of an arm.
 const FILLER_N_PER_M: f64 = 1e12;
 
 /// The analysis that a deck describes.
@@ -152,8 +153,9 @@ fn constraints(out: &mut String, model: &Model) {
     }
 }
 
-/// Writes nodes that are not part of the arm, as many as the solver for frequencies lacks equations. A model of hinges
-/// alone has one equation for each hinge. `element` is the number of the last element of the deck.
+/// Writes nodes that are not part of the arm, as many as the model lacks equations for the eigenvalue solver (see
+/// `EQUATIONS_PER_MODE`). Only a model without solids can lack equations, because it has a single equation for each
+/// hinge. `element` is the number of the last element of the deck.
 fn fillers(out: &mut String, model: &Model, element: &mut usize) {
     let missing = match model.solids.is_empty() {
         false => 0,

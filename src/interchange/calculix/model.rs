@@ -3,10 +3,10 @@
 //! Everything that moves as one rigid body is a *region*. The end faces of a link are rigid: the root face belongs to
 //! the region before the link, and the end face begins a new region. The motion of a new region is described by a
 //! reference node (displacement) and a rotation node. A hinge has a node of its own, and displacement 1 of this node is
-//! the angle of the hinge. The displacement of any point of a region is thus a linear function of a few degrees of
-//! freedom, which an `*EQUATION` expresses: `u(p) = u_ref + θ × (p - p_ref) + Σ q_k t_k(p)`, where `q_k` is the angle
-//! of hinge `k` and `t_k(p)` is the displacement of `p` per unit of this angle. This needs neither the rigid bodies of
-//! CalculiX nor constraints that depend on other constraints. Bearings, frames and linkages are further hinges.
+//! freedom, which an `*EQUATION` expresses: `u(p) = u_ref + θ × (p - p_ref) + Σ q_k t_k(p)`. Here `q_k` is the angle of
+//! hinge `k`, and `t_k(p)` is the displacement of `p` per unit of this angle. Neither the rigid bodies of CalculiX are
+//! needed nor constraints that depend on other constraints. The tilts of bearings and frames are hinges too, and a
+//! passive joint is a hinge that follows others.
 
 use super::mesh::{Mesh, has_shape, mesh};
 use crate::arm::RigidBody;
@@ -20,8 +20,9 @@ use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
 /// Coefficients of an equation below this value are dropped as rounding errors.
 const ROUNDING: f64 = 1e-12;
-/// Largest distance of the point masses that stand for a body with inertia and without mass \[m\]. Farther ones would
-/// have less mass, but the springs that hold them to the ground would hold the body.
+/// Largest distance from the centre of gravity at which point masses stand for a body with inertia and without mass
+/// \[m\]. Farther points would need less mass. But the springs between point masses and the ground would then act on
+/// longer levers and hold the body.
 const FAR_M: f64 = 10.0;
 
 /// A term of an equation, or a load: index of the node, direction (0 to 2), coefficient.
@@ -200,7 +201,8 @@ impl Builder<'_> {
         }
     }
 
-    /// Adds a point mass. Those of a body without mass, which has inertia alone, have no weight.
+    /// Adds a point mass. `has_weight` is false for the points of a body that has inertia and no mass, because such a
+    /// body has no weight.
     fn point_mass(&mut self, node: usize, mass_kg: f64, has_weight: bool) {
         self.model.masses.push((node, mass_kg));
         if !has_weight {
@@ -212,7 +214,8 @@ impl Builder<'_> {
     }
 
     /// Point masses that together have the mass, centre of gravity and inertia of a body: one point, or two on each
-    /// principal axis. Those of a body without mass are so far away that they have little.
+    /// principal axis. If the body has inertia and no mass, the points are far away (see `FAR_M`), so that a small mass
+    /// gives the inertia.
     fn points(
         &mut self,
         mass_kg: f64,

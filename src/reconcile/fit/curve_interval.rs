@@ -1,9 +1,9 @@
 //! Computes 95 % intervals of the parameters of a gear's torsion curve from their posterior distribution.
 //!
 //! A break point has no meaning if the slopes on its two sides are equal. Among the many places where it could be,
-//! there is always one that fits the noise well. The lowest objective over the places of a break point is therefore the
-//! best of many chance results, and the usual limit, a rise of 3.84, gives an interval that contains the true value too
-//! rarely.
+//! there is always one that fits the noise well. The lowest objective over these places is therefore the best of many
+//! chance results. The usual interval ends where the objective has risen by 3.84; here it would contain the true value
+//! too rarely.
 //!
 //! So every place is weighted by its probability. With both break points fixed at a place, the readings are nearly
 //! linear in all other parameters. A fit of these then gives the likelihood of the place, and the distribution that the
@@ -171,7 +171,8 @@ impl Cell {
         let fitted = fit_below(forward, &model, start, weights, HELD, limit);
         let held = axes.each_ref().map(|a| a.parameter);
         let of_rest = without(&fitted.curvature, held);
-        // the density at the nodes is the evidence of the fit without the factor for the two fixed parameters
+        // the evidence integrates over all parameters; here two of them are fixed, so the factor that belongs to them
+        // is removed
         let ln_density =
             fitted.evidence + 0.5 * (ln_determinant(fitted.curvature.clone()) - ln_determinant(of_rest));
         // the two fixed parameters are not part of the covariance

@@ -129,8 +129,8 @@ pub fn objective(forward: &Forward, model: &Model, u: &[f64], predicted: &[f64],
     data + u[..model.calibrated()].iter().map(|u| u * u).sum::<f64>()
 }
 
-/// Factor on a residual \[standard deviations\] and on its row in iteratively reweighted least squares: the weight of a
-/// residual above [`HUBER_SIGMAS`] is `HUBER_SIGMAS / |r|`, and the factor is its root.
+/// Factor on a residual \[standard deviations\] and on its row in iteratively reweighted least squares. It is 1 up to
+/// [`HUBER_SIGMAS`]. A larger residual has the weight `HUBER_SIGMAS / |r|`, and the factor is the root of this weight.
 pub(crate) fn robust_factor(residual: f64) -> f64 {
     if residual.abs() <= HUBER_SIGMAS { 1.0 } else { (HUBER_SIGMAS / residual.abs()).sqrt() }
 }

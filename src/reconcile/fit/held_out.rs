@@ -72,16 +72,18 @@ pub(crate) fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &W
     all
 }
 
-/// Root mean square that the residuals of held-out poses have if the model of `fit` is right \[standard deviations of
-/// `weights`\]: 1 if the other poses determine every parameter as well as all do, and much more if something shows in the
-/// poses of one fold alone, so that nothing is known of it without them. Break points keep their values, as in
-/// [`residuals`]. It is 1 too if the curvature is singular.
+/// Root mean square that the residuals of held-out poses are expected to have if the model of `fit` is right \[standard
+/// deviations of `weights`\]. It is 1 if the other poses determine every parameter as well as all poses do. It is much
+/// larger if the poses of one fold alone show something, because a fit without them knows nothing of it. Break points
+/// keep their values, as in [`residuals`]. If the curvature is singular, the result is 1 too.
 ///
-/// To first order, a fit without the data of a fold has the residuals `(I - H)⁻¹ r` on them, with the residuals r of the
-/// full fit and the block `H = M Mᵀ` of its hat matrix, `M = w J L⁻ᵀ`. Their covariance is `(I - H)⁻¹`, and by Woodbury's
-/// formula its diagonal is that of `I + M (I - Mᵀ M)⁻¹ Mᵀ`.
+/// The computation is exact to first order. `w` are the weights, `J` the derivatives of the predicted readings, `L` the
+/// Cholesky factor of the curvature, and `r` the residuals of the full fit. The data of a fold have the block `H = M
+/// Mᵀ` of the hat matrix, with the rows `M = w J L⁻ᵀ`. A fit without them leaves the residuals `(I - H)⁻¹ r` on them,
+/// whose covariance is `(I - H)⁻¹`. By Woodbury's formula its diagonal is that of `I + M (I - Mᵀ M)⁻¹ Mᵀ`.
 pub(crate) fn expected_rms(forward: &Forward, fit: &Fit, weights: &Weights) -> f64 {
-    // a parameter that only this fold determines makes I - MᵀM singular; with this it has a large finite variance
+    // a parameter that only this fold determines makes I - MᵀM singular; with this addition it has a large finite
+    // variance
     const RIDGE: f64 = 1e-9;
     let held = fit.model.break_points();
     let free: Vec<usize> = (0..fit.curvature.nrows()).filter(|p| !held.contains(p)).collect();
@@ -92,7 +94,7 @@ pub(crate) fn expected_rms(forward: &Forward, fit: &Fit, weights: &Weights) -> f
         return 1.0;
     };
     let reach = fit.jacobian.select_columns(&free) * root.transpose();
-    // the curvature counts large residuals less, and so must the block
+    // the curvature gives large residuals less weight, so the rows of M must have the same weights
     let factors: Vec<f64> = fit.residuals(forward, weights).iter().map(|r| robust_factor(*r)).collect();
     let mut variances = Vec::new();
     for fold in 0..FOLDS {

@@ -41,8 +41,9 @@ const CHANNELS: [Channel; 3] = [Channel::Static, Channel::Modal, Channel::Windup
 /// Largest factor on the declared standard deviations. A larger scatter is ascribed to missing physics and not to a
 /// wrong declaration.
 const LARGEST_SCALE: f64 = 1.4;
-/// A model fits most readings of a channel if the robust standard deviation of its residuals exceeds the declared one
-/// by at most this fraction. For a channel with few readings, [`BY_CHANCE`] allows more.
+/// A model fits most readings of a channel if the standard deviation of its residuals exceeds the declared one by at
+/// most this fraction. The standard deviation is estimated from the median of their absolute values (robust). For a
+/// channel with few readings, [`BY_CHANCE`] allows more.
 const CLOSE_FIT: f64 = 0.5;
 /// Allowance for chance when the robust standard deviation of n residuals is tested: it may exceed the declared one
 /// by the fraction `BY_CHANCE / √n`. This is three times its own standard deviation, which is 1.17 / √n of the
@@ -229,8 +230,9 @@ pub fn gross_lists(forward: &Forward, weights: &Weights) -> Vec<usize> {
     (0..forward.modal.len()).filter(|list| left_out(*list) > 1).collect()
 }
 
-/// The misfit of each row of each channel if the fit did not follow this row \[declared standard deviations\]: the
-/// residual divided by the root of one minus the leverage. Returns channel, row and misfit, the largest misfit first.
+/// The misfit that each row of each channel would have if the fit did not follow this row \[declared standard
+/// deviations\]. It is the residual divided by the root of one minus the leverage, which is the fraction of the datum's
+/// variance that the fitted parameters absorb. Returns channel, row and misfit, the largest misfit first.
 fn misses(forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<(Channel, usize, f64)> {
     // prevents a division by zero for a row that the fit follows completely
     const LARGEST_LEVERAGE: f64 = 0.9;

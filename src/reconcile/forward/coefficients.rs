@@ -41,9 +41,9 @@ pub struct LinkSlot {
     pub strains: Vec<(Strain, usize)>,
 }
 
-/// The strain coordinates of every elastic element that an arm can have, base to tip. They are the base's tilts (0 and
-/// 1), each joint's two tilts and its twist, and each link's strains. An arm also has coordinates for each frame
-/// compliance (a rotational compliance about three axes) of its base and of its links' roots.
+/// The strain coordinates of every elastic element that an arm can have, base to tip: the two tilts of the base
+/// (indices 0 and 1), two tilts and the twist of each joint, and the strains of each link. An arm also has coordinates
+/// for each frame compliance (a rotational compliance about three axes) of its base and of its links' roots.
 pub struct Layout {
     /// Number of strain coordinates.
     pub n: usize,
@@ -61,7 +61,7 @@ pub struct Layout {
     pub lacking: Vec<f64>,
     /// The arm with every elastic element present, so that mechanics lists all coordinates.
     pub template: Chain,
-    /// For each of the masses that a fit can change, the template with one unit of this mass added.
+    /// For each of the masses that a fit can change, the arm `template` with one unit of this mass added.
     pub with_mass: Vec<Chain>,
     /// Acceleration of gravity \[m/s²\].
     pub gravity_m_s2: f64,

@@ -48,9 +48,9 @@ pub struct PoseGeometry {
     pub dead_per_mass_nm: Vec<Vec<f64>>,
     /// The two coordinates of the base's tilt, about world x and y.
     pub base: [Mover; 2],
-    /// Moments of the template's weight about world x and y of the base \[N m\]. The next field has the moments by one
-    /// unit of each mass that a fit can change.
+    /// Moments of the template's weight about world x and y of the base \[N m\].
     dead_base_nm: [f64; 2],
+    /// For each mass that a fit can change, the moments of one unit of it about the same axes \[N m\].
     dead_base_per_mass_nm: Vec<[f64; 2]>,
 }
 

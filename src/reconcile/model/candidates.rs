@@ -195,8 +195,8 @@ fn candidate(forward: &Forward, sizes: &Sizes, asked: Asked) -> Candidate {
 }
 
 /// Widens the range of the middle slope of a gear's curve by three standard deviations of the joint's stiffness, whose
-/// 95 % limit is `tolerance`. The curve takes the place of the joint's stiffness, and with it of the calibrated factor. The
-/// ranges of the other slopes are wide enough for both.
+/// 95 % limit is `tolerance`. The curve replaces the joint's stiffness together with its calibrated factor, so the
+/// slope must be able to deviate as that factor could. The ranges of the other slopes are wide enough already.
 fn within_tolerance(free: FreeParameter, parameter: &Parameter, tolerance: f64) -> FreeParameter {
     match parameter.name == MIDDLE_SLOPE {
         true => free.widened(libm::exp(3.0 * tolerance / 2.0)),

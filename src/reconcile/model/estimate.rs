@@ -82,9 +82,9 @@ impl Finding {
         Effect { effect: self.effect.clone(), at: self.at.clone(), parameters, source: Some(source) }
     }
 
-    /// Whether no size of the effect differs from that of an arm without it by more than its own standard deviation: a
-    /// stiffness that may be infinite, a factor near 1, and any other size near 0. The torque over which play opens, a
-    /// preload and a phase are no sizes.
+    /// Whether every size of the effect differs by at most its own standard deviation from the size of an absent
+    /// effect. This is an infinite stiffness, a factor of 1, and 0 for any other size. The torque over which play
+    /// opens, a preload and a phase are not sizes.
     pub(crate) fn is_within_its_deviation(&self) -> bool {
         let is_near = |name: &str, estimate: &Estimate| {
             let Estimate { value, low, high } = *estimate;

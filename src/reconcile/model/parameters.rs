@@ -38,8 +38,8 @@ pub struct FreeParameter {
 /// All sizes below this fraction of the width of the expected range have equal prior probability.
 const SMALL_SIZE: f64 = 0.01;
 
-/// Largest compliance that is sought in a connection, bearing or base, as a multiple of the joint's compliance, for a
-/// base that of the first compliant joint.
+/// Largest compliance that is sought in a connection, bearing or base. It is a multiple of the compliance of the joint,
+/// or, for a base, of the first compliant joint.
 pub(crate) const LARGEST_COMPLIANCE: f64 = 100.0;
 
 /// Stiffness that stands for a rigid part \[N m/rad\]. No reading can tell it from an infinite one.
@@ -84,8 +84,8 @@ impl FreeParameter {
         Self { low, high, expected: (low, high), ..self }
     }
 
-    /// This parameter, sought from the lower limit divided by `factor` to the upper limit times `factor`. What is expected
-    /// of it stays.
+    /// This parameter, sought from the lower limit divided by `factor` to the upper limit times `factor`. Its expected
+    /// range does not change.
     pub(crate) fn widened(self, factor: f64) -> Self {
         Self { low: self.low / factor, high: self.high * factor, ..self }
     }

@@ -43,7 +43,7 @@ impl Positions {
         self.dependences.iter().enumerate().filter_map(of).collect()
     }
 
-    /// Standard deviations of the logarithms of the factors of [`adjusted`](Self::adjusted) by their tolerances.
+    /// For each factor of [`adjusted`](Self::adjusted), the standard deviation of its logarithm by the tolerance.
     pub(super) fn tolerances(&self) -> impl Iterator<Item = f64> + '_ {
         self.dependences.iter().filter_map(|dependence| match dependence {
             Dependence::Tolerance(_, sd) => Some(*sd),

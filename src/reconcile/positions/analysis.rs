@@ -226,8 +226,8 @@ impl Positions {
         }
     }
 
-    /// A copy of this calibrated model with the sessions that begin at `boundaries` (what was moved, and the first
-    /// row of the later session), with a drift if it `drifts`, and with the effects that are then found.
+    /// A copy of this calibrated model in which sessions begin at `boundaries` (what was moved, and the first row of
+    /// the later session). It has a drift if it `drifts`. The effects that are then found are added.
     fn with_sessions(&self, campaign: &Campaign, (boundaries, drifts): &(Vec<(Kind, usize)>, bool)) -> Self {
         let mut out = self.clone();
         if *drifts {
@@ -247,7 +247,8 @@ impl Positions {
     /// it begins with those that a part of the rows shows.
     pub(super) fn find_effects(&mut self, campaign: &Campaign) {
         self.take_screened(campaign);
-        // What follows a joint's angle can hide a compliance, so the search starts again after each one that is found.
+        // Effects that follow a joint's angle can hide a compliance, so the search starts again after each one that is
+        // found.
         loop {
             for class in CLASSES {
                 while self.add(campaign, class) {}
@@ -265,7 +266,8 @@ impl Positions {
         if starts.is_empty() {
             align::align(&self.tree, spec, &self.samples, &mut self.fitted.geometry);
         } else {
-            // the deflection of all rows is computed once, for the geometry that a part of them has
+            // in a long campaign, the deflection of all rows is computed once, for the geometry that fits a part of the
+            // rows
             self.fitted = starts[starts.len() - 1].clone();
             self.refresh(campaign);
         }

@@ -1,9 +1,9 @@
 //! Competing laws of a joint's angle: errors that are no transmission error once and twice a turn, but look like one where
 //! the joint turns through a part of a turn only.
-//!
-//! A sensor whose scale is wrong errs in proportion to the angle, a cable or a magnet by a smooth curve, a gear's teeth many
-//! times a turn. Each law is tried in the place of a transmission error that was found, with the model made linear. A law
-//! that fits clearly better takes the name away. A law that fits as well with fewer numbers is said.
+//! A sensor with a wrong scale makes an error in proportion to the angle. The error of a cable or a magnet is a smooth
+//! curve. That of a gear's teeth repeats many times a turn. Each law is tried in the place of a transmission error that
+//! was found, with the model made linear. If a law fits clearly better, the transmission error is not named. If it fits
+//! as well with fewer numbers, the verdict says so.
 
 use super::analysis::Positions;
 use super::fit::fit;
@@ -25,7 +25,7 @@ const STEPS: usize = 3;
 
 /// A law of a joint's angle: an error of the angle as a sum of functions of the angle.
 enum AngleLaw {
-    /// Powers of the angle up to this one. The zero is calibrated already.
+    /// A polynomial of the angle, up to this power. It has no constant term, because the zero is calibrated already.
     Powers(i32),
     /// A sine and a cosine that repeat so often in a turn.
     Waves(usize),
@@ -58,7 +58,7 @@ impl AngleLaw {
     }
 }
 
-/// A law that fits in the place of a transmission error that was found.
+/// A law of a joint's angle that competes with a transmission error that was found: it fits in the place of the error.
 pub(super) struct Competing {
     /// Name of the joint.
     joint: String,
@@ -66,13 +66,13 @@ pub(super) struct Competing {
     words: String,
     /// Rise of the logarithm of the likelihood over that of the model with the transmission error.
     likelihood_gain: f64,
-    /// The same, less the difference of the prices of both.
+    /// This rise, less the price of the law, plus the price of the transmission error.
     score_gain: f64,
 }
 
 impl Competing {
-    /// Why the transmission error must not be named, as a sentence: the law fits clearly better, or about as well with so few
-    /// numbers that it is far more probable. `None` if it does not.
+    /// Why the transmission error must not be named, as a sentence. Either the law fits clearly better. Or it fits
+    /// about as well with so few numbers that it is far more probable. `None` if neither holds.
     pub(super) fn better(&self) -> Option<String> {
         (self.score_gain > 0.0 && self.likelihood_gain.max(self.score_gain) > TIE).then(|| {
             format!(
@@ -82,7 +82,8 @@ impl Competing {
         })
     }
 
-    /// The sentence that the law explains as much as the transmission error with fewer numbers; `None` if it does not.
+    /// The sentence that the law explains as much as the transmission error with fewer numbers; `None` if the law does
+    /// not.
     pub(super) fn as_good(&self) -> Option<String> {
         (self.score_gain > 0.0).then(|| {
             format!(
@@ -116,7 +117,7 @@ impl Positions {
         let named_price = self.price(numbers(joint).count(), places);
         let competing = order.into_par_iter().filter_map(|(law, _)| {
             let likelihood_gain = without.with_angle_law(joint, law)? - self.fitted.ln_likelihood;
-            // which law it is was chosen too
+            // the price also charges for the choice among the laws
             let price = self.price(law.at(0.0).len(), places * laws.len());
             Some(Competing {
                 joint: self.tree.driven[joint].clone(),

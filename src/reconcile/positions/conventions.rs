@@ -2,11 +2,11 @@
 //! by another convention ([`Change`]).
 //!
 //! The search is greedy. It starts from the file as it is, read in the unit in which its positions spread as widely as
-//! those of the nominal arm. Every single change of convention, or every pair of changes, is tried by a quick fit of
-//! the placement alone. The best change is kept as long as the errors fall. A quick fit has the errors of the nominal
-//! geometry, so that a change may help it by chance. The geometry is therefore calibrated in full after every step of the
-//! search. Of the sets of changes that then fit about equally well, the smallest is used, and every change without which
-//! the positions fit about as well is dropped.
+//! those of the nominal arm. In each step, every single change of convention is tried by a quick fit of the placement
+//! alone; pairs of changes are tried if no single one helps. The best change is kept as long as the errors fall. A
+//! quick fit has the errors of the nominal geometry, so that a change may help it by chance. The geometry is therefore
+//! calibrated in full after every step. Of the sets of changes that then fit about equally well, the smallest is used.
+//! Each of its changes that the fit does not need is dropped.
 //!
 //! The convention is reported if the errors that remain are several times smaller than with the file as it is, or if
 //! no link or axis has to move further than its prior expects. The file is used unchanged, because only the user knows
@@ -31,8 +31,8 @@ const FAR: f64 = 5.0;
 /// A convention is reported if the errors after calibration with it are smaller than with the file as it is by at
 /// least this factor.
 const TELLING: f64 = 5.0;
-/// Where the file as it is needs a geometry that is far from nominal, a convention with which no link or axis moves
-/// far is reported if the errors, relative to the spread of the positions, are not larger by this factor.
+/// Limit for a file that needs a geometry far from nominal. A convention with which no link or axis moves far is
+/// reported if its errors, relative to the spread of the positions, are larger by no more than this factor.
 const AS_GOOD: f64 = 2.0;
 /// A change of convention is kept in the search if it lowers the errors of the quick fit to less than this fraction
 /// of those without it.
@@ -64,9 +64,9 @@ struct Tried {
     made: Vec<Change>,
     /// Scale of the position errors \[m\].
     scale_m: f64,
-    /// The number by which sets of changes are compared, without unit: the scale of the errors over the spread of the
-    /// positions, for an equally probable calibration whose geometry is nominal. It does not depend on the unit. It is
-    /// larger by [`AS_GOOD`] where the geometry is far from nominal.
+    /// The number by which sets of changes are compared: the smaller, the better. It is the scale of the errors over
+    /// the spread of the positions, so it does not depend on the unit. A calibration that is improbable before the
+    /// readings has a larger number, and so has (by the factor [`AS_GOOD`]) one whose geometry is far from nominal.
     judged: f64,
     /// Whether a link or an axis moved further than its prior expects.
     is_far: bool,
@@ -108,7 +108,7 @@ impl Asked<'_> {
 
     fn full(&self, made: Vec<Change>) -> Tried {
         let (fitted, numbers) = self.fitted(&made, self.groups.len(), LONG);
-        // the logarithm of the likelihood falls by that of the scale for every reading
+        // a scale that is smaller by the factor e raises the logarithm of the likelihood by one for every reading
         let part = fitted.improbability(&numbers) / readings(&self.samples).max(1) as f64;
         let is_far = fitted.is_far_from_nominal(&numbers);
         let far = if is_far { AS_GOOD } else { 1.0 };
@@ -212,8 +212,8 @@ impl Asked<'_> {
         made
     }
 
-    /// `known`, and the sets in which one of its changes is replaced by one of `all` and with which the positions fit
-    /// about as well, in the order of their errors.
+    /// The set `known`, and sets of changes that cannot be told from it: one of its changes is replaced by one of
+    /// `all`, and the positions fit about as well. They are in the order of their errors.
     fn equals(&self, all: &[Change], known: Tried) -> Vec<Tried> {
         let quick_m = self.quick_m(&known.made);
         let others = || all.iter().filter(|change| !known.made.iter().any(|m| m.replaces(change)));

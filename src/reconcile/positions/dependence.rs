@@ -16,8 +16,8 @@ const LEAST: f64 = 0.02;
 #[derive(Clone)]
 pub(crate) enum Dependence {
     /// A factor on a property of the arm, and the standard deviation of its logarithm by the tolerance. The number is
-    /// the change of the mass, or the fall of the compliance, in these standard deviations: for small changes, that of the
-    /// logarithm.
+    /// the relative increase of a mass, or the relative decrease of a compliance, in these standard deviations. For
+    /// small changes it is also the change of the logarithm.
     Tolerance(Calibration, f64),
     /// An effect of one parameter at a place. The number is the parameter, or its reciprocal less 1 if the parameter is
     /// a factor.

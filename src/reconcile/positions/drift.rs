@@ -39,7 +39,7 @@ impl Positions {
         if next.score() <= self.score() {
             return false;
         }
-        // what drifts and jumps too does not drift steadily
+        // if the points jump between sessions in addition to the drift, the drift is not steady and is not used
         let is_better = next.find_sessions(spec.tool_offset, spec.base_placement) == 0;
         if is_better {
             next.stage(format!("{EFFECT}@{}", Channel::Positions.word()), Vec::new());

@@ -7,8 +7,8 @@ use super::kinematics::Number;
 use crate::report::number::significant;
 
 /// A link's vector or a joint's axis that moved by more than this many standard deviations of its prior moved far.
-/// On the measured arms of docs/positions.md none moves by more than one. An uneven gear beside parallel axes tilts them by
-/// 2.9 in a made campaign.
+/// On the measured arms of docs/positions.md none moves by more than one. In a simulated campaign with parallel axes
+/// and a transmission error, the error tilted the axes by 2.9.
 const FAR: f64 = 3.0;
 
 /// A link or a joint whose vector or axis was moved by calibration.

@@ -12,8 +12,8 @@ use super::rows::normal_of_fit;
 use super::springs::{Best, best_springs};
 
 const MOST_STEPS: usize = 40;
-/// Number of steps from a fit to all rows of a long campaign to the fit without one fold of them. Both are closer together than
-/// the standard deviations, and each step leaves a small part of the distance.
+/// Number of steps from a fit to all rows of a long campaign to the fit without one fold of the rows. The two fits
+/// differ by less than the standard deviations, and each step leaves a small part of the difference.
 pub(super) const STEPS_TO_FOLD: usize = 3;
 /// Largest number of times that a step is halved because the fit is worse after it.
 const MOST_HALVINGS: i32 = 10;
@@ -73,7 +73,7 @@ pub(crate) fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], st
     fit_within(MOST_STEPS, samples, numbers, effects, start)
 }
 
-/// The same with at most `steps` Gauss-Newton steps.
+/// Fits the model as [`fit`] does, with at most `steps` Gauss-Newton steps.
 pub(super) fn fit_within(
     steps: usize,
     samples: &[&Sample],

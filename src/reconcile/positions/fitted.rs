@@ -39,8 +39,8 @@ pub(crate) struct Sample {
     pub deflection: Arc<Deflection>,
     /// Change of the known deflection per unit of each dependence of it, in the level frame \[m\].
     pub nominal_m: Arc<[Vector3<f64>]>,
-    /// What the linear displacement by the whole model lacks, in the level frame \[m\]. It is that of the model before the
-    /// present fit.
+    /// Difference between the true displacement by the whole model and the linear one, in the level frame \[m\]. It was
+    /// computed with the model before the present fit.
     pub second_order_m: Vector3<f64>,
 }
 

@@ -1,10 +1,10 @@
 //! Competing laws: physics that is no effect in positions, but looks like effects that were found, or like sessions.
 //!
-//! A joint whose torsion curve is bent looks like lost motion, and so does a backlash that follows the direction of motion. A
-//! tool that bends looks like two joints that are compliant. A tracker that drifts, or links that grow, look like sessions.
-//! Each law is linear in its amplitudes. It is tried in the place of each effect that was found, of all that are at one
-//! place, of all together, and of the sessions that nobody declared. A law that fits clearly better takes their names away:
-//! the verdict says what fits better, and names no effect.
+//! A joint whose torsion curve is bent looks like lost motion, and so does a backlash that follows the direction of
+//! motion. A tool that bends looks like two joints that are compliant. A tracker that drifts, or links that grow, look
+//! like sessions. Each law is linear in its amplitudes. It is tried in the place of every single effect that was found,
+//! of all effects at one place, of all effects together, and of the sessions that nobody declared. If a law fits
+//! clearly better, these effects and sessions are not named, and the verdict says which law fits better.
 
 use super::analysis::Positions;
 use super::fit::fit;
@@ -141,8 +141,9 @@ impl Positions {
         Self { fitted, ..out }
     }
 
-    /// The law that fits best in the place of a group, and what it is worth more than the group \[ln of the likelihood\], if
-    /// it is clearly better. All laws are screened with the linearized model, and the most promising are fitted in full.
+    /// The law that fits best in the place of a group, and by how much it is better than the group \[ln of the
+    /// likelihood\]. `None` if no law is clearly better. All laws are screened with the linearized model, and the most
+    /// promising are fitted in full.
     fn best_law(&self, book: &Book, group: &Group) -> Option<(Law, f64)> {
         let without = self.without_group(group);
         let counts: Vec<usize> = book.laws.iter().map(Law::count).collect();

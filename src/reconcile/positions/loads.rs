@@ -311,7 +311,7 @@ impl<'a> Loads<'a> {
         Self::changed(campaign, tree, geometry, candidates, &|_| {})
     }
 
-    /// The same for arms that differ from those of the campaign by `change`.
+    /// Prepares arms that differ from those of the campaign by `change`, as [`new`](Self::new) does.
     pub(crate) fn changed(
         campaign: &Campaign,
         tree: &'a Tree,

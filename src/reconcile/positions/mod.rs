@@ -6,18 +6,22 @@
 //!   a point.
 //! - `align` finds a first placement of the arm. [`fit`](mod@fit) fits a model (`fitted`). `rows` sums up its normal
 //!   equations (`normal`), and `springs` keeps the compliances physically possible.
-//! - [`analysis`] is the whole analysis. `sessions` finds sessions, `boundary` judges each boundary between two of them
-//!   (`moved`), and `standing` finds where the arm stands in each session. `search` finds compliances,
-//!   `nominal` stiffnesses, moduli and masses other than stated (`dependence`), and `transmission` joints with a transmission error.
-//!   `second_order` is what the linear displacement lacks.
-//! - `shape` says how a candidate that is no spring depends on its torque, `shaped` lists them, `threshold` refines torque scales and preloads,
-//!   `waves` finds stiffnesses that vary with the angle. `drift` finds a drift in the place of sessions. `law` lists physics
-//!   that is no effect, and `laws` lets it compete with effects (`angle_laws`: errors of a joint's angle).
+//! - [`analysis`] is the whole analysis.
+//! - `sessions` finds sessions, and `boundary` judges each boundary between two of them (`moved`). `drift` finds a drift
+//!   in the place of sessions. `standing` finds where the arm stands in each session.
+//! - `search` finds compliances, and `transmission` finds joints with a transmission error. `nominal` finds stiffnesses,
+//!   moduli and masses other than stated (`dependence`).
+//! - `shape` says how the displacement by a candidate that is no spring depends on its torque, and `shaped` lists these
+//!   candidates. `threshold` refines torque scales and preloads. `waves` finds stiffnesses that vary with the angle.
+//! - `second_order` computes the difference between the true and the linear displacement.
+//! - `law` lists physics that is no effect, and `laws` lets it compete with effects. `angle_laws` does so for errors of a
+//!   joint's angle.
 //! - `screening` chooses the rows of a long campaign on which effects are screened.
 //! - `setups` brings the positions of several campaigns into one frame.
-//! - `conventions` asks whether the file was written by another convention (`convention_changes`), `far_geometry` whether
-//!   calibration went further than its prior expects, `structure` tests the errors that are left,
-//!   `next_test` proposes what to measure, and [`outcome`] reaches the verdict.
+//! - `conventions` tests whether the file was written by another convention (`convention_changes`). `far_geometry` tests
+//!   whether calibration went further than its prior expects, and `structure` tests the errors that are left.
+//! - `unnamed_springs` widens intervals for compliances that are not in the model.
+//! - `next_test` proposes what to measure, and [`outcome`] reaches the verdict.
 //! - [`predict`] predicts positions of several arms whose weights load each other's trunk.
 
 pub(crate) mod adjusted;

@@ -117,7 +117,7 @@ impl Positions {
         out
     }
 
-    /// Drops the effect on the nominal deflection that is least worth its price, if there is one that is not. Returns
+    /// Drops the effect on the nominal deflection that falls most below its price, if there is one that does. Returns
     /// whether one was dropped.
     pub(super) fn drop_needless_dependence(&mut self) -> bool {
         let without = self.named_dependences.iter().map(|k| self.without_dependence(*k));

@@ -576,8 +576,8 @@ fn frame_parameters(compliances: &[f64], deviations: &[f64]) -> Vec<(String, Vec
     ]
 }
 
-/// Why an effect cannot be real, as a sentence: a number of it is beyond what an arm file may state. `None` if all are
-/// possible.
+/// The reason why an effect cannot be real, as a sentence: one of its numbers is beyond the range that an arm file may
+/// state. `None` if all numbers are possible.
 fn beyond_bounds(finding: &Finding) -> Option<String> {
     let kind = kind(&finding.effect)?;
     finding.parameters.iter().find_map(|(name, estimates)| {

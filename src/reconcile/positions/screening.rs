@@ -1,15 +1,16 @@
 //! Long campaigns: effects are screened on a part of the rows.
 //!
-//! The search for effects fits the model hundreds of times. What a part of the rows shows clearly, all rows show too: the
-//! likelihood ratio of two models grows with the number of rows. So the search of a long campaign first goes through a few
-//! thousand rows ([`SCREENED`]). The model that it finds is then fitted to all rows and has to be worth its price and to be
-//! confirmed by held-out poses there, and the search goes on from it on all rows. Every candidate is tried once more in this way
-//! by the linearized model of all rows, so that an effect that only all rows show can be found too. The computing time is a constant
-//! and a number of passes over all rows that does not grow with them.
+//! The search for effects fits the model hundreds of times. The likelihood ratio of two models grows with the number of
+//! rows, so what a part of the rows shows clearly is also shown by all rows. The search of a long campaign therefore
+//! first goes through a few thousand rows ([`SCREENED`]). The model that it finds is then fitted to all rows. There it
+//! has to be worth its price and to be confirmed by held-out poses. The search then goes on from this model on all
+//! rows. Every candidate is tried once more by the linearized model of all rows, so that an effect that only all rows
+//! show can be found too. The number of passes over all rows does not grow with the number of rows.
 //!
-//! The rows are the same in every run. Each session, point, arm and load keeps an equal number of rows, as far as it has them;
-//! the other rows are spread evenly; and for each joint the rows with its least and its greatest angle are there. A row stays in its
-//! fold, so that poses which are held out of a fit to all rows were held out of the screening's fits too.
+//! The rows are the same in every run. Each session, point, arm and load has an equal number of rows among them, as far
+//! as it has enough. The other rows are spread evenly. For each joint, the rows with its smallest and its largest angle
+//! are added. A row keeps its fold, so that poses which are held out of a fit to all rows are also held out of the fits
+//! of the screening.
 
 use super::align::align;
 use super::analysis::Positions;
@@ -28,7 +29,8 @@ pub(super) const LONG: usize = 5_000;
 const SCREENED: usize = 4_000;
 /// Largest number of rows that are chosen for the ends of joint angles.
 const ENDS: usize = 400;
-/// A robust fit raises the logarithm of the likelihood at most by about this multiple of what the linearized one promises.
+/// A robust fit raises the logarithm of the likelihood by at most about this multiple of the rise that the linearized
+/// model expects.
 const ROBUST: f64 = 2.0;
 
 /// What rows have in common that keep an equal number of rows: arm, point, session of the instrument, and load.
@@ -47,8 +49,8 @@ fn scrambled(index: usize) -> u64 {
     z ^ (z >> 31)
 }
 
-/// The indices of [`SCREENED`] rows that have the strata `strata`, stratum by stratum: half of them the same number of each
-/// stratum, the others evenly from the rest.
+/// The indices of [`SCREENED`] of the rows, whose strata are `strata`. Half of them are taken in equal numbers from
+/// each stratum, the others evenly from the remaining rows.
 fn spread(strata: &[Stratum]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..strata.len()).collect();
     order.sort_by_key(|&i| (strata[i], scrambled(i)));
@@ -200,19 +202,21 @@ impl Positions {
         })
     }
 
-    /// Whether a full fit may raise the logarithm of the likelihood by `asked`, if the linearized model expects a rise of
-    /// `gain`. In a campaign that is not long this is not asked: a full fit is cheap there.
+    /// Whether a full fit may raise the logarithm of the likelihood by `asked`, if the linearized model expects a rise
+    /// of `gain`. Always true in a campaign that is not long, because a full fit is cheap there.
     pub(super) fn may_rise(&self, gain: f64, asked: f64) -> bool {
         !self.is_long() || self.keeps_its_promise(gain, asked)
     }
 
-    /// Whether a robust fit may raise the logarithm of the likelihood by `asked`, if the linearized one expects a rise of `gain`.
+    /// Whether a robust fit may raise the logarithm of the likelihood by `asked`, if the linearized model expects
+    /// `gain`.
     pub(super) fn keeps_its_promise(&self, gain: f64, asked: f64) -> bool {
         ROBUST * self.promised(gain) > asked
     }
 
-    /// The rise of the logarithm of the likelihood that a fall of half of chi-squared by `gain` promises. Chi-squared is the
-    /// number of readings at the fitted scale of the errors, and the scale falls with it.
+    /// The rise of the logarithm of the likelihood that follows if half of chi-squared falls by `gain`. The scale of
+    /// the errors is fitted, so that chi-squared is the number of readings. A fall of the squares therefore lowers the
+    /// scale.
     fn promised(&self, gain: f64) -> f64 {
         let count = readings(&self.samples) as f64;
         -0.5 * count * libm::log((1.0 - 2.0 * gain / count).max(f64::MIN_POSITIVE))

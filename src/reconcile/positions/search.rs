@@ -87,9 +87,9 @@ impl Positions {
         confirmed
     }
 
-    /// The part of the rise of the logarithm of the likelihood from this model to `next` that tells nothing: with few readings
-    /// left over, the likelihood rises by chance with every further number. Only the first effect is asked for so much, since
-    /// it decides whether anything is missing at all.
+    /// The part of the rise of the logarithm of the likelihood from this model to `next` that chance explains. With few
+    /// readings the likelihood rises by chance with every further number. This part is subtracted for the first effect
+    /// only, because the first effect decides whether anything is missing at all; for others it is 0.
     fn untelling_rise(&self, next: &Self) -> f64 {
         if !self.fitted.effects.is_empty() || !self.transmissions.is_empty() {
             return 0.0;
@@ -244,15 +244,15 @@ impl Positions {
         models.into_par_iter().map(|(c, effects)| (c, fit(&all, &self.numbers, &effects, base))).collect()
     }
 
-    /// The least rise of the logarithm of the likelihood with which the candidate `added` may improve the model `base`: its
-    /// price, less those of the effects that it contains and may replace.
+    /// The smallest rise of the logarithm of the likelihood for which the candidate `added` is worth adding to the
+    /// model `base`. It is the price of the candidate, less the prices of the effects that it contains and may replace.
     pub(super) fn least_rise(&self, base: &Fitted, added: usize) -> f64 {
         let contained = |e: &&usize| self.tree.contains(&self.candidates[added], &self.candidates[**e]);
         self.price_of(added) - base.effects.iter().filter(contained).map(|e| self.price_of(*e)).sum::<f64>()
     }
 
-    /// The rise of the logarithm of the likelihood from `without`, a fit without some effect of the model, from which on
-    /// something else in the place of this effect fits as well.
+    /// Something in the place of an effect of the model fits as well as the effect if it raises the logarithm of the
+    /// likelihood by at least this. The rise is counted from `without`, a fit of the model without the effect.
     pub(super) fn missing(&self, without: &Fitted) -> f64 {
         self.fitted.ln_likelihood - TIE - without.ln_likelihood
     }

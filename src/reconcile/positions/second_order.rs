@@ -1,10 +1,10 @@
 //! What the linear displacement lacks, because the arm deflects so far that the levers of its loads change.
 //!
-//! Compliances are fitted with a displacement that is linear in them. An arm that deflects by 5 mm at a reach of 1 m is
-//! 0.03 mm from where this puts it, which is more than the error of a laser tracker, and changes with the angles of the
-//! joints as a transmission error does. So the displacement of the fitted arm as it hangs is computed too. Its difference
-//! from the linear one is small and hardly changes with the compliances: it is kept while they are fitted, and computed
-//! again after that.
+//! Compliances are fitted with a displacement that is linear in them. For an arm that deflects by 5 mm at a reach of 1
+//! m, the linear displacement is wrong by 0.03 mm. That is more than the error of a laser tracker. It changes with the
+//! angles of the joints, as a transmission error does. So the true displacement of the fitted arm is computed too. Its
+//! difference from the linear one is small and hardly changes with the compliances. The difference is kept while they
+//! are fitted, and is computed again after that.
 
 use super::analysis::Positions;
 use super::loads::{CompliantPlace, Loads};
@@ -18,7 +18,8 @@ use crate::reconcile::readings::campaign::Campaign;
 use rayon::prelude::*;
 
 impl Positions {
-    /// Computes for each sample what its linear displacement lacks, with the effects of the present fit.
+    /// Computes for each sample the difference between the true and the linear displacement, with the effects of the
+    /// present fit.
     pub(super) fn hang(&mut self, campaign: &Campaign) {
         let fitted = &self.fitted;
         let named = fitted.effects.iter().zip(&fitted.compliances);

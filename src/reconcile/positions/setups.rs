@@ -51,9 +51,9 @@ impl Campaign {
         }
     }
 
-    /// Expresses the positions of the rows `later` in the frame of the rows before them. The nominal arm is laid through
-    /// each of the two; what that leaves is the matter of the session between them. Rows in which a
-    /// coordinate was not measured cannot be turned, and stay as they are.
+    /// Expresses the positions of the rows `later` in the frame of the rows before them. The nominal arm is fitted to
+    /// the rows of both frames, which gives the rotation and the shift between the frames. The session that begins at
+    /// the rows `later` corrects what this leaves. If a coordinate of some row was not measured, nothing changes.
     fn bring_into_frame(&mut self, later: Range<usize>) {
         if self.positions[..later.end].iter().any(|row| row.measured.iter().any(Option::is_none)) {
             return;

@@ -1,14 +1,15 @@
-//! The torque scale of a joint's play and the preload of a base that lifts off: the best value, and the intervals of it and of
-//! the half width or stiffness that depends on it.
+//! The threshold of an effect is the torque scale of a joint's play, or the preload of a base that lifts off. This
+//! module finds its best value, and the intervals of the threshold and of the half width or stiffness that depends on
+//! it.
 //!
-//! A few thresholds are tried in the search for effects. The best is refined, since a threshold that is off changes the half
-//! width with it and leaves a structure in the errors. The intervals are those of the profile likelihood: at each threshold `s`
-//! the likelihood falls from its best value `L(s)` like a parabola in the half width `h`, so the interval of `h` is the union
-//! of `h(s) ± σ(s) √(2 (1.92 - (L_max - L(s))))` over all `s`.
+//! A few thresholds are tried in the search for effects. The best of them is refined, because a wrong threshold changes
+//! the half width too and leaves a structure in the errors. The intervals are those of the profile likelihood. At each
+//! threshold `s` the likelihood falls from its best value `L(s)` like a parabola in the half width `h`. So the interval
+//! of `h` is the union of `h(s) ± σ(s) √(2 (1.92 - (L_max - L(s))))` over all `s`.
 //!
-//! In a long campaign the rows on which effects are screened have refined the threshold already. The likelihood of all rows is
-//! close to a parabola in the logarithm of the threshold there, so that a few fits find its vertex, and only the nearest
-//! thresholds on both sides are tried for the interval.
+//! In a long campaign the threshold was refined already on the rows on which effects are screened. Near it, the
+//! likelihood of all rows is close to a parabola in the logarithm of the threshold. So a few fits find the vertex of
+//! this parabola, and only the nearest thresholds on both sides are tried for the interval.
 
 use super::analysis::Positions;
 use super::fitted::Sample;
@@ -23,17 +24,18 @@ const FALL: f64 = RISE_AT_95 / 2.0;
 const STEPS: usize = 13;
 /// Part of an interval that the golden section leaves in each step.
 const GOLDEN: f64 = 0.618_033_988_749_895;
-/// A threshold is sought between the best of those that were tried divided by this factor, and multiplied by it: the ratio
-/// of neighbours that were tried.
+/// A better threshold is sought from the best of those that were tried, divided by this factor, up to this best one
+/// multiplied by the factor. The thresholds that were tried differ by this factor.
 const BRACKET: f64 = 2.7;
 /// Ratios of thresholds to the best one at which the likelihood is computed for the intervals.
 const RATIOS: [f64; 8] = [1.05, 1.12, 1.25, 1.5, 2.0, 3.0, 6.0, 20.0];
-/// Parts of the way, in the logarithm of the threshold, from the best one to each end of its interval at which the size is
-/// computed for its own interval.
+/// The size is also computed at thresholds between the best one and each end of its interval. These are the parts of
+/// the way, in the logarithm of the threshold, at which they lie.
 const PARTS: [f64; 4] = [0.3, 0.6, 0.85, 0.97];
 /// Distances between the logarithms of the thresholds through which a parabola is laid, first and second time.
 const WIDTHS: [f64; 2] = [0.1, 0.03];
-/// The vertex of a parabola is taken for true up to this many times the distance of its points.
+/// The vertex of a parabola is used only if it is no farther from the middle point than this many times the distance of
+/// the points.
 const FARTHEST: f64 = 3.0;
 /// A threshold above this multiple of the largest torque is that of a spring.
 const MOST: f64 = 3.0;
@@ -43,8 +45,9 @@ struct Tried {
     threshold_nm: f64,
     size: f64,
     deviation: f64,
-    /// By how much the logarithm of the likelihood is lower than with the best threshold. It is divided by the factor by which
-    /// heavy tails and compliances without a name increase the variance of the size.
+    /// By how much the logarithm of the likelihood is lower than with the best threshold. The difference is divided by
+    /// the factor by which heavy tails of the errors and compliances outside the model increase the variance of the
+    /// size.
     fall: f64,
 }
 
@@ -200,16 +203,16 @@ impl Positions {
     }
 }
 
-/// Where the parabola through three values has its vertex, for places at -1, 0 and 1. If it has none that is a maximum: far to
-/// the side of the greater value.
+/// Position of the vertex of the parabola through three values at -1, 0 and 1. If the parabola has no maximum, the
+/// position is infinite, on the side of the greater value.
 fn vertex([left, middle, right]: [f64; 3]) -> f64 {
     let bent = left - 2.0 * middle + right;
     if bent < 0.0 { 0.5 * (left - right) / bent } else { f64::INFINITY.copysign(right - left) }
 }
 
-/// The threshold with its interval \[N m\]: between a threshold that is likely enough and one that is not, the root of the fall
-/// of the likelihood is taken as linear in the logarithm of the threshold (the likelihood falls like a parabola). Sorts `tried`
-/// by the threshold.
+/// The threshold with its interval \[N m\]. An end of the interval lies between a threshold that is likely enough and
+/// one that is not. The likelihood falls like a parabola in the logarithm of the threshold, so the root of the fall is
+/// interpolated linearly. Sorts `tried` by the threshold.
 fn threshold(tried: &mut [Tried], best_nm: f64) -> Estimate {
     tried.sort_by(|a, b| a.threshold_nm.total_cmp(&b.threshold_nm));
     let root = |fall: f64| fall.max(0.0).sqrt();

@@ -131,7 +131,7 @@ fn none_negative(a: &Cholesky<f64, Dyn>, b: &DVector<f64>) -> DVector<f64> {
     x
 }
 
-/// The least point of the same function if all entries but `free` are zero.
+/// The vector whose entries other than those with the indices `free` are zero and at which `½ xᵀ A x - bᵀ x` is least.
 fn best_of_free(a: &DMatrix<f64>, b: &DVector<f64>, free: &[usize]) -> Option<DVector<f64>> {
     let own = DMatrix::from_fn(free.len(), free.len(), |i, j| a[(free[i], free[j])]);
     let found = Cholesky::new(own)?.solve(&DVector::from_fn(free.len(), |i, _| b[free[i]]));

@@ -15,12 +15,13 @@ use crate::reconcile::model::estimate::{Estimate, Z_95};
 use crate::reconcile::readings::campaign::Campaign;
 use std::f64::consts::PI;
 
-/// A joint's compliance varies by less than this part of itself.
+/// The compliance of a joint must vary by less than this fraction of its mean over all angles.
 const MOST: f64 = 0.9;
 
 impl Positions {
-    /// Adds the stiffness that varies with a joint's angle, or the transmission error, that raises the likelihood most, if
-    /// the rise is worth its price and held-out poses confirm it. Returns whether one was added.
+    /// Finds the one addition that raises the likelihood most: a stiffness that varies with a joint's angle, or a
+    /// transmission error. Adds it if the rise is worth its price and held-out poses confirm it. Returns whether one
+    /// was added.
     pub(super) fn add_periodic(&mut self, campaign: &Campaign) -> bool {
         let uneven = self.best_transmission(campaign);
         let base = &self.fitted;
@@ -73,15 +74,15 @@ impl Positions {
         Some(gear / factor.product::<f64>() + joint.law.connection_rad_per_nm + further)
     }
 
-    /// Whether the stiffness of the candidate's joint can vary in the model `fitted`: the joint has one. True for all other
-    /// candidates.
+    /// Whether the candidate can be added to the model `fitted`. A stiffness that varies with the angle needs a joint
+    /// that has a compliance in the model. True for all other candidates.
     pub(super) fn can_vary(&self, fitted: &Fitted, candidate: usize) -> bool {
         let candidate = &self.candidates[candidate];
         candidate.shape.waves().is_none()
             || self.mean_rad_per_nm(fitted, &candidate.at).is_some_and(|c| c > 0.0)
     }
 
-    /// Whether no joint's stiffness varies by more than it has in the fit `fitted`.
+    /// Whether, in the fit `fitted`, the compliance of each joint varies by less than [`MOST`] of its mean.
     pub(super) fn has_possible_waves(&self, fitted: &Fitted) -> bool {
         fitted.effects.iter().zip(&fitted.compliances).all(|(&e, sizes)| {
             let candidate = &self.candidates[e];

@@ -109,7 +109,8 @@ pub struct Campaign {
     /// Sentences on readings that were not taken as they are written, such as a constant column that is taken as not
     /// measured.
     pub remarks: Vec<String>,
-    /// Indices of the positions with which the rows of a further campaign begin, if several were joined.
+    /// If several campaigns were joined, the index in `positions` of the first row of each campaign after the first
+    /// one.
     pub(crate) joined_at: Vec<usize>,
     /// Records against time.
     pub records: Vec<Record>,

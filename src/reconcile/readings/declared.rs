@@ -16,7 +16,7 @@ pub struct DeclaredSession {
 }
 
 impl DeclaredSession {
-    /// This session with its row number changed for a file in which its rows follow `rows` other rows.
+    /// This session in a file that has `rows` more rows before its own: its row number grows by `rows`.
     pub(super) fn after(self, rows: usize) -> Self {
         Self { from_row: self.from_row + rows, ..self }
     }

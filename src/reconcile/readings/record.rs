@@ -15,14 +15,14 @@ const MOST_FAULTS: usize = 10;
 /// Smallest number of rows of a record. A shorter record is a fault.
 pub(crate) const FEWEST_ROWS: usize = 200;
 
-/// The angles of an encoder of one turn lie within this \[rad\].
+/// Upper limit of the range of angles that an encoder of one turn can show \[rad\]. The margin is for rounding.
 const ONE_TURN_RAD: f64 = std::f64::consts::TAU * (1.0 + 1e-9);
-/// Motor and link are compared only if each of them turns through at least this \[rad\].
+/// The angles of motor and link are compared only if each of them turns through at least this \[rad\].
 const LEAST_RANGE_RAD: f64 = 0.1;
 /// Motor and link move together if the square of their correlation is at least this.
 const TOGETHER: f64 = 0.9;
-/// Largest angle of the link for each radian of the motor, both at the output, or of the motor for each of the link. No joint
-/// that twists turns one side twice as far as the other.
+/// Largest ratio of the motion of one side of the gear to that of the other, both referred to the output. No joint that
+/// twists turns one side twice as far as the other.
 const MOST_SLOPE: f64 = 2.0;
 
 /// Signals of one joint, all referred to the output of the gear.
@@ -64,8 +64,8 @@ struct Columns {
     torque: Option<(usize, f64)>,
 }
 
-/// Rows of a moving joint that follow each other after more than this may have their time in another unit \[s\]: controllers
-/// write them after 0.25 to 20 ms.
+/// If the usual time between rows is longer than this, the times may be in another unit than seconds \[s\]. Controllers
+/// write a row of a moving joint every 0.25 to 20 ms.
 const LONGEST_STEP_S: f64 = 0.15;
 
 struct Reader<'a> {
@@ -346,7 +346,8 @@ impl Reader<'_> {
         }
         for (signals, c) in out.joints.iter_mut().zip(columns) {
             let is_at_shaft = c.motor.1 != 1.0;
-            // a shaft may turn by more than half a turn between rows, so only an encoder of one turn is unwrapped
+            // a shaft may turn by more than half a turn between rows, so its jumps are removed only if the encoder
+            // shows one turn
             if !is_at_shaft || range(&signals.motor_rad) < ONE_TURN_RAD {
                 unwrap(&mut signals.motor_rad);
             }
@@ -362,8 +363,8 @@ impl Reader<'_> {
     }
 }
 
-/// Hint at times in milliseconds or microseconds where the rows follow each other so slowly that a record of a moving joint
-/// hardly has them.
+/// A remark if the rows follow each other so slowly that the times may be in milliseconds or microseconds, and not in
+/// seconds; `None` if they do not.
 fn slow_rows(record: &Record) -> Option<String> {
     let step_s = usual_step_s(&record.t_s);
     (step_s > LONGEST_STEP_S).then(|| {
@@ -387,8 +388,9 @@ fn range(angles_rad: &[f64]) -> f64 {
     high - low
 }
 
-/// What is wrong with the angles of a joint whose link and motor move far and together, but not by the same angle; `None` if they
-/// do, or if one of them hardly moves, as in a test with a locked output.
+/// What is wrong with the angles of a joint whose link and motor move far and in proportion, but not by about the same
+/// angle. `None` if they move by about the same angle, or if one of them hardly moves, as in a test with a locked
+/// output.
 fn not_together(signals: &JointSignals) -> Option<String> {
     let (motor_rad, link_rad) = (&signals.motor_rad, &signals.link_rad);
     if link_rad.is_empty() || range(motor_rad).min(range(link_rad)) < LEAST_RANGE_RAD {

@@ -1,7 +1,7 @@
 //! The compliance of a joint from records: whether they identify it, and the stiffness with its interval.
 //!
-//! Gravity and a transmission error of the output both follow the angle of the joint, so the interval covers the fits
-//! with and without that error where the records cannot tell the two apart.
+//! Gravity and a transmission error of the output both follow the angle of the joint. Where the records cannot tell the
+//! two apart, the interval covers the fits with and without that error.
 
 use super::intervals::{attenuated, covering, is_positive, widened};
 use super::twist::{CLEARLY, Group, TwistModel};
@@ -20,10 +20,11 @@ const WIDE: f64 = 5.0;
 /// Smallest half width of the interval of a compliance, as a fraction of the value, because the scale factors of
 /// sensors are not known better.
 const LEAST_PART: f64 = 5e-3;
-/// Largest compliance beside a transmission error, as a multiple of the compliance with a rotor without inertia: the rotor has
-/// at most the inertia of its load.
+/// Largest compliance in the presence of a transmission error, as a multiple of the compliance for a rotor without
+/// inertia. A rotor with the inertia of its load gives this multiple, and no rotor is taken to have more inertia.
 const MOST_ROTOR: f64 = 2.0;
-/// Why a compliance or a transmission error is not identified where each of them explains the twist by gravity.
+/// Reason why a compliance or a transmission error is not identified: either of them alone explains the twist by
+/// gravity.
 pub(crate) const GRAVITY_OR_ERROR: &str = "the twist by gravity and a transmission error both follow the angle of the joint, and the rotor's inertia is not \
      stated: the records cannot tell them apart";
 
@@ -79,8 +80,8 @@ pub(super) fn compliance(model: &TwistModel, left_share: f64, least: f64) -> Sta
     Stated::one(WHAT, State::Found, NAME, stiffness, &words.join("; "))
 }
 
-/// By how much the compliance `rad_per_nm` would come out larger in a model without time shift and friction; `None` if the
-/// model has no time shift, or the difference is small.
+/// A clause that says how many times too large the compliance `rad_per_nm` would come out in a model without time shift
+/// and friction. `None` if the model has no time shift, or if the difference is small.
 fn softer_without_shift(model: &TwistModel, rad_per_nm: f64) -> Option<String> {
     let p = model.places;
     let plain = model.fit_with(&[p.offsets(), vec![p.torque()]].concat());
@@ -89,8 +90,8 @@ fn softer_without_shift(model: &TwistModel, rad_per_nm: f64) -> Option<String> {
     is_said.then(|| format!("without time shift and friction it would come out {factor:.1} times too soft"))
 }
 
-/// Sentence on a torque that is nearly all the joint's own motion: `share` of its variance is not, and `left_share` is left by
-/// the balance of torques.
+/// Sentence on a joint whose torque mostly serves its own motion. `share` is the fraction of the torque's variance that
+/// does not, and `left_share` is the fraction that the balance of torques leaves unexplained.
 fn insufficient(model: &TwistModel, share: f64, left_share: f64) -> String {
     let is_stated = model.rows.rotor_inertia_kgm2.is_some();
     format!(
@@ -102,8 +103,8 @@ fn insufficient(model: &TwistModel, share: f64, left_share: f64) -> String {
     )
 }
 
-/// The compliance `c` \[rad/(N m)\] of a joint whose compliance is not identified, with its interval widened so that it
-/// covers the fits with and without a transmission error of the output, where the compliance shows without that error.
+/// The compliance `c` \[rad/(N m)\], with its interval widened for a transmission error of the output. It then covers
+/// the fit with this error, and also the fit without the error if that fit shows the compliance.
 fn beside_gear_error(model: &TwistModel, c: Estimate) -> Estimate {
     let Some(beside) = &model.error_or_gravity else { return c };
     if !beside.is_doubtful && !model.groups.contains(&Group::Output) {
@@ -116,7 +117,8 @@ fn beside_gear_error(model: &TwistModel, c: Estimate) -> Estimate {
         out = covering(out, beside.without.coefficient(torque));
     }
     if beside.is_held {
-        // without a rotor the compliance is the least; with one of the load's own inertia it is twice that
+        // with a rotor of zero inertia the compliance is smallest; with a rotor of the load's inertia it is twice as
+        // large
         let most = |high: f64| high.max(MOST_ROTOR * with.high.unwrap_or(high));
         out.high = out.high.map(most);
     }

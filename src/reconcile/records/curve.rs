@@ -1,8 +1,8 @@
 //! Nonlinear torsion laws of a joint, beyond a single compliance: three segments, lost motion and hysteresis.
 //!
-//! The spring is the joint as a compliance. Its torque is the motor's torque without friction, as the balance of torques gives
-//! it, and without rotor inertia, as the linear fit of the twist gives it. Each law is written as a few columns, which are functions of the spring torque
-//! and of the law's own torques (break points, closing torque or half width `r`). The law's torques are first tried on
+//! The spring is the joint as a compliance. Its torque is the motor's torque without friction and without the torque
+//! that accelerates the rotor. The friction comes from the balance of torques, and the rotor's inertia from the linear
+//! fit of the twist. Each law is written as a few columns, which are functions of the spring torque
 //! a grid. The best grid point is then improved with the derivatives of the twist with respect to these torques. The
 //! columns of the derivatives are part of the fit, so that the intervals contain the uncertainty of the torques.
 //!
@@ -31,10 +31,12 @@ const CLEARLY_OF_GRID: f64 = 3.0;
 /// A law is accepted only if it changes the twist by more than this fraction of the twist's root mean square. A
 /// smaller change may come from the simplicity of the model of friction.
 pub(super) const LEAST_TWIST_CHANGE: f64 = 0.02;
-/// A law that is not accepted but would lower the error on held-out blocks to less than this fraction may be hidden in the
-/// record: a few blocks with most of the error can keep a true law from being clear.
+/// A law that is not accepted may still be hidden in the record: a few blocks with most of the error can keep a true
+/// law from being clear. It is taken as hidden if it would lower the error on held-out blocks to less than this
+/// fraction.
 const HIDDEN: f64 = 0.5;
-/// Break points of three segments whose intervals are nearer to each other than this fraction of the second one are one break.
+/// If the intervals of the two break points of three segments are closer together than this fraction of the second one,
+/// they count as one break point.
 const ONE_BREAK: f64 = 0.2;
 /// Number of Gauss-Newton steps by which the torques at which the laws change are improved.
 const ROUNDS: usize = 5;
@@ -61,8 +63,8 @@ pub(crate) struct Curve {
     pub refused: Vec<(&'static str, &'static str)>,
     /// Name of a law that held-out blocks cannot tell from one that was chosen; `None` if there is none.
     pub competing: Option<&'static str>,
-    /// Name of a law that is not clear enough to be accepted but would leave less than [`HIDDEN`] of the error on held-out
-    /// blocks, and the root mean square error with it \[rad\]; `None` if there is none.
+    /// Name of a law that may be hidden in the record (see [`HIDDEN`]), and the root mean square error on held-out
+    /// blocks with it \[rad\]; `None` if there is none.
     pub hidden: Option<(&'static str, f64)>,
     /// Fit of the twist with the columns of all laws, including the derivatives with respect to the torques of the
     /// laws.
@@ -72,7 +74,7 @@ pub(crate) struct Curve {
     first: usize,
     /// Torque of the spring (the motor's torque without friction and rotor inertia), one per row \[N m\].
     pub spring_nm: Vec<f64>,
-    /// Friction that is held in all fits with a law; `None` where it is free.
+    /// Friction that has a known value in all fits with a law; `None` if these fits find the friction themselves.
     pub held: Option<Held>,
 }
 
@@ -142,9 +144,9 @@ fn dragged(spring_nm: &[f64], record: impl Fn(usize) -> usize, width: f64) -> Ve
     spring_nm.iter().enumerate().map(drag).collect()
 }
 
-/// Torque of the spring at each row \[N m\]: the motor's torque without friction and rotor inertia. The friction is that of the
-/// balance of torques, `friction`, where it is certain. The linear fit of the twist takes a hysteresis for friction, and gives
-/// it only where the balance does not.
+/// Torque of the spring at each row \[N m\]: the motor's torque without friction and rotor inertia. The friction is
+/// that of `friction`, the balance of torques, as far as it is certain there. Otherwise it is that of the linear fit of
+/// the twist, which mistakes a hysteresis for friction.
 pub(crate) fn spring_torque(model: &TwistModel, fitted: &Fitted, friction: Option<&Friction>) -> Vec<f64> {
     let p = model.places;
     let of_twist = |column: usize| fitted.value(column) / fitted.value(p.torque());
@@ -157,7 +159,7 @@ pub(crate) fn spring_torque(model: &TwistModel, fitted: &Fitted, friction: Optio
         Some((coulomb_nm, f)) => [-coulomb_nm, -f.load_part.map_or(0.0, |part| part.value)],
         None => [of_twist(p.sense()), of_twist(p.load_sense())],
     };
-    // a fit without a law takes a part of its loop for a filter of the torque
+    // a fit without a law describes a part of the hysteresis loop as a filter of the torque
     let has_laws = fitted.columns.iter().any(|c| *c >= p.further());
     let rate = if has_laws || coulomb_nm.is_none() { of_twist(p.rate()) } else { 0.0 };
     let inertia = of_twist(p.acceleration());
@@ -175,9 +177,10 @@ pub(crate) fn spring_torque(model: &TwistModel, fitted: &Fitted, friction: Optio
     out
 }
 
-/// Replaces the torque of the spring at rows where friction is not known. A hysteresis remembers these rows, so an error of
-/// friction there would remain after them. They get the torque of the load, which the gear carries and which needs no friction,
-/// plus its difference from the spring's torque, interpolated between the known rows before and after.
+/// Replaces the torque of the spring at rows where friction is not known. A hysteresis depends on these rows too, so
+/// errors there would remain in later rows. The torque of the load, which the gear carries, is known without friction.
+/// The rows get this torque plus its difference from the spring's torque, which is interpolated between the known rows
+/// before and after.
 fn bridge(model: &TwistModel, spring_nm: &mut [f64]) {
     let samples = &model.rows.samples;
     let mut row = 0;
@@ -208,8 +211,8 @@ fn bridge_one(samples: &[Sample], gap: Range<usize>, spring_nm: &mut [f64]) {
     }
 }
 
-/// Coulomb friction and friction in proportion to the load, as far as the balance of torques is certain of it: the torque
-/// \[N m\], half of the width of its interval \[N m\], and the part of the load.
+/// Friction that the balance of torques determines with certainty: the Coulomb friction \[N m\], half of the width of
+/// its interval \[N m\], and the friction in proportion to the load, as a fraction of the load.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Held {
     coulomb_nm: f64,
@@ -217,9 +220,10 @@ pub(crate) struct Held {
     load_part: f64,
 }
 
-/// The friction that is held in all fits with a law; `None` where it is free. Friction on the motor's side is a part of that of
-/// the balance of torques. Where the fit of the twist asks for more, the loop of a hysteresis stands in for friction, and all
-/// of the friction acts on the motor's side.
+/// The friction that has a known value in all fits with a law, or `None` if these fits find the friction themselves.
+/// Friction on the motor's side cannot exceed the friction of the balance of torques. If the fit of the twist gives
+/// more, it has taken the loop of a hysteresis for friction. All friction of the balance is then put on the motor's
+/// side.
 fn held(model: &TwistModel, friction: Option<&Friction>) -> Option<Held> {
     let f = friction.filter(|f| f.clearly[0] && is_positive(&f.coulomb_nm))?;
     let out = Held {
@@ -359,9 +363,9 @@ impl Curve {
             });
             // refitted with this law alone on the grid, so that its columns follow directly behind those of the laws
             // found before
-            // the rotor's inertia of a fit that lacks the curve can make the best segments soften, which the inertia that follows
-            // does not; segments that stiffen go first
             let torque = model.places.torque();
+            // a fit without the curve may have a wrong rotor inertia, with which the best segments soften; with the
+            // inertia that follows from the curve they do not, so segments that stiffen are preferred
             let softens = |(law, fit): &(Law, Fitted)| {
                 let at = self.shapes_of(*law, known, &single);
                 matches!(law, Law::Segments(..))
@@ -453,8 +457,9 @@ impl Curve {
         self.laws.last().map(|law| law.what())
     }
 
-    /// These laws and the law `law`, all at their best torques. The spring torque is computed again with the rotor's inertia of
-    /// the fit, which a law that the fit before lacks made wrong there. `None` if a fit is impossible.
+    /// These laws and the law `law`, all at their best torques. The rotor's inertia of the earlier fit was wrong if
+    /// that fit lacked a law that the twist needs. So the spring torque is computed again with the inertia of the new
+    /// fit. `None` if a fit is impossible.
     fn with(
         &self,
         model: &TwistModel,
@@ -540,16 +545,16 @@ impl Curve {
         [0, 1].map(|k| self.fitted.estimate(|c| torques_nm[k] + c(at + 2 + k) / c(at + k)))
     }
 
-    /// Whether the intervals of both break points meet within a margin, or one of them is open. The known rows then show one
-    /// break only, because they do not reach the third segment.
+    /// Whether the intervals of the two break points meet within a margin, or one of them is open. The known rows do
+    /// not reach the third segment then, and show only one break point.
     fn has_one_break(&self, place: usize, torques_nm: [f64; 2]) -> bool {
         let [first, second] = self.breaks(place, torques_nm);
         let margin = ONE_BREAK * torques_nm[1];
         first.high.zip(second.low).is_none_or(|(high, low)| high + margin >= low)
     }
 
-    /// Parameters of three segments of which the record shows two: the third one is at least as stiff as the second, and begins
-    /// at a torque that the record does not show.
+    /// Parameters of a curve with three segments of which the record shows two. The third segment is at least as stiff
+    /// as the second, and begins at a torque beyond those of the record.
     fn one_break(&self, place: usize, t1: f64, torque: usize) -> Vec<(String, Vec<Estimate>)> {
         let at = self.first + 4 * place;
         let (Law::Segments(_, t2), known) = (self.laws[place], self.spring_nm.iter()) else {

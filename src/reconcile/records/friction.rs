@@ -8,8 +8,8 @@
 //!
 //! The load of a joint also depends on the position and motion of the other joints. Their angles, speeds and
 //! accelerations enter as free columns, joint by joint, where held-out blocks are predicted better with them. The
-//! torque of the load `T_l`, which the gear carries, comes from a first fit without load-dependent friction, then from one
-//! with it: all terms of the load except the rotor's inertia.
+//! torque of the load `T_l`, which the gear carries, is the sum of all terms of the load except the rotor's inertia. It
+//! comes first from a fit without load-dependent friction, then from a fit with it.
 
 use super::blocks::Fitted;
 use super::intervals::is_positive;
@@ -26,13 +26,14 @@ const OWN_LOAD: usize = 6;
 /// Number of columns of friction: sign of the speed, speed, and sign of the speed times the magnitude of the load.
 const FRICTION: usize = 3;
 /// The link's acceleration is added to the balance of torques if held-out blocks are then predicted better by this many
-/// standard errors. The number is smaller than for other columns, because the inertia of the link surely exists and is
-/// one column only.
+/// standard errors. The number is smaller than for other columns, because the inertia of the link certainly exists and
+/// adds one column only.
 const SLIGHTLY: f64 = 1.0;
 /// Number of columns that the motion of one other joint adds to the balance of torques.
 const OTHER: usize = 8;
 
-/// Number of fits in which load-dependent friction and the load improve each other.
+/// Number of fits, one after the other. Each finds the friction that depends on the load with the load of the fit
+/// before.
 const LOAD_ROUNDS: usize = 4;
 
 /// Friction of a joint on the output of its gear, with 95 % intervals.
@@ -77,7 +78,7 @@ struct Balance<'a> {
     used: Used,
 }
 
-/// Rows that a sum over the balance of torques has.
+/// Which rows enter a sum over the balance of torques.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Used {
     /// Rows without a jump of the torque and away from reversals. Near a reversal the friction is not known.
@@ -151,8 +152,9 @@ impl Balance<'_> {
     }
 
     /// Torque of the load that the gear carries at each row according to the fit `fitted` \[N m\]: the sum of all terms
-    /// except friction and the torque that accelerates the rotor. Where the link's acceleration is in the fit, the motor's
-    /// acceleration belongs to the rotor; otherwise it stands for both, and a stated inertia of the rotor is subtracted.
+    /// except friction and the torque that accelerates the rotor. If the link's acceleration is in the fit, the term of
+    /// the motor's acceleration belongs to the rotor alone. Otherwise this term contains rotor and link, and the stated
+    /// inertia of the rotor is subtracted from it.
     fn load_of(&self, fitted: &Fitted) -> Vec<f64> {
         let motor = self.rows.record_count();
         let mut apart = self.friction().to_vec();

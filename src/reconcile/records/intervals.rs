@@ -30,8 +30,8 @@ pub(super) fn widened(estimate: Estimate, least: f64) -> Estimate {
     }
 }
 
-/// The estimate of a coefficient with its interval widened to cover that the fit gives `least` to 1 times the true value. An end
-/// without limit is infinite.
+/// The estimate of a coefficient, if the fit gives between `least` times and once its true value. The interval is
+/// widened so that it covers every true value that is possible. An end without limit is infinite.
 pub(super) fn attenuated(estimate: Estimate, least: f64) -> Estimate {
     let up = |end: f64| if end > 0.0 { end.max(end / least) } else { end };
     let down = |end: f64| if end < 0.0 { end.min(end / least) } else { end };

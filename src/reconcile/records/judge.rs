@@ -64,7 +64,7 @@ struct Judged<'a> {
     model: &'a TwistModel<'a>,
     records: &'a [Record],
     friction: Option<Friction>,
-    /// Limit of [`TwistModel::least_attenuation`].
+    /// Smallest fraction of the true compliance that the fit may give (see [`TwistModel::least_attenuation`]).
     least: f64,
     compliance: Stated,
     curve: Option<Curve>,
@@ -92,8 +92,8 @@ impl<'a> Judged<'a> {
     /// the compliance comes from the fit that includes it; the linear fit would take a part of that effect for
     /// compliance. If a torsion curve was found, its segments have their own stiffnesses, and the compliance stated
     /// here is that of the linear fit, a mean over the record. The linear fit is also taken where the interval of the
-    /// other fit does not exclude zero compliance. Beside a transmission error of the output, or a law that is not found, the
-    /// interval covers both fits.
+    /// other fit does not exclude zero compliance. If a transmission error of the output, or a law that is not found,
+    /// could take a part of the compliance, the interval covers both fits.
     fn compliance_beside_laws(&self) -> Stated {
         let laws = self.curve.iter().flat_map(|c| &c.laws);
         let is_changed = !laws.clone().any(|l| matches!(l, Law::Segments(..))) && laws.count() > 0;
@@ -148,7 +148,8 @@ impl<'a> Judged<'a> {
         }
     }
 
-    /// Root mean square error of the twist on held-out blocks \[rad\] with an offset and, if it is in the model, the time shift.
+    /// Root mean square error of the twist on held-out blocks with an offset as model, and with the time shift too if
+    /// it is in the model \[rad\].
     fn unshifted_rad(&self) -> f64 {
         let shift: Vec<Group> = self.model.groups.iter().copied().filter(|g| *g == Group::Shift).collect();
         self.model.fit(&shift).map_or(0.0, |f| f.held_out_rms())
@@ -201,8 +202,9 @@ impl<'a> Judged<'a> {
         Stated::one(Group::Shift.what(), state, "seconds", shift, if is_clear { &words } else { absent })
     }
 
-    /// Whether a time shift of `shift_s` changes the twist by more than [`LEAST_TWIST_CHANGE`] of the twist. The loop of twist against torque
-    /// that a smaller one makes may be one of friction, hysteresis or lost motion that does not follow its formula.
+    /// Whether a time shift of `shift_s` changes the twist by more than [`LEAST_TWIST_CHANGE`] of the twist. A smaller
+    /// time shift makes a small loop of twist against torque. Friction, hysteresis or lost motion that does not follow
+    /// its formula can make such a loop too.
     fn is_material(&self, shift_s: f64) -> bool {
         let size_rad = shift_s.abs() * self.rows.rms_speed_rad_s();
         let before_rad = self.model.steps.first().map_or(0.0, |s| s.1);
@@ -259,8 +261,8 @@ impl<'a> Judged<'a> {
         (out, words)
     }
 
-    /// Compliance of the last fit \[rad/(N m)\], without that of a torsion law, with noise of the torque in its interval. The
-    /// recorded twist bounds it where the noise does not.
+    /// Compliance of the last fit \[rad/(N m)\], without the compliance of a torsion law. Its interval is widened for
+    /// the noise of the torque, but not beyond the largest compliance that the recorded twist allows.
     fn bounded_compliance(&self) -> Estimate {
         let fitted = self.fitted().coefficient(self.model.places.torque());
         let bound = self.model.largest_compliance();
@@ -348,7 +350,7 @@ impl<'a> Judged<'a> {
                 .flatten()
                 .chain(&at_ends)
                 .collect();
-        // where the compliance may be that without the error, so may the error be the one beside that compliance
+        // the compliance may be that of the fit without the error, so the error at that compliance is possible too
         let both =
             |of: &dyn Fn(&Fitted) -> Estimate| fits[1..].iter().fold(of(fits[0]), |a, f| covering(a, of(f)));
         let size = both(&|fitted| error_size(fitted, columns, low, high, 1.0));
@@ -368,8 +370,9 @@ impl<'a> Judged<'a> {
         Stated { what, state: State::Found, parameters, words }
     }
 
-    /// Fits of the transmission error of the output at both ends of the interval of the compliance, where the rotor's inertia is
-    /// not stated: a part of the error that follows gravity and the compliance then take each other's place.
+    /// Fits of the transmission error of the output at both ends of the interval of the compliance, if the rotor's
+    /// inertia is not stated. A larger compliance then leaves less of the twist by gravity for the error, and a smaller
+    /// one leaves more.
     fn errors_at_ends(&self) -> Vec<Fitted> {
         let stiffness = self.compliance.parameters.first().and_then(|(_, list)| list.first());
         let Some(k) = stiffness.filter(|_| self.rows.rotor_inertia_kgm2.is_none()) else { return Vec::new() };
@@ -509,9 +512,10 @@ fn error_size(fitted: &Fitted, columns: [usize; 4], low: f64, high: f64, ratio: 
     })
 }
 
-/// Widens the interval of the size of a transmission error, from peak to peak, and those of its amplitudes, to
-/// [`LEAST_LAW_PART`] of them: no gear has waves of one order only, and the link does not follow fast ones. An amplitude has the
-/// part of the largest one, because a small error of a phase is that large.
+/// Widens the interval of the size of a transmission error (from peak to peak) and the intervals of its amplitudes.
+/// Their half widths become at least [`LEAST_LAW_PART`] of the size, and of the largest amplitude. The reason is that
+/// no gear has waves of one order only, and that the link does not follow fast waves. A small error of the phase
+/// changes an amplitude by a fraction of the largest one.
 fn widen_error(size: Estimate, amplitudes: &mut [Estimate]) -> Estimate {
     let largest_rad = amplitudes.iter().fold(0.0f64, |m, e| m.max(e.value.abs()));
     for amplitude in amplitudes {

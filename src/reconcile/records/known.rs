@@ -2,37 +2,39 @@
 //!
 //! - While a joint rests, friction may hold any torque up to that of Coulomb friction.
 //! - While it reverses, friction changes its sign somewhere, and no formula says where.
-//! - Where the torque jumps between two rows, its average over a window is uncertain by the jump times half a row. The
-//!   jumps of a motion that is planned by corners, such as a trapezoid of the speed, all stand at the same place between
-//!   the rows, because the controller begins each piece at one of its cycles. This error then has one sign and does not
-//!   average out.
+//! - Where the torque jumps between two rows, its average over a window is uncertain by the jump times half a row. A
+//!   motion that is planned with corners, such as a trapezoid of the speed, has such jumps. All of them are at the same
+//!   place between the rows, because the controller begins each piece at one of its cycles. The error then has one sign
+//!   and does not average out.
 
 use crate::reconcile::fit::stats::{MEDIAN_OF_NORMAL, median};
 
-/// A joint rests at rows where the magnitude of the smoothed sign of its speed is below this for longer than the window of
-/// the torque. At a reversal it is below for about half of the window.
+/// A joint rests at rows where the magnitude of the smoothed sign of its speed stays below this for longer than the
+/// window of the torque. At a reversal it stays below this for about half of the window.
 const RESTING: f64 = 0.5;
 /// A rest ends where the magnitude of the smoothed sign of the speed reaches this again.
 const MOVING: f64 = 0.98;
 /// Rows at rest are left out only where at least this fraction of the record's rows is left.
 const LEAST_MOVING_PART: f64 = 0.2;
-/// A joint reverses at rows where the magnitude of the smoothed sign of its speed differs from one by more than this. Where the
-/// sign changes smoothly although friction does not, Coulomb friction would come out too large.
+/// A joint reverses at rows where the magnitude of the smoothed sign of its speed differs from one by more than this.
+/// The smoothed sign changes slowly there and friction does not, so with these rows Coulomb friction would come out too
+/// large.
 pub(super) const TURNING: f64 = 0.05;
 /// Rows of reversals are left out only where at least this fraction of the moving rows is left.
 const LEAST_KNOWN_PART: f64 = 0.6;
-/// Rows at jumps are left out only where at least this fraction of the rows is left. A torque that jumps in more rows than a
-/// planned motion has corners is noisy, and its jumps have both signs.
+/// Rows at jumps are left out only where at least this fraction of the rows is left. A planned motion has few jumps. A
+/// torque that jumps in more rows is noisy; its jumps have both signs and average out.
 const LEAST_STEADY_PART: f64 = 0.85;
-/// The torque jumps where a step from row to row differs from the mean of its neighbours by more than this many times the usual
-/// difference (in standard deviations, by the median).
+/// The torque jumps where a step from row to row differs from the mean of the steps before and after it by more than
+/// this many standard deviations of such differences. The standard deviation is estimated from their median.
 const JUMP: f64 = 6.0;
 /// A jump below this fraction of the standard deviation of the torque is left in the fit.
 const LEAST_JUMP_PART: f64 = 0.02;
 
-/// Whether the joint rests, row by row. Friction is not known while it rests: it may hold any torque up to that of Coulomb
-/// friction, of either sign, and the sign of the speed says nothing of it. `sense` is the smoothed sign of the speed, and
-/// `half` the half width of its window \[rows\]. A reversal is no rest. Nothing rests in a record that hardly moves.
+/// Whether the joint rests, row by row. Friction is not known while the joint rests: it may hold any torque of either
+/// sign, up to that of Coulomb friction, whatever the sign of the speed is. `sense` is the smoothed sign of the speed,
+/// and `half` the half width of its window \[rows\]. A reversal is no rest. Nothing rests in a record that hardly
+/// moves.
 pub(super) fn rests(sense: &[f64], half: usize) -> Vec<bool> {
     let mut out = vec![false; sense.len()];
     let mut row = 0;

@@ -6,9 +6,10 @@
 //!   time, and `known` says at which rows torque and friction are known. `wave` removes a transmission error within a turn
 //!   of the motor before signals are differentiated.
 //! - `blocks` fits columns to rows, with intervals and held-out errors by blocks.
-//! - `twist` chooses the terms of the twist, `friction` balances the torques, `curve` looks for torsion laws beyond a
-//!   single compliance, `other_cause` for causes without an effect of the library, and `ringing` for free vibration.
-//! - `judge` says of each effect whether it is found, `compliance` of the compliance, by their `intervals`.
+//! - `twist` chooses the terms of the twist, `friction` balances the torques, and `curve` looks for torsion laws beyond
+//!   a single compliance.
+//! - `other_cause` looks for causes that are no effect of the library, and `ringing` for free vibration.
+//! - `judge` says of each effect whether it is found, and `compliance` says this of the compliance. Both use `intervals`.
 //! - `outcome` reaches the verdict. [`joint_record`](super::verdict::joint_record) defines what it says of each joint.
 
 pub(crate) mod blocks;

@@ -23,16 +23,17 @@ use crate::reconcile::verdict::outcome::{Calibrated, Located, NextTest, Outcome,
 use serde_json::json;
 
 /// A joint is explained if the root mean square error of its twist on held-out blocks is at most this fraction of the
-/// error with an offset and the time shift alone. The sum of squares is then 2.5 % of that.
+/// error with an offset and the time shift alone. The sum of squares is then at most 2.5 % of the sum with these alone.
 const LEFT: f64 = 0.158;
 /// A joint is also explained if the root mean square error of its twist on held-out blocks is at most this many times
 /// the noise that the average over rows leaves in the twist. The errors are those of averages.
 const NOISY: f64 = 1.5;
-/// Where a time shift is most of the recorded twist, a joint is also explained if its error is at most this \[rad\], and at most
-/// [`LEFT`] of the error with an offset alone: encoders at the output are not more accurate than 20 seconds of arc.
+/// Largest error \[rad\] with which a joint is explained if a time shift is most of its recorded twist: 20 seconds of
+/// arc. Encoders at the output are not more accurate. The error must also be at most [`LEFT`] of the error with an
+/// offset alone.
 const ENCODER_RAD: f64 = 1e-4;
-/// A stiffness that is wrong by a factor of the ratio, or of the degrees of a radian, differs from this factor by at most this
-/// fraction.
+/// If a joint is too stiff by about its ratio, or by the 57.3 degrees of a radian, a wrong unit is suspected. The
+/// logarithm of its factor may differ from that of the ratio, or of 57.3, by this much.
 const NEAR: f64 = 0.25;
 /// Effects that change how far a joint twists under torque. If other readings name one of them at a joint, the records
 /// add none of them at this joint.
@@ -285,8 +286,8 @@ fn stiffness(campaign: &Campaign, joint: &JointRecord) -> Stiffness {
     Stiffness { calibrated: Some(calibrated), factor, remark, finding: None }
 }
 
-/// Hint at a wrong unit where the joint is too stiff by about its ratio or by the degrees of a radian. If both are near, the
-/// nearer one is named.
+/// Hint at a wrong unit of torques or angles, if the joint is too stiff by about its ratio or by about 57.3 (the
+/// degrees of a radian). If both are near, the nearer one is named.
 fn stiff_by_unit(campaign: &Campaign, joint: &str, factor: f64) -> Option<String> {
     let own = campaign.records.iter().flat_map(|r| &r.joints).find(|j| j.joint == joint);
     let of_ratio = own.and_then(|j| j.ratio).filter(|n| *n > 2.0).map(|ratio| {
@@ -385,8 +386,9 @@ fn located(joints: &[JointRecord]) -> Vec<Located> {
     all.into_iter().chain(each).collect()
 }
 
-/// Recommends one test for all joints whose compliance the records do not show because their torque is nearly all
-/// acceleration and friction of the joint itself, and one for those where a transmission error explains the same twist.
+/// Recommends at most two tests. One is for the joints whose compliance the records do not show, because the torque is
+/// nearly all acceleration and friction of the joint itself. The other is for joints at which a transmission error
+/// explains the same twist as the compliance.
 fn next_tests(joints: &[JointRecord]) -> Vec<NextTest> {
     let named = |start: &str, wanted: fn(&JointRecord) -> bool| -> Vec<&str> {
         let has = |j: &&JointRecord| {

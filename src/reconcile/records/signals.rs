@@ -238,8 +238,8 @@ impl JointRows {
         self.records[record].half
     }
 
-    /// Takes the torque of the load that the gear carries at each row, `load_nm`, for load-dependent friction and for the
-    /// torque of the spring where friction is not known.
+    /// Stores the torque of the load that the gear carries at each row, `load_nm`. It is needed for friction that
+    /// depends on the load, and for the torque of the spring at rows where friction is not known.
     pub(crate) fn take_load(&mut self, load_nm: &[f64]) {
         for (sample, load_nm) in self.samples.iter_mut().zip(load_nm) {
             sample.load_nm = *load_nm;
@@ -329,8 +329,8 @@ impl JointRows {
     }
 }
 
-/// Standard deviation of the noise of the twist \[rad\]. It is not that of both angles: an error of the times is in each of them
-/// and leaves the twist.
+/// Standard deviation of the noise of the twist \[rad\]. It is computed from the difference of the two angles, because
+/// an error of the times is in both angles and cancels in the difference.
 fn twist_noise_rad(t_s: &[f64], signals: &JointSignals) -> f64 {
     let angles = signals.motor_rad.iter().zip(&signals.link_rad);
     noise(t_s, &angles.map(|(motor, link)| motor - link).collect::<Vec<_>>())

@@ -33,9 +33,9 @@ pub(crate) struct Smooth {
     pub curvature: Vec<f64>,
 }
 
-/// Standard deviation of the noise of a signal from row to row, from its fourth divided differences, in the unit of the
-/// signal. The difference of five rows is divided by the root of the sum of its squared weights, so that each has the variance
-/// of the noise whatever the steps between the rows are. Rows across a gap are left out.
+/// Standard deviation of the noise of a signal from row to row, in the unit of the signal. It is computed from fourth
+/// divided differences. Each difference of five rows is divided by the root of the sum of its squared weights, and then
+/// has the variance of the noise for any steps between the rows. Rows across a gap are left out.
 pub(crate) fn noise(t_s: &[f64], x: &[f64]) -> f64 {
     let longest_s = LONGEST * (FIVE - 1) as f64 * usual_step_s(t_s);
     let windows = t_s.windows(FIVE).zip(x.windows(FIVE)).filter(|(t, _)| t[FIVE - 1] - t[0] <= longest_s);

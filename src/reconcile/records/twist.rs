@@ -177,28 +177,28 @@ pub(crate) struct TwistModel<'a> {
     pub rows_per_reading: f64,
     /// Root mean square error of the twist on held-out blocks after each step \[rad\], with the name of the step.
     pub steps: Vec<(String, f64)>,
-    /// Where the rotor's inertia is not stated: what the records say of a transmission error of the output beside the
-    /// compliance. `None` where there is neither that error nor a compliance that shows without it.
+    /// If the rotor's inertia is not stated: whether a transmission error of the output or gravity on the compliance
+    /// twists the joint, or both. `None` if neither that error nor a compliance shows.
     pub error_or_gravity: Option<ErrorOrGravity>,
 }
 
-/// A transmission error of the output beside a compliance. Gravity twists the joint in proportion to
-/// waves of its angle, as the error does, and the link's acceleration takes the place of the rest of the torque. With the
-/// error a compliance of nearly zero is then as good as the true one, although the inertia that it asks of the rotor is
-/// negative.
+/// Fits that compare a transmission error of the output with the compliance. Both can explain the same twist: under
+/// gravity, a joint twists in proportion to waves of its angle, and the error has the same waves. The link's
+/// acceleration stands in for the rest of the torque. With the error, a compliance of nearly zero then fits as well as
+/// the true one, although the rotor's inertia that belongs to it is negative.
 pub(crate) struct ErrorOrGravity {
     /// Fit without the error.
     pub without: Fitted,
-    /// Fit of the error, with the compliance, the friction and the rotor's inertia of the fit without it.
+    /// Fit of the error, with compliance, friction and rotor inertia held at the values of the fit without the error.
     pub at_compliance: Fitted,
     /// Fit with the error in which the rotor's inertia is not negative.
     pub with: Fitted,
-    /// Whether the compliance shows without the error.
+    /// Whether the compliance is needed in the fit without the error.
     pub shows: bool,
-    /// Whether the rotor's inertia must be held at zero, because the best value is negative, and clearly so where the
-    /// compliance does not show without the error.
+    /// Whether the rotor's inertia must be held at zero in the fit with the error, because its best value is negative.
+    /// If the compliance is not needed without the error, the value must be clearly negative.
     pub is_held: bool,
-    /// Whether the error lowers the error on held-out blocks so far that it would be named, but only at another compliance.
+    /// Whether the error lowers the error on held-out blocks enough to be named, but only with another compliance.
     pub is_doubtful: bool,
 }
 
@@ -295,9 +295,10 @@ impl<'a> TwistModel<'a> {
         (0..self.rows.samples.len()).filter_map(error).collect()
     }
 
-    /// Fits the chosen groups again until the prior of transmission errors follows the error that the fit itself leaves. The
-    /// prior of the search comes from a fit without these errors, whose larger error makes the amplitudes too small. What the
-    /// records say of error and gravity depends on the prior, and is judged again with it.
+    /// Fits the chosen groups again. The prior of a transmission error is relative to the error that a fit leaves. In
+    /// the search it comes from a fit without transmission errors. Such a fit leaves more, so that the prior is too
+    /// narrow and the amplitudes are too small. Here each round takes the error that the fit before leaves, and also
+    /// judges again what belongs to the error and what to gravity.
     fn settle(&mut self) -> Option<()> {
         const ROUNDS: usize = 3;
         for _ in 0..ROUNDS {
@@ -316,8 +317,8 @@ impl<'a> TwistModel<'a> {
         Some(())
     }
 
-    /// Fraction of the variance of the motor's torque that is orthogonal to all other columns of the fit. The compliance is
-    /// determined by it alone (Frisch and Waugh 1933).
+    /// Fraction of the variance of the motor's torque that no other column of the fit explains. Only this part of the
+    /// torque determines the compliance (Frisch and Waugh 1933).
     fn own_share_in_fit(&self) -> f64 {
         let p = self.places;
         let is_other = |c: &usize| *c != p.torque() && *c >= p.records;
@@ -325,11 +326,12 @@ impl<'a> TwistModel<'a> {
         self.sums.own_share(p.torque(), &p.offsets(), &others)
     }
 
-    /// Lower limit of the factor by which the fit makes the compliance too small, because the torque that it uses is not only
-    /// that of the spring: a noisy regressor attenuates its coefficient. `left_share` is the fraction of the torque's variance
-    /// that the balance of torques leaves. The factor is at least one minus the part of this in the variance that determines
-    /// the compliance. It is also at least the square of the partial correlation of torque and twist, because the true
-    /// coefficient lies between that of the regression and that of the reverse regression (Frisch 1934).
+    /// Smallest possible ratio of the fitted compliance to the true one. The torque that the fit uses is not only that
+    /// of the spring, and errors of a regressor make its coefficient too small. `left_share` is the fraction of the
+    /// torque's variance that the balance of torques leaves unexplained. The ratio is at least one minus `left_share`
+    /// over the fraction of the variance that determines the compliance. It is also at least the square of the partial
+    /// correlation of torque and twist, because the true coefficient lies between those of the regression and of the
+    /// reverse regression (Frisch 1934).
     pub(crate) fn least_attenuation(&self, left_share: f64) -> f64 {
         let torque = self.places.torque();
         let others: Vec<usize> = self.fitted.columns.iter().copied().filter(|c| *c != torque).collect();
@@ -409,10 +411,11 @@ impl<'a> TwistModel<'a> {
         Some(())
     }
 
-    /// Whether the group is to be named. A transmission error is not where the fit without it leaves no more than the
-    /// noise of the sensors: the waves are known without noise, so they would take the place of a noisy torque that
-    /// varies with the angle, as that of gravity does. Where the compliance shows without a transmission error of the output,
-    /// the error must also pay at that compliance. `others` are the groups of the fit without it.
+    /// Whether the group is to be named. A transmission error is not named if the fit without it leaves no more than
+    /// the noise of the sensors. The waves are known without noise, so they would replace a noisy torque that varies
+    /// with the angle, such as that of gravity. If the fit without a transmission error of the output shows the
+    /// compliance, the error must also be worth its columns at that compliance. `others` are the groups of the fit
+    /// without the error.
     fn pays(&self, group: Group, others: &[Group], with: &Fitted, without: &Fitted) -> bool {
         if !group.pays(with, without) || (group.is_of_gear() && self.leaves_noise_only(without, STILL_NOISE))
         {
@@ -431,7 +434,7 @@ impl<'a> TwistModel<'a> {
         fitted.held_out_rms() < times * libm::hypot(self.rows.averaged_noise_rad(), by_torque_rad)
     }
 
-    /// Whether the compliance shows in the fit `fitted` by the groups `groups`, and the rotor's inertia is not stated.
+    /// Whether the fit `fitted` by the groups `groups` needs the compliance, and the rotor's inertia is not stated.
     fn shows_compliance(&self, groups: &[Group], fitted: &Fitted) -> bool {
         let others: Vec<Group> = groups.iter().copied().filter(|g| *g != Group::Compliance).collect();
         self.rows.rotor_inertia_kgm2.is_none()
@@ -439,8 +442,8 @@ impl<'a> TwistModel<'a> {
             && self.fit(&others).is_some_and(|other| Group::Compliance.pays(fitted, &other))
     }
 
-    /// Fit of the twist by the groups `groups` and a transmission error of the output, in which compliance, friction and the
-    /// rotor's inertia have the values of the fit `without`, which lacks the error. `None` if a fit is impossible.
+    /// Fit of the twist by the groups `groups` and a transmission error of the output. Compliance, friction and the
+    /// rotor's inertia have the values of `without`, a fit without this error. `None` if a fit is impossible.
     fn at_compliance(&self, groups: &[Group], without: &Fitted) -> Option<Fitted> {
         let p = self.places;
         let elastic = [p.torque(), p.acceleration(), p.sense(), p.load_sense(), p.rate()];
@@ -469,8 +472,8 @@ impl<'a> TwistModel<'a> {
         sums.fit(&free, target, |c| self.prior(c))
     }
 
-    /// What the records say of a transmission error of the output beside the compliance; `None` where there is neither that
-    /// error nor a compliance that shows without it.
+    /// Compares a transmission error of the output with the compliance (see [`ErrorOrGravity`]). `None` if the rotor's
+    /// inertia is stated, or if neither the error nor a compliance shows.
     fn error_or_gravity(&self) -> Option<ErrorOrGravity> {
         let others: Vec<Group> = self.groups.iter().copied().filter(|g| *g != Group::Output).collect();
         if !others.contains(&Group::Compliance) || self.rows.rotor_inertia_kgm2.is_some() {

@@ -2,9 +2,14 @@
 //! others.
 //!
 //! [`unnamed`](super::unnamed) asks whether a law competes with named effects, with the model made linear. Here a law
-//! becomes an effect of the arm, so that a corrected arm can have it: a further twist of a joint as a polynomial of its
-//! torque, a housing or base that tilts unequally about two axes, a stiffness of a joint that changes with the order of
-//! the tests, readings that bend, have a gain in each direction or mix the directions, or a base that turned once.
+//! becomes an effect of the arm, so that a corrected arm can have it. The laws are:
+//!
+//! - a further twist of a joint as a polynomial of its torque;
+//! - a housing or a base that tilts about two axes, with a compliance of its own for each;
+//! - a joint whose stiffness changes with the order of the tests;
+//! - readings that are a nonlinear function of the true value, or that have a gain of their own in each direction;
+//! - displacements of which each direction also shows a part of the others;
+//! - a base that turned once in the course of the tests.
 
 use super::search::{Scored, Search};
 use crate::arm::BASE;
@@ -37,8 +42,8 @@ const LARGEST_TWIST: f64 = 3.0;
 
 /// Channels in whose tests a joint may soften, in the order of their parameters.
 const SOFTENING_IN: [Channel; 2] = [Channel::Static, Channel::Modal];
-/// Values from which fits start, for the number of rows in which 63 % of a joint's softening takes place, as fractions
-/// of the rows of the file.
+/// A joint softens by 63 % of its total within a number of rows that is fitted. Fits start from these values of this
+/// number, as fractions of the rows of the file.
 const SOFTENED_AFTER: [f64; 2] = [0.08, 0.5];
 /// Place of the row of a base's turn among the numbers of a law of displacements.
 const TURN_ROW: usize = 9;
@@ -75,8 +80,8 @@ pub(crate) fn laws(forward: &Forward, baseline: &Fit, weights: &Weights) -> Vec<
     out
 }
 
-/// The candidate that the stiffness of a joint changes with the order of the tests of one channel. `channel` is the
-/// index of this channel in [`SOFTENING_IN`]. `None` if the channel has no readings.
+/// The candidate for a joint whose stiffness changes with the order of the tests of one channel. `channel` is the index
+/// of this channel in [`SOFTENING_IN`]. `None` if the channel has no readings.
 fn softening(forward: &Forward, joint: &str, torque_nm: f64, channel: usize) -> Option<Candidate> {
     let range = forward.range(SOFTENING_IN[channel]);
     let rows = forward.data[range].iter().map(|datum| datum.row + 1).max()? as f64;
@@ -109,7 +114,7 @@ fn steady() -> Vec<Number> {
     [0.0, 1.0, 0.0, 1.0, 1.0].map(Stated).to_vec()
 }
 
-/// The numbers of a joint whose housing does not tilt further.
+/// The housing parameters of a joint whose housing does not tilt further, as stated numbers.
 fn upright() -> Vec<Number> {
     vec![Stated(0.0); 2]
 }
@@ -140,15 +145,16 @@ fn square() -> Vec<Number> {
     vec![Stated(0.0); 6]
 }
 
-/// The candidate that the base tilts about world x and about world y with a compliance of its own for each. `None` if
+/// The candidate for a base that tilts about world x and about world y with a compliance of its own for each. `None` if
 /// no joint is compliant, or if a piece of the arm has the name of the base.
 fn lean(forward: &Forward) -> Option<Candidate> {
     let is_free = forward.nominal.structure.pieces.iter().all(|piece| piece.name() != BASE);
     leaning(forward, BASE, vec![Free; 2]).filter(|_| is_free)
 }
 
-/// The candidate that the housing of a joint tilts about two axes with a compliance of its own for each. `None` if no
-/// joint is compliant, or if the joint is a vertical axis that stands on the base, since [`lean`] is the same then.
+/// The candidate for the housing of a joint that tilts about two axes with a compliance of its own for each. `None` if
+/// no joint is compliant. `None` also for a vertical joint that stands on the base, because [`lean`] then describes the
+/// same.
 fn housing(forward: &Forward, joint: &str, torque_nm: f64) -> Option<Candidate> {
     let turns_on_the_base = forward.nominal.structure.pieces.first().is_some_and(|piece| match piece {
         Piece::Joint(first) => first.name == joint && first.axis.z.abs() > 1.0 - 1e-12,
@@ -158,7 +164,8 @@ fn housing(forward: &Forward, joint: &str, torque_nm: f64) -> Option<Candidate> 
     leaning(forward, joint, [untwisted, vec![Free; 2]].concat()).filter(|_| !turns_on_the_base)
 }
 
-/// A law of two tilts at a place. The usual size of the two compliances is the compliance of the first compliant joint.
+/// A candidate for two tilts at a place. The usual size of both compliances is the compliance of the first compliant
+/// joint.
 /// `None` if no joint is compliant.
 fn leaning(forward: &Forward, at: &str, numbers: Vec<Number>) -> Option<Candidate> {
     let laws = forward.coefficients(&forward.nominal).laws;
@@ -171,7 +178,7 @@ fn leaning(forward: &Forward, at: &str, numbers: Vec<Number>) -> Option<Candidat
     Some(Candidate { numbers, starts, ..law(at, tilt, 0.0) })
 }
 
-/// The candidate that the base turned just before the row `from_row` (counted from 0) of the displacements.
+/// The candidate for a base that turned just before the row `from_row` (counted from 0) of the displacements.
 fn base_turn(from_row: usize) -> Candidate {
     let turn = Parameter { count: 3, ..Parameter::number(BASE_TURN, -0.1, 0.1, 1e-4, Scale::Linear) };
     let straight = vec![Stated(0.0), Stated(0.0), Stated(1.0), Stated(1.0), Stated(1.0), Stated(1.0)];
@@ -296,7 +303,7 @@ fn twists(joint: &str, torque_nm: f64, twist_rad: f64) -> [Candidate; 2] {
     let most = LARGEST_TWIST * twist_rad;
     let sized =
         |name| Parameter { count: 2, ..Parameter::number(name, -most, most, twist_rad, Scale::Linear) };
-    // the stiffness does not change meanwhile
+    // the stiffness of the joint does not change in the course of the tests
     let with = |twist: [Number; 4]| [twist.as_slice(), &[Stated(torque_nm)], &steady(), &upright()].concat();
     let odd = law(joint, sized(ODD_TWIST), 0.0);
     let even = law(joint, sized(EVEN_TWIST), 0.0);
@@ -309,7 +316,7 @@ fn twists(joint: &str, torque_nm: f64, twist_rad: f64) -> [Candidate; 2] {
 /// The laws of a channel's readings as candidates: a nonlinear characteristic, and a gain for each direction if the
 /// channel has three components. `largest` is the largest reading, in its unit.
 fn readings(channel: Channel, largest: f64) -> Vec<Candidate> {
-    // a base that turned, and directions that mix, show in displacements only
+    // only displacements show that the base turned or that directions mix
     let of_static = if channel == Channel::Static { [still(), square()].concat() } else { Vec::new() };
     let bend = Parameter { count: 2, ..Parameter::number(BEND, -1.0, 1.0, 0.1, Scale::Linear) };
     let bent = law(channel.word(), bend, 0.0);

@@ -53,8 +53,8 @@ impl LackOfFit {
         self.sentences_on(|s| s.ln_p < libm::log(CERTAIN_PROBABILITY))
     }
 
-    /// The same for structures that are no chance result even if all readings scatter as much as the residuals do, and
-    /// not only as much as declared.
+    /// As [`Self::sentences`], but the readings are taken to scatter as much as the residuals do, which may be more
+    /// than declared. Only structures that are then still no chance result are described.
     pub(crate) fn sentences_beyond_scatter(&self) -> Vec<String> {
         let scatter = self.chi2_per_dof.max(1.0);
         self.sentences_on(|s| {

@@ -22,8 +22,7 @@ use std::cell::OnceCell;
 /// zero, because two missing effects are less probable than one. A first effect needs no more than a rise, because a
 /// missing effect is as probable as none.
 const LEAST_GAIN: f64 = 3.0;
-/// The listed alternatives to an effect are as many as are needed so that the effect and they together contain the
-/// right one with this probability.
+/// So many alternatives to an effect are listed that the effect or one of them is right with this probability.
 const CREDIBLE_PROBABILITY: f64 = 0.95;
 /// A model whose score after a few steps of a fit is below the best score by more than this is not fitted further \[ln
 /// of the evidence\].
@@ -34,7 +33,7 @@ const PROMISING_DEFICIT: f64 = 12.0;
 /// Largest number of effects in a model.
 pub(crate) const MOST_EFFECTS: usize = 3;
 /// If a law without a name raises the logarithm of the evidence by this much more than the best effects do, these
-/// effects are not the cause, and the search ends.
+/// effects are not the cause. The search then ends.
 const SETTLING_GAIN: f64 = 12.0;
 /// Largest number of variants of one effect (the same effect with different parameters free) among the candidates
 /// that are fitted in full.
@@ -279,7 +278,8 @@ impl<'a> Search<'a> {
         fits
     }
 
-    /// Whether a calibrated factor of the model is so far from its nominal value that something else is probably missing.
+    /// Whether a calibrated factor of the model is so far from its nominal value that something else is probably
+    /// missing.
     fn is_far_calibrated(&self, scored: &Scored) -> bool {
         scored.u[..self.model(&[]).len()].iter().any(|deviation| deviation.abs() > FAR_CALIBRATED)
     }
@@ -494,7 +494,8 @@ impl<'a> Search<'a> {
             let p = model.calibrated() + i;
             let prior = parameter.width(u[p]);
             let width = 1.0 / (curvature[(p, p)] + 12.0 / prior.powi(2)).sqrt();
-            // the Occam factor of the parameter; 0.9 is ln of the root of 2 pi
+            // the free parameter lowers the evidence by the width of its posterior over that of its prior; 0.9 is ln of
+            // the root of 2 pi
             score += libm::log(width / prior) + 0.9;
         }
         (u, score)

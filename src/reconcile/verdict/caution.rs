@@ -99,8 +99,8 @@ pub(crate) fn unbounded(fit: &Fit, ends: &[Interval]) -> Option<String> {
     })
 }
 
-/// Sentence on the calibrated factors that are outside their tolerance; `None` if there are none. `deviations` are the
-/// standard deviations of the logarithms of the factors by their tolerances.
+/// Sentence on the calibrated factors that are outside their tolerance; `None` if there are none. `deviations` has, for
+/// each factor, the standard deviation of its logarithm that follows from the tolerance.
 pub(crate) fn beyond_tolerance(
     deviations: impl Iterator<Item = f64>,
     calibrated: &[Calibrated],
@@ -121,9 +121,9 @@ pub(crate) fn beyond_tolerance(
     (!beyond.is_empty()).then(|| format!("calibration leaves the tolerance: {}{doubt}", beyond.join(", ")))
 }
 
-/// Sentence that a model, with its calibration, explains the readings only with a factor that no faultless part has; `None`
-/// if there is no such factor. `effects` is the label of the model's effects, empty without any. `deviations` are the
-/// standard deviations of the logarithms of the factors by their tolerances.
+/// Sentence that a model, with its calibration, explains the readings only with a factor that no faultless part has.
+/// `None` if there is no such factor. `effects` is the label of the model's effects, empty without any. `deviations`
+/// has, for each factor, the standard deviation of its logarithm that follows from the tolerance.
 pub(crate) fn impossible_calibration(
     campaign: &Campaign,
     effects: &str,
@@ -152,15 +152,15 @@ pub(crate) fn impossible_calibration(
     ))
 }
 
-/// A calibrated factor, its departure from nominal and its tolerance, in words with an open bracket. `sd` is the
-/// standard deviation of its logarithm by the tolerance.
+/// A calibrated factor, its departure from nominal and its tolerance, in words; the caller closes the bracket. `sd` is
+/// the standard deviation of its logarithm that follows from the tolerance.
 fn departure_words(sd: f64, of: &Calibrated) -> String {
     let (part, tolerance) = (of.factor.value - 1.0, TOLERANCE_SIGMAS * sd);
     format!("{} by {:+.1} % (tolerance {:.1} %", of.name, 100.0 * part, 100.0 * tolerance)
 }
 
 /// The number n such that one in n faultless parts departs from nominal as far as a calibrated factor. `sd` is the
-/// standard deviation of its logarithm by the tolerance.
+/// standard deviation of its logarithm that follows from the tolerance.
 fn one_in(sd: f64, of: &Calibrated) -> f64 {
     honest_parts_for_one(libm::log(of.factor.value) / sd)
 }

@@ -44,7 +44,8 @@ pub(crate) fn laws(fit: &Fit, findings: &[Finding]) -> Vec<Law> {
         .collect()
 }
 
-/// Standard deviations of the logarithms of the calibrated factors by their tolerances, in the order of [`calibrated`].
+/// For each calibrated factor, in the order of [`calibrated`], the standard deviation of its logarithm that follows
+/// from the tolerance.
 pub(crate) fn tolerances<'f>(fit: &'f Fit<'f>) -> impl Iterator<Item = f64> + 'f {
     fit.model.nuisance.numbers.iter().map(|(_, sd)| *sd)
 }

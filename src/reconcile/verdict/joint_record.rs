@@ -113,13 +113,13 @@ pub struct JointRecord {
     pub range_rad: f64,
     /// Standard deviation of the noise of the twist from row to row \[rad\].
     pub noise_rad: f64,
-    /// Standard deviation of the noise that the average over neighbouring rows leaves in the twist \[rad\]. The errors below are
-    /// those of such averages.
+    /// Standard deviation of the noise that the average over neighbouring rows leaves in the twist \[rad\]. The error
+    /// fields below refer to such averages.
     pub(crate) averaged_noise_rad: f64,
     /// Root mean square error of the twist on held-out blocks with an offset alone as model \[rad\].
     pub before_rad: f64,
-    /// The same error with an offset and the time shift as model, if a time shift was found; otherwise with the offset alone
-    /// \[rad\].
+    /// Root mean square error of the twist on held-out blocks with an offset as model, and with the time shift too if
+    /// one was found \[rad\].
     pub(crate) unshifted_rad: f64,
     /// Root mean square error of the twist on held-out blocks with everything that was found \[rad\].
     pub after_rad: f64,
@@ -129,11 +129,11 @@ pub struct JointRecord {
     pub steps: Vec<Step>,
     /// Twist against torque, thinned for the picture.
     pub trace: Vec<Traced>,
-    /// A cause without an effect of the library that explains the records better than a transmission error of the output, as a
-    /// sentence.
+    /// A sentence on a cause that explains the records better than a transmission error of the output and is no effect
+    /// of the library; `None` if there is none.
     pub(crate) unnamed: Option<String>,
-    /// What the records leave open, such as a transmission error that they cannot tell from the twist by gravity. Then the
-    /// data are insufficient.
+    /// What the records leave open, such as a transmission error that they cannot tell from the twist by gravity. The
+    /// data are then insufficient.
     pub undecided: Vec<String>,
     /// Further sentences for the reader, such as a law that explains the record as well.
     pub remarks: Vec<String>,

@@ -6,8 +6,8 @@ use crate::reconcile::model::estimate::Finding;
 
 /// An effect is named only if at most this many alternatives would fit as well.
 const MOST_ALTERNATIVES: usize = 3;
-/// If readings are further off than this with all effects, in declared standard deviations, something else is missing,
-/// whatever is named. Effects that are right leave at most 1.3 in campaigns of several simulators.
+/// If the root mean square residual with all effects exceeds this many standard deviations, something else is missing,
+/// whatever effects are named. The right effects leave at most 1.3 in campaigns of several simulators.
 pub(crate) const TOO_FAR_OFF: f64 = 1.8;
 
 impl Verdict {

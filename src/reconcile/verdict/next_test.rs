@@ -36,8 +36,8 @@ const MODAL_POSES: usize = 4;
 const PROPOSALS: usize = 4;
 /// Difference of the predictions of two models that suffices to decide between them \[standard deviations\].
 pub(crate) const DECIDING_SIGMAS: f64 = 4.0;
-/// Least separation with which a test is proposed \[standard deviations\]. A hundred readings of it are
-/// [`DECIDING_SIGMAS`], because the mean of a hundred is ten times as sharp as one.
+/// Least separation with which a test is proposed \[standard deviations\]. A hundred such readings reach
+/// [`DECIDING_SIGMAS`], because their mean is ten times as sharp as one reading.
 pub(crate) const LEAST_SIGMAS: f64 = DECIDING_SIGMAS / 10.0;
 /// Largest number of readings that is printed.
 const MOST_READINGS: f64 = 9999.0;

@@ -437,9 +437,9 @@ const CHECKS: [CheckKind; 23] = [
     CheckKind::DriveLength,
 ];
 
-/// The sizing of one joint for the template: torques, parts and the margin of every check. The columns of the page are
-/// those of joints that turn, so that the forces of a joint that slides are written with their unit. There is one entry
-/// for each of the checks `kinds`, null where the drive does not have this check.
+/// The sizing of one joint for the template: torques, parts and the margin of every check. The columns of the page have
+/// the units of joints that turn, so the forces of a joint that slides are written with their own unit. There is one
+/// entry for each of the checks `kinds`, null where the drive does not have this check.
 fn drive(row: &JointSizingRow, kinds: &[CheckKind]) -> Value {
     let number = |v: f64| significant(v, 4);
     let open = |v: Option<f64>| v.map_or("unknown".to_string(), number);

@@ -23,8 +23,9 @@ impl Builder<'_> {
         pairs.map(law).collect()
     }
 
-    /// The change of every reading, in its unit, if the joint with index `twisted` also twists by `compliance`
-    /// \[rad/(N m)\] times the torque of the joint with index `loaded`. A bench loads one joint alone.
+    /// The change of every reading, in its unit, if the joint with index `twisted` also twists by `compliance` \[rad/(N
+    /// m)\] times the torque of the joint with index `loaded`. Bench readings do not change, because a bench loads one
+    /// joint alone.
     fn coupling_column(&self, twisted: usize, loaded: usize, compliance: f64) -> Vec<f64> {
         let forward = self.forward;
         let mut truth = vec![0.0; forward.data.len()];

@@ -1,15 +1,17 @@
-//! Laws of friction in proportion to the torque of a joint, as that of bearings and meshes under load.
+//! Laws of friction that is proportional to the torque of a joint, as in bearings and meshing teeth under load.
 //!
-//! The friction play of [`hysteresis`](crate::arm::effect::hysteresis) has one half width at all torques. Here the half
-//! width is a part of the torque, so that a joint hardly lags near zero torque and lags much under a large one.
+//! Friction makes the twist lag behind the torque. In the effect [`hysteresis`](crate::arm::effect::hysteresis) the
+//! largest lag (half width) is the same at all torques. Here it is a fraction of the torque, so that a joint hardly
+//! lags near zero torque and lags much under a large one.
 
 use super::{Builder, Law};
 
-/// Friction torques as parts of the torque. The lag is not linear in them, so a small and a large one are tried.
+/// Friction torques that are tried, as fractions of the torque. The lag is not linear in this fraction, so a small and
+/// a large one are tried.
 const TRIED_PARTS: [f64; 2] = [0.02, 0.1];
 
 impl Builder<'_> {
-    /// For each compliant joint, laws of a friction torque in proportion to its torque.
+    /// For each compliant joint, the laws of a friction torque that is proportional to its torque.
     pub(super) fn friction_laws(&self) -> Vec<Law> {
         let mut out = Vec::new();
         for (joint, slot) in self.forward.layout.joints.iter().enumerate() {
@@ -27,9 +29,9 @@ impl Builder<'_> {
         out
     }
 
-    /// The change of every reading, in its unit, by friction of the joint with index `joint`, per unit of the part
-    /// `part` of the torque that the friction torque is. Friction does not slip in small vibrations, so frequencies
-    /// stay.
+    /// The change of every reading, in its unit, if the joint with index `joint` has a friction torque of the fraction
+    /// `part` of its torque. The change is divided by `part`. Frequencies do not change, because friction does not slip
+    /// in small vibrations.
     fn friction_column(&self, joint: usize, part: f64) -> Vec<f64> {
         let forward = self.forward;
         let coefficients = &self.fit.point.coefficients;
@@ -56,9 +58,9 @@ impl Builder<'_> {
     }
 }
 
-/// Difference between the torque that twists a joint and the torque on it \[N m\], for each torque of a sequence. The
-/// cause is a friction torque, the fraction `part` of the torque on the joint. `state_nm` is the twisting torque before
-/// the first.
+/// The torque that twists the joint less the torque on it \[N m\], for each torque of a sequence. They differ by the
+/// friction torque, which is at most the fraction `part` of the torque on the joint. `state_nm` is the twisting torque
+/// before the first of the sequence.
 fn lags_nm(torques_nm: impl Iterator<Item = f64>, mut state_nm: f64, part: f64) -> Vec<f64> {
     let lag = |torque_nm: f64| {
         let reach_nm = part * torque_nm.abs();

@@ -5,7 +5,8 @@ use crate::reconcile::forward::coefficients::GUIDE_ROTATIONS;
 
 impl Builder<'_> {
     /// For each prismatic joint, the laws that the compliance of its guide, and that of its drive, changes with the
-    /// position: a rail that is screwed down badly at one place, a screw that is longer the farther the nut travels.
+    /// position. Examples are a rail that is badly screwed down at one place, and a screw that is longer the farther
+    /// the nut travels.
     pub(super) fn guide_laws(&self) -> Vec<Law> {
         let layout = &self.forward.layout;
         let joints = layout.slides.iter().zip(self.forward.nominal.structure.prismatics());

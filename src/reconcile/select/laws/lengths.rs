@@ -1,13 +1,13 @@
-//! Laws of links whose length is another than drawn, with the mass and the compliance of the further length.
+//! Laws of links that are longer or shorter than drawn. A longer link also has more mass and compliance.
 
 use super::{Builder, Law};
 use crate::arm::Element;
 use crate::reconcile::readings::campaign::Campaign;
 use rayon::prelude::*;
 
-/// Part of the length by which a link is lengthened for the comparison.
+/// Fraction of its length by which a link is lengthened to compare the readings.
 const LENGTH_STEP: f64 = 1e-3;
-/// Part of the length that counts as the full size of the law.
+/// Change of a link's length that counts as the full size of the law, as a fraction of the length.
 const FULL_PART: f64 = 0.1;
 
 impl Builder<'_> {
@@ -23,8 +23,9 @@ impl Builder<'_> {
         names.iter().zip(columns).map(law).collect()
     }
 
-    /// For each link, the change of every reading of the nominal arm, in its unit, per full size. All poses have to be
-    /// prepared anew, so this is computed once and about the nominal arm, and not for every fit.
+    /// For each link, the change of every reading of the nominal arm, in its unit, by a change of the link's length of
+    /// the full size. All poses have to be prepared anew for this. It is therefore computed once about the nominal arm,
+    /// and not for every fit.
     fn length_columns(&self, names: &[&str]) -> Vec<Vec<f64>> {
         let stated = self.nominal_readings(self.campaign);
         let column = |name: &&str| {

@@ -5,7 +5,7 @@ use crate::reconcile::forward::prepared::Forward;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-/// Angle over which the readings are compared \[rad\].
+/// Angle by which gravity is turned to compare the readings \[rad\].
 const STEP_RAD: f64 = 2e-3;
 
 impl Builder<'_> {
@@ -19,9 +19,10 @@ impl Builder<'_> {
         }]
     }
 
-    /// For each horizontal axis of the world, the change of every reading of the nominal arm, in its unit, per full
-    /// size of the angle. Frequencies depend on the direction of gravity through the gears' curves alone, and the arm's
-    /// own weight deflects it in the reference of every reading too. Both are left out.
+    /// For each horizontal axis of the world, the change of every reading of the nominal arm, in its unit, by a turn of
+    /// gravity of the full size ([`FULL_ANGLE_DEG`]). Two small influences are left out. Frequencies depend on the
+    /// direction of gravity only through the curves of the gears. The arm's own weight deflects the arm in the
+    /// reference of every reading too.
     fn level_columns(&self) -> Vec<Vec<f64>> {
         let stated = self.static_readings_with(Vector3::zeros());
         let column = |axis: Vector3<f64>| {
@@ -35,7 +36,7 @@ impl Builder<'_> {
         [Vector3::x(), Vector3::y()].into_par_iter().map(column).collect()
     }
 
-    /// The static readings of the nominal arm if every payload pulls in the horizontal direction `along` too, with its
+    /// The static readings of the nominal arm if every payload also pulls in the horizontal direction `along`, with its
     /// weight times [`STEP_RAD`]. The pull acts at the tip.
     fn static_readings_with(&self, along: Vector3<f64>) -> Vec<f64> {
         let mut campaign = self.campaign.clone();

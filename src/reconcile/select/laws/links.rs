@@ -1,5 +1,5 @@
-//! Laws of a base, bearings and links: more compliant in one direction or in one part only, lighter than drawn, or with
-//! another wall.
+//! Laws of a base, of bearings and of links: more compliance in one direction or in one part only, another mass than
+//! drawn, or another wall.
 
 use super::{Builder, Law};
 use crate::mechanics::beam::Strain;
@@ -7,8 +7,8 @@ use crate::reconcile::fit::descent::change_to;
 use crate::reconcile::forward::coefficients::Coefficients;
 
 impl Builder<'_> {
-    /// Laws of a base, bearings and links that are more compliant than modelled, each in one direction only or in a
-    /// part of the link only.
+    /// Laws of a base, of bearings and of links that are more compliant than modelled, each in one direction only or in
+    /// one part of the link only.
     pub(super) fn compliance_laws(&self) -> Vec<Law> {
         let layout = &self.forward.layout;
         let own = &self.fit.point.coefficients;

@@ -1,12 +1,22 @@
 //! Laws without a name: smooth, general functions that are not effects of the library. They reveal physics that the
 //! library lacks.
 //!
-//! A law may be a twist of a joint as a function of its torque (odd or even), of its angle, or of the order of the
-//! tests, or of the torque of its neighbour, friction in proportion to the torque, or an angle whose zero is off. It
-//! may be a compliance of a base, a bearing or a link in one direction only, or of a guide that changes with its
-//! position, a mass, wall or length of a link that differs from the drawing, or another direction of gravity. It may
-//! also be an error of a reading as a function of the actual value, the direction, the kind of load, or the time in a
-//! pose. A law consists of a few columns: changes of the readings, linearized about a fit.
+//! A law may be a twist of a joint:
+//!
+//! - as a function of its torque (odd or even), of its angle or of the order of the tests,
+//! - in proportion to the torque of a neighbouring joint,
+//! - by friction that is proportional to the torque,
+//! - by a zero of its angle that is off.
+//!
+//! A law may be a part that differs from the model:
+//!
+//! - a base, a bearing or a link that is more compliant in one direction only,
+//! - a guide whose compliance changes with the position,
+//! - a link whose mass, wall or length differs from the drawing,
+//! - another direction of gravity.
+//!
+//! A law may also be an error of a reading as a function of the true value, of the direction, of the kind of load, or
+//! of the time in a pose. A law consists of a few columns: changes of the readings, linearized about a fit.
 
 mod coupling;
 mod friction;
@@ -25,7 +35,8 @@ use nalgebra::DVector;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// The angle that counts as the full size of a law of an angle \[deg\].
+/// The change of an angle that counts as the full size of a law \[deg\]. The prior of a law's size is relative to its
+/// full size.
 const FULL_ANGLE_DEG: f64 = 30.0;
 
 /// A law without a name: a way in which readings can differ from the model.

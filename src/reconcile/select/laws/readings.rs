@@ -1,5 +1,5 @@
-//! Laws of readings: an instrument that is not straight, that has a gain of its own for a direction or a kind of load,
-//! or that is turned.
+//! Laws of readings: an instrument that is not linear, that has a gain of its own for one direction or one kind of
+//! load, or whose frame is rotated.
 
 use super::{Builder, Law, one_or_both};
 use crate::arm::effect::channel::Channel;
@@ -43,9 +43,9 @@ impl Builder<'_> {
         out
     }
 
-    /// Laws of static readings that follow the load in a way that the model lacks: loads other than stated, a support
-    /// that deflects in the direction of the load, and readings that grow while the arm stays in one pose. `column`
-    /// builds a column.
+    /// Laws of static readings that depend on the load in a way that the model lacks: loads other than stated, a
+    /// support that deflects in the direction of the load, and readings that grow while the arm stays in one pose.
+    /// `column` builds a column.
     fn load_laws(&self, column: ColumnOf) -> Vec<Law> {
         let rows = &self.campaign.statics;
         let gravity = self.forward.layout.gravity_m_s2;

@@ -1,9 +1,9 @@
-//! Laws of joint angles whose zero is off: every pose of the campaign is another one than stated.
+//! Laws of joint angles whose zero is off, so that every pose differs from the stated one.
 
 use super::{Builder, FULL_ANGLE_DEG, Law};
 use rayon::prelude::*;
 
-/// Angle over which the readings are compared \[deg\].
+/// Change of an angle over which the readings are compared \[deg\].
 const STEP_DEG: f64 = 0.1;
 
 impl Builder<'_> {
@@ -19,9 +19,9 @@ impl Builder<'_> {
         names.iter().zip(columns).map(law).collect()
     }
 
-    /// For each of the first `joints` driven joints, the change of every reading of the nominal arm, in its unit, by an
-    /// angle that is off in every pose, per full size. All poses have to be prepared anew, so this is computed once and
-    /// about the nominal arm, and not for every fit.
+    /// For each of the first `joints` driven joints, the change of every reading of the nominal arm, in its unit, if
+    /// the zero of its angle is off by the full size ([`FULL_ANGLE_DEG`]). All poses have to be prepared anew for this.
+    /// It is therefore computed once about the nominal arm, and not for every fit.
     fn zero_columns(&self, joints: usize) -> Vec<Vec<f64>> {
         let stated = self.nominal_readings(self.campaign);
         let per_step = FULL_ANGLE_DEG / STEP_DEG;
