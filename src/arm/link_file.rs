@@ -24,7 +24,7 @@ pub(super) fn read_link(object: &Object, materials: &[NamedMaterial], catalogs: 
     let name = read_name(object);
     let vector_m = object.required("vector_m").and_then(|n| vector(&n));
     let body = match object.optional("section") {
-        Some(section) => read_tube((object, object), &section, vector_m, materials, catalogs),
+        Some(section) => read_tube(object, object, &section, vector_m, materials, catalogs),
         None => {
             if let Some(material) = object.optional("material") {
                 material.fault::<()>(
@@ -46,7 +46,8 @@ const STATED_MATERIAL: &str = "(stated stiffness)";
 /// `object` itself or, for a piece of a link that states no material, the object of the link. Returns `None` after
 /// recording a fault.
 pub(super) fn read_tube(
-    (object, of_material): (&Object, &Object),
+    object: &Object,
+    of_material: &Object,
     section: &Node,
     vector_m: Option<Vector3<f64>>,
     materials: &[NamedMaterial],

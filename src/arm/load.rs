@@ -4,7 +4,7 @@ use super::case_keys::CASE;
 use super::keys::{PAYLOAD, WATER};
 use super::pose::{DrivenJoint, pose_json, read_pose};
 use super::{JointModel, LinkModel, Words};
-use crate::input::json::{Document, Faults, Node, Object};
+use crate::input::json::{Document, Faults, Node};
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 
@@ -182,7 +182,9 @@ fn read_case(node: &Node, driven_joints: &[DrivenJoint]) -> Option<LoadCase> {
     let payload = object.or("payload", Payload::default(), Payload::read);
     let water = object.or("water", None, |n| Water::read(n).map(Some));
     let tip_moment_nm = object.or("tip_moment_nm", Vector3::zeros(), vector);
-    let (tip_force_n, links, joints) = read_force_and_models(&object);
+    let tip_force_n = object.or("tip_force_n", Vector3::zeros(), vector);
+    let links = object.or("links", LinkModel::default(), word);
+    let joints = object.or("joints", JointModel::default(), word);
     Some(LoadCase {
         name: name?,
         pose_deg: pose_deg?,
@@ -193,12 +195,4 @@ fn read_case(node: &Node, driven_joints: &[DrivenJoint]) -> Option<LoadCase> {
         joints: joints?,
         water: water?,
     })
-}
-
-fn read_force_and_models(object: &Object) -> (Option<Vector3<f64>>, Option<LinkModel>, Option<JointModel>) {
-    (
-        object.or("tip_force_n", Vector3::zeros(), vector),
-        object.or("links", LinkModel::default(), word),
-        object.or("joints", JointModel::default(), word),
-    )
 }

@@ -156,7 +156,7 @@ fn read_part(
     let factors = Factors::read(&object);
     // the material of the link is used for all pieces that do not state their own
     let of_material = if object.has("material") { &object } else { link };
-    let tube = |section: &Node| read_tube((&object, of_material), section, None, materials, catalogs);
+    let tube = |section: &Node| read_tube(&object, of_material, section, None, materials, catalogs);
     let body = object.required("section").and_then(|n| tube(&n));
     let end = match object.optional("end_section") {
         Some(section) => tube(&section).map(Some),

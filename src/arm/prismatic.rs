@@ -185,6 +185,15 @@ impl Guide {
     }
 }
 
+/// The elastic properties of a prismatic joint.
+pub(crate) struct Elastic {
+    /// Stiffness along the travel \[N/m\]; `None` if it is rigid or not known yet.
+    pub stiffness_n_per_m: Option<f64>,
+    pub guide: Guide,
+    /// Whether carriage or ram travels.
+    pub moves: Moves,
+}
+
 /// Reads a stiffness; `null` means rigid. Returns `None` after recording a fault.
 fn positive_or_rigid(node: &Node) -> Option<Option<f64>> {
     if node.is_null() { Some(None) } else { node.positive().map(Some) }
@@ -209,11 +218,12 @@ impl Prismatic {
             object.or("guide", Guide::default(), Guide::read),
             object.or("moves", Moves::default(), read_moves),
         );
-        let springs = guide.zip(moves).map(|(guide, moves)| (None, guide, moves));
+        let springs =
+            guide.zip(moves).map(|(guide, moves)| Elastic { stiffness_n_per_m: None, guide, moves });
         Self::read_with(object, springs)
     }
 
-    fn read_with(object: &Object, springs: Option<(Option<f64>, Guide, Moves)>) -> Option<Self> {
+    fn read_with(object: &Object, springs: Option<Elastic>) -> Option<Self> {
         let name = read_name(object);
         let axis = object.required("axis").and_then(|n| read_axis(&n));
         let mass_kg = object.or("mass_kg", 0.0, Node::non_negative);
@@ -221,7 +231,7 @@ impl Prismatic {
         let bodies = read_prismatic_bodies(object);
         let gear = NamedPart::read(object, "gear", "gear_mass_kg");
         let motor = NamedPart::read(object, "motor", "motor_mass_kg");
-        let (stiffness_n_per_m, guide, moves) = springs?;
+        let Elastic { stiffness_n_per_m, guide, moves } = springs?;
         let (gear, motor, fixed_mass_kg) = (gear?, motor?, fixed_mass_kg?);
         let parts_kg: f64 = gear.iter().chain(&motor).map(|part| part.mass_kg).sum();
         if parts_kg > fixed_mass_kg + ROUNDED_KG {
@@ -244,9 +254,8 @@ impl Prismatic {
         })
     }
 
-    /// Reads the elastic properties of a prismatic joint: stiffness along the travel \[N/m\], guide, and whether
-    /// carriage or ram travels. Returns `None` after recording a fault.
-    pub(crate) fn read_springs(object: &Object) -> Option<(Option<f64>, Guide, Moves)> {
+    /// Reads the elastic properties of a prismatic joint. Returns `None` after recording a fault.
+    pub(crate) fn read_springs(object: &Object) -> Option<Elastic> {
         let stiffness = match object.optional("stiffness_n_per_m") {
             Some(node) => positive_or_rigid(&node),
             None => object.node().fault(
@@ -256,7 +265,7 @@ impl Prismatic {
         };
         let guide = object.or("guide", Guide::default(), Guide::read);
         let moves = object.or("moves", Moves::default(), read_moves);
-        Some((stiffness?, guide?, moves?))
+        Some(Elastic { stiffness_n_per_m: stiffness?, guide: guide?, moves: moves? })
     }
 
     /// The elastic properties of the joint as JSON, as [`read_springs`](Self::read_springs) reads them.

@@ -322,6 +322,17 @@ pub(crate) struct Hung {
     pub body: RigidBody,
 }
 
+/// The place of a motor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct MotorAt {
+    /// Number of the element.
+    pub element: usize,
+    /// Side of the element on which the motor is.
+    pub on: HungOn,
+    /// Position of the motor in the frame of that side \[m\].
+    pub point_m: Vector3<f64>,
+}
+
 /// A transmission after it has been placed in its chain.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Placed {
@@ -330,9 +341,8 @@ pub(crate) struct Placed {
     pub turns_with: Option<Vec<(String, f64)>>,
     /// Masses of the motor and of the stages.
     pub hung: Vec<Hung>,
-    /// Where the motor is: number of the element, side and point \[m\]. It is at the driven joint if the file names no
-    /// other place.
-    pub motor: (usize, HungOn, Vector3<f64>),
+    /// Where the motor is. It is at the driven joint if the file names no other place.
+    pub motor: MotorAt,
     /// Whether there are joints between the motor and the driven joint, which the stages cross.
     pub crosses: bool,
 }
@@ -342,10 +352,10 @@ impl Transmission {
     /// file. Returns `None` after recording a fault.
     pub(crate) fn place(&self, node: &Node, joint: usize, chain: &[Seen]) -> Option<Placed> {
         let motor = self.motor_place(node, joint, chain)?;
-        let first = match motor {
+        let first = match motor.on {
             _ if self.motor_at.is_none() => joint,
-            (element, HungOn::Moving, _) => element + 1,
-            (element, HungOn::Start, _) => element,
+            HungOn::Moving => motor.element + 1,
+            HungOn::Start => motor.element,
         };
         let crossed = crossed(node, first, joint, chain)?;
         if self.stages.len() < crossed.len() && !(self.is_coupling_stated && self.stages.is_empty()) {
@@ -370,17 +380,15 @@ impl Transmission {
         Some(Placed { turns_with, hung, motor, crosses: !crossed.is_empty() })
     }
 
-    fn motor_place(
-        &self,
-        node: &Node,
-        joint: usize,
-        chain: &[Seen],
-    ) -> Option<(usize, HungOn, Vector3<f64>)> {
-        let Some(name) = &self.motor_at else { return Some((joint, HungOn::Start, Vector3::zeros())) };
+    fn motor_place(&self, node: &Node, joint: usize, chain: &[Seen]) -> Option<MotorAt> {
+        let Some(name) = &self.motor_at else {
+            return Some(MotorAt { element: joint, on: HungOn::Start, point_m: Vector3::zeros() });
+        };
+        let point_m = self.motor_point_m;
         let inboard = &chain[..joint];
         match inboard.iter().rposition(|seen| seen.name == *name) {
-            _ if name == super::BASE => Some((0, HungOn::Start, self.motor_point_m)),
-            Some(element) => Some((element, HungOn::Moving, self.motor_point_m)),
+            _ if name == super::BASE => Some(MotorAt { element: 0, on: HungOn::Start, point_m }),
+            Some(element) => Some(MotorAt { element, on: HungOn::Moving, point_m }),
             None => {
                 let names: Vec<&str> = inboard.iter().map(|seen| seen.name.as_str()).collect();
                 node.fault_below(
@@ -433,7 +441,7 @@ impl Transmission {
     /// The point masses of the motor and of the stages, each at its place.
     fn hung(
         &self,
-        (at, on, point_m): (usize, HungOn, Vector3<f64>),
+        motor: MotorAt,
         joint: usize,
         crossed: &[(usize, Vector3<f64>)],
         along: usize,
@@ -444,7 +452,7 @@ impl Transmission {
         let half_kg = near.last().map_or(0.0, |stage| stage.mass_kg / 2.0);
         let next = crossed.first().map_or(joint, |(element, _)| *element);
         let mut hung = vec![
-            (at, on, point_m, self.motor_kg + near_kg - half_kg),
+            (motor.element, motor.on, motor.point_m, self.motor_kg + near_kg - half_kg),
             (next, HungOn::Start, Vector3::zeros(), half_kg),
         ];
         for (k, stage) in self.stages[along..].iter().enumerate() {

@@ -172,18 +172,18 @@ fn held(name: &str, found: &Capacity) -> String {
 fn to_text(name: &str, found: &Capacity) -> String {
     let mut out = headline(name, found);
     let ends = found.table.iter().map(|at| {
-        let end = if at.window.holds() { &at.window.most } else { &at.window.least };
-        (at, kilograms(&at.window), end)
+        let limit = if at.window.holds() { &at.window.most } else { &at.window.least };
+        End { pose: at, kg: kilograms(&at.window), limit }
     });
-    out.push_str(&table(["payload kg", "ends at"], &ends.collect::<Vec<_>>()));
+    out.push_str(&table("payload kg", "ends at", &ends.collect::<Vec<_>>()));
     let needy = found.table.iter().filter(|at| at.window.least.payload_kg > 0.0).map(|at| {
         let least = &at.window.least;
         let least_kg = if at.window.holds() { fixed(least.payload_kg, 3) } else { "none".into() };
-        (at, least_kg, least)
+        End { pose: at, kg: least_kg, limit: least }
     });
     let needy: Vec<_> = needy.collect();
     if !needy.is_empty() {
-        out.push_str(&table(["least kg", "begins at"], &needy));
+        out.push_str(&table("least kg", "begins at", &needy));
     }
     out.extend(found.largest_speed.as_ref().map(fastest));
     out
@@ -202,16 +202,25 @@ fn fastest(speed: &LargestSpeed) -> String {
     format!("\n{}", wrap(&words, TERMINAL, ""))
 }
 
+/// One end of the window of payloads in a pose.
+struct End<'a> {
+    pose: &'a AtPose,
+    /// The payload at this end, in words.
+    kg: String,
+    /// What fails beyond it.
+    limit: &'a Limit,
+}
+
 /// A table with one row for each pose: reach, payload at one end of the range that holds, and what fails beyond this
 /// end. `payload` and `end` are the headers of the payload and of the piece that fails.
-fn table([payload, end]: [&str; 2], rows: &[(&AtPose, String, &Limit)]) -> String {
+fn table(payload: &str, end: &str, rows: &[End]) -> String {
     let widest = |head: &str, of: fn(&Limit) -> &str| {
-        let widths = rows.iter().map(|(_, _, limit)| of(limit).chars().count());
+        let widths = rows.iter().map(|row| of(row.limit).chars().count());
         widths.max().unwrap_or_default().max(head.len())
     };
     let (at, what) = (widest(end, |limit| &limit.piece), widest("check", |limit| &limit.check));
     let mut out = format!("\n{:>8}  {payload:>10}  {end:<at$}  {:<what$}  pose\n", "reach m", "check");
-    for (pose, kg, limit) in rows {
+    for End { pose, kg, limit } in rows {
         let reach = fixed(pose.reach_m, 3);
         let _ = writeln!(
             out,

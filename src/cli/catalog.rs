@@ -4,7 +4,7 @@
 //! The functions return the text; nothing is printed here.
 
 use super::catalog_check::check;
-use super::catalog_table::{TextTable, cell, gears_of, motors_of, provenances};
+use super::catalog_table::{TextTable, actuators_of, cell, gears_of, motors_of, provenances};
 use super::failure::Failure;
 use crate::catalog::gear::{Gear, GearKind};
 use crate::catalog::lookup::PartError;
@@ -128,7 +128,7 @@ pub(crate) fn show(catalogs: &Catalogs, args: &ShowArgs) -> Result<String, Failu
         Parts::Actuators => list(
             catalogs,
             CatalogFile::Actuators,
-            &gears_of(catalogs, true).collect::<Vec<_>>(),
+            &actuators_of(catalogs).collect::<Vec<_>>(),
             ACTUATOR_FIELDS,
             |g| &g.provenance,
             args,
@@ -192,11 +192,11 @@ fn gears<'c>(catalogs: &'c Catalogs, args: &ShowArgs) -> Result<Vec<&'c Gear>, F
             && args.ratio.is_none_or(|ratio| g.ratio == ratio)
             && kind.is_none_or(|kind| g.kind == kind)
     };
-    Ok(gears_of(catalogs, false).filter(wanted).collect())
+    Ok(gears_of(catalogs).filter(wanted).collect())
 }
 
 fn series(catalogs: &Catalogs, name: &str) -> Result<String, Failure> {
-    if let Some(gear) = gears_of(catalogs, false).find(|g| g.series.eq_ignore_ascii_case(name)) {
+    if let Some(gear) = gears_of(catalogs).find(|g| g.series.eq_ignore_ascii_case(name)) {
         return Ok(gear.series.clone());
     }
     if let Some((_, series)) =
@@ -204,7 +204,7 @@ fn series(catalogs: &Catalogs, name: &str) -> Result<String, Failure> {
     {
         return Ok(series.clone());
     }
-    let mut known: Vec<_> = gears_of(catalogs, false).map(|g| g.series.as_str()).collect();
+    let mut known: Vec<_> = gears_of(catalogs).map(|g| g.series.as_str()).collect();
     known.sort_unstable();
     known.dedup();
     Err(Failure::Usage(format!("--series {name} is not known; choose one of: {}", known.join(", "))))

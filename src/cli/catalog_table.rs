@@ -5,9 +5,14 @@ use crate::catalog::motor::{Motor, MotorKind};
 use crate::catalog::schema::CatalogFile;
 use crate::catalog::{Catalogs, Provenance};
 
-/// The gears that are sold alone, or (if `actuators`) those that are part of an actuator.
-pub(super) fn gears_of(catalogs: &Catalogs, actuators: bool) -> impl Iterator<Item = &Gear> {
-    catalogs.gears.iter().filter(move |gear| (gear.kind == GearKind::Actuator) == actuators)
+/// The gears that are sold alone.
+pub(super) fn gears_of(catalogs: &Catalogs) -> impl Iterator<Item = &Gear> {
+    catalogs.gears.iter().filter(|gear| gear.kind != GearKind::Actuator)
+}
+
+/// The gears that are part of an actuator.
+pub(super) fn actuators_of(catalogs: &Catalogs) -> impl Iterator<Item = &Gear> {
+    catalogs.gears.iter().filter(|gear| gear.kind == GearKind::Actuator)
 }
 
 /// The motors that are sold alone.
@@ -20,8 +25,8 @@ pub(super) fn provenances(
     file: CatalogFile,
 ) -> Box<dyn Iterator<Item = &Provenance> + '_> {
     match file {
-        CatalogFile::Gears => Box::new(gears_of(catalogs, false).map(|g| &g.provenance)),
-        CatalogFile::Actuators => Box::new(gears_of(catalogs, true).map(|g| &g.provenance)),
+        CatalogFile::Gears => Box::new(gears_of(catalogs).map(|g| &g.provenance)),
+        CatalogFile::Actuators => Box::new(actuators_of(catalogs).map(|g| &g.provenance)),
         CatalogFile::MotorCurves => Box::new(std::iter::empty()),
         CatalogFile::Efficiency => Box::new(catalogs.efficiency.iter().map(|p| &p.provenance)),
         CatalogFile::Motors => Box::new(motors_of(catalogs).map(|m| &m.provenance)),
@@ -46,12 +51,9 @@ impl TextTable {
     }
 
     pub(super) fn to_text(&self) -> String {
-        let split = |head: &String, unit: bool| {
-            let (name, rest) = head.split_once('|').unwrap_or((head, ""));
-            if unit { rest } else { name }.to_string()
-        };
-        let names: Vec<_> = self.head.iter().map(|h| split(h, false)).collect();
-        let units: Vec<_> = self.head.iter().map(|h| split(h, true)).collect();
+        let heads = self.head.iter().map(|head| head.split_once('|').unwrap_or((head, "")));
+        let (names, units): (Vec<_>, Vec<_>) =
+            heads.map(|(name, unit)| (name.to_string(), unit.to_string())).unzip();
         let mut lines = vec![names];
         if units.iter().any(|unit| !unit.is_empty()) {
             lines.push(units);

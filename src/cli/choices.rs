@@ -97,7 +97,7 @@ fn fronts_of_all(
         "tool_version": env!("CARGO_PKG_VERSION"),
         "flags": format!("{:?} {}", each.how.without_fresh(), each.further),
     });
-    let unfinished = Unfinished::open(&unfinished_in(dir, "choices"), search, each.how.is_fresh(), log)?;
+    let unfinished = Unfinished::open(&unfinished_in(dir, "choices"), search, each.how.earlier(), log)?;
     let earlier = unfinished.resume().from;
     let mut ended: Vec<Ended> =
         earlier.map_or(Ok(Vec::new()), serde_json::from_slice).map_err(|_| unfinished.damaged())?;

@@ -198,19 +198,26 @@ fn materials_of(dir: &Path) -> Result<Vec<Contender>, Failure> {
     front_file(dir)?;
     let results = Results::open(dir)?;
     let mut out = vec![Contender { reference: true, ..Contender::new("all", results.front(FRONT)?) }];
-    for (name, file) in listed_materials(&results.run) {
-        out.push(Contender::new(&name, results.front(&front_of_material(&file))?));
+    for Listed { name, slug } in listed_materials(&results.run) {
+        out.push(Contender::new(&name, results.front(&front_of_material(&slug))?));
     }
     // if there are no fronts of materials, the front of all designs is compared like any other
     out[0].reference = out.len() > 1;
     Ok(out)
 }
 
-/// Every material of `run.json`, with the short name that is used in names of files.
-fn listed_materials(run: &Value) -> Vec<(String, String)> {
+/// A material of `run.json`.
+struct Listed {
+    name: String,
+    /// Short name that is used in names of files.
+    slug: String,
+}
+
+/// Every material of `run.json`.
+fn listed_materials(run: &Value) -> Vec<Listed> {
     let entries = run["materials"].as_array().cloned().unwrap_or_default();
     let text = |entry: &Value, key: &str| entry[key].as_str().map(String::from);
-    entries.iter().filter_map(|e| Some((text(e, "name")?, text(e, "slug")?))).collect()
+    entries.iter().filter_map(|e| Some(Listed { name: text(e, "name")?, slug: text(e, "slug")? })).collect()
 }
 
 /// Whether all paths are result folders of the same study.

@@ -5,7 +5,7 @@ use super::failure::Failure;
 use super::finished::{catalogs_hash, pretty};
 use super::manifest::STUDY;
 use super::own_files::write_own;
-use super::results::Results;
+use super::results::{Results, TextFile};
 use crate::arm::Arm;
 use crate::arm::load::LoadCase;
 use crate::catalog::Catalogs;
@@ -53,8 +53,8 @@ pub(super) fn resolve_design(
     catalogs: &Catalogs,
 ) -> Result<ResolvedDesign, Failure> {
     let results = open_results(folder, catalogs)?;
-    let (file, text) = results.text(STUDY)?;
-    let study = read_study(Document::parse(&file, &text)?, catalogs)?;
+    let TextFile { path, text } = results.text(STUDY)?;
+    let study = read_study(Document::parse(&path, &text)?, catalogs)?;
     let unknown = || {
         Failure::Usage(format!(
             "{} has no design \"{id}\": take a design_id from its front.csv",

@@ -63,7 +63,7 @@ pub(crate) struct ExportArgs {
 
 /// Executes the verb.
 pub(super) fn run(args: &ExportArgs, catalogs: &Catalogs) -> Result<String, Failure> {
-    let (arm, cases, inputs) = source(args, catalogs)?;
+    let Source { arm, cases, inputs } = source(args, catalogs)?;
     let request = ExportRequest {
         arm: &arm,
         cases: &cases,
@@ -101,8 +101,15 @@ fn said(exported: &Exported) -> String {
     left_out.chain(notes).collect()
 }
 
-/// The arm, its cases, and the files from which they were read.
-fn source(args: &ExportArgs, catalogs: &Catalogs) -> Result<(Arm, Vec<LoadCase>, Vec<PathBuf>), Failure> {
+/// What is exported.
+struct Source {
+    arm: Arm,
+    cases: Vec<LoadCase>,
+    /// The files from which arm and cases were read.
+    inputs: Vec<PathBuf>,
+}
+
+fn source(args: &ExportArgs, catalogs: &Catalogs) -> Result<Source, Failure> {
     let path = PathBuf::from(&args.source);
     if let (false, Some((folder, id))) = (path.is_file(), args.source.rsplit_once('#')) {
         if args.cases.is_some() || args.pose.is_given() || args.payload_kg != 0.0 {
@@ -111,7 +118,7 @@ fn source(args: &ExportArgs, catalogs: &Catalogs) -> Result<(Arm, Vec<LoadCase>,
             ));
         }
         let design = resolve_design(Path::new(folder), id, catalogs)?;
-        return Ok((design.arm, design.cases, Vec::new()));
+        return Ok(Source { arm: design.arm, cases: design.cases, inputs: Vec::new() });
     }
     if path.is_dir() {
         let hint = "add # and a design_id from its front.csv";
@@ -128,7 +135,7 @@ fn source(args: &ExportArgs, catalogs: &Catalogs) -> Result<(Arm, Vec<LoadCase>,
         }
         None => vec![case_of_flags(args, &arm)?],
     };
-    Ok((arm, cases, inputs))
+    Ok(Source { arm, cases, inputs })
 }
 
 fn case_of_flags(args: &ExportArgs, arm: &Arm) -> Result<LoadCase, Failure> {

@@ -3,9 +3,9 @@
 use super::exit::Exit;
 use super::extra_files::{ExtraFiles, another_stands, say_missing};
 use super::failure::Failure;
-use super::log::Log;
 use super::manifest::{FRONT, Files, OF_A_RUN, PICTURE, RUN, STUDY, SUMMARY, hash};
 use super::progress::Progress;
+use super::setup::Setup;
 use super::stop::stop_if_wanted;
 use super::supplements::{Found, SupplementArgs};
 use crate::catalog::Catalogs;
@@ -126,43 +126,28 @@ pub(super) struct Finished<'a> {
     pub exact: Option<FoundExactly>,
     /// Time that the search took \[s\].
     pub elapsed_s: f64,
-    /// The user's catalog folder, if any.
-    pub overlay: Option<&'a Path>,
-    pub catalogs: &'a Catalogs,
+    pub setup: Setup<'a>,
     /// Folder of the result.
     pub dir: &'a Path,
-    /// Where warnings go.
-    pub log: Log,
+}
+
+/// What a search found that visited every design.
+pub(super) struct Visited<'a> {
+    pub problem: &'a ArmProblem<'a>,
+    pub outcome: &'a StudyOutcome,
+    /// Time that the search took \[s\].
+    pub elapsed_s: f64,
 }
 
 impl<'a> Finished<'a> {
     /// The result of a search that visited every design of a study, on one computer or in shards. `dir` is the folder
-    /// of results, `elapsed_s` the time that the search took \[s\].
-    pub(super) fn visit(
-        asked: &'a Asked,
-        (problem, outcome): (&'a ArmProblem<'a>, &'a StudyOutcome),
-        elapsed_s: f64,
-        (catalogs, overlay): (&'a Catalogs, Option<&'a Path>),
-        (dir, log): (&'a Path, Log),
-    ) -> Self {
+    /// of results.
+    pub(super) fn visit(asked: &'a Asked, visited: Visited<'a>, dir: &'a Path, setup: Setup<'a>) -> Self {
         let Asked { study, text, corrections } = asked;
+        let Visited { problem, outcome, elapsed_s } = visited;
         let whole = &study.space;
         let (near, exact) = (None, None);
-        Self {
-            study,
-            text,
-            corrections,
-            problem,
-            whole,
-            outcome,
-            near,
-            exact,
-            elapsed_s,
-            overlay,
-            catalogs,
-            dir,
-            log,
-        }
+        Self { study, text, corrections, problem, whole, outcome, near, exact, elapsed_s, setup, dir }
     }
 }
 
@@ -188,7 +173,7 @@ impl Finished<'_> {
         // a user who wants to stop gets the front at once, and nothing that takes longer
         let is_front_only = stop.load(Ordering::Relaxed);
         if !is_front_only {
-            let (problem, catalogs) = (self.problem, self.catalogs);
+            let (problem, catalogs) = (self.problem, self.setup.catalogs);
             let budgets =
                 extra.make("budget.csv", || budgets(problem, self.whole, catalogs, &summary.overall));
             summary.budgets = budgets.unwrap_or_default();
@@ -203,7 +188,7 @@ impl Finished<'_> {
         }
         let terminal = extra.make("the summary on the terminal", || terminal_summary(&summary));
         extra.missing.extend(left_out.iter().map(|name| another_stands(name)));
-        say_missing(&extra.missing, self.log);
+        say_missing(&extra.missing, self.setup.log);
         files.retain(|(name, _)| !left_out.contains(name));
         let paragraphs = supplements.iter().map(|s| &s.terminal).filter(|text| !text.is_empty());
         let paragraphs: String = paragraphs.map(|text| format!("\n{text}")).collect();
@@ -234,7 +219,7 @@ impl Finished<'_> {
         summary: &SummaryInput,
         extra: &mut ExtraFiles,
     ) -> Result<Vec<Supplement>, Failure> {
-        let Self { problem, catalogs, outcome, near, .. } = *self;
+        let Self { problem, outcome, near, setup: Setup { catalogs, .. }, .. } = *self;
         let (is_exact, ties_listed) = (self.exact.is_some(), self.ties_listed());
         let found = Found { problem, catalogs, outcome, near, is_exact, ties_listed, stop };
         let what = "what was asked for in addition to the front";
@@ -304,8 +289,10 @@ impl Finished<'_> {
     /// The fronts and facts of the result. The stiffness budget is added later, because it takes longer.
     fn summary(&self) -> SummaryInput {
         let (study, sweep) = (self.study, &self.outcome.sweep);
-        let cost = |name: &str| self.catalogs.materials.iter().find(|m| m.name == name)?.cost_eur_per_kg;
-        let (overall, remarks) = table_and_remarks(study, self.problem, self.catalogs, &self.outcome.front);
+        let cost =
+            |name: &str| self.setup.catalogs.materials.iter().find(|m| m.name == name)?.cost_eur_per_kg;
+        let (overall, remarks) =
+            table_and_remarks(study, self.problem, self.setup.catalogs, &self.outcome.front);
         SummaryInput {
             budgets: Vec::new(),
             facts: SummaryFacts {
@@ -325,7 +312,7 @@ impl Finished<'_> {
                 not_checked: study.not_checked.clone(),
                 remarks,
                 materials_of_some_links: links_without(self.whole),
-                caveats: caveats_of(study, self.catalogs),
+                caveats: caveats_of(study, self.setup.catalogs),
                 results: self.dir.display().to_string(),
             },
             overall,
@@ -338,7 +325,7 @@ impl Finished<'_> {
                     name: of.name.clone(),
                     ties_listed: of.ties_listed,
                     status: of.status.word().into(),
-                    front: front_table(self.problem, self.catalogs, &of.front),
+                    front: front_table(self.problem, self.setup.catalogs, &of.front),
                 })
                 .collect(),
         }
@@ -347,11 +334,11 @@ impl Finished<'_> {
     /// The page of the result for a browser. `picture` is the picture of the front, `sections` are those of the
     /// supplements, and `run` is the content of `run.json`.
     fn page(&self, summary: &SummaryInput, picture: String, sections: Vec<PageSection>, run: &Value) -> Page {
-        let mut page = study_page(self.study, self.problem, self.catalogs, summary);
+        let mut page = study_page(self.study, self.problem, self.setup.catalogs, summary);
         page.extras.extend(sections);
         page.extras.push(certificate_section(&summary.facts, self.exact.map(|exact| exact.boxes)));
-        let [run, timing] = facts_of(run);
-        StudyPage { scatter_svg: picture, run, timing, ..page }.page()
+        let Facts { lasting, timing } = facts_of(run);
+        StudyPage { scatter_svg: picture, run: lasting, timing, ..page }.page()
     }
 
     fn ties_listed(&self) -> bool {
@@ -394,13 +381,13 @@ impl Finished<'_> {
             "materials": materials,
             "not_checked": study.not_checked,
             "remarks": summary.facts.remarks,
-            "caveats": caveats_on(study, self.catalogs, &summary.overall),
+            "caveats": caveats_on(study, self.setup.catalogs, &summary.overall),
             "effects": effects_json(study),
             "effects_mass_kg": study.space.effects_mass_kg(),
             "carried_over": corrections_json(self.corrections),
-            "catalogs": self.overlay.map(|p| p.display().to_string()),
+            "catalogs": self.setup.overlay.map(|p| p.display().to_string()),
             "study_hash": hash(self.text.as_bytes()),
-            "catalogs_hash": catalogs_hash(self.catalogs),
+            "catalogs_hash": catalogs_hash(self.setup.catalogs),
             "search": if self.exact.is_some() { "exact" } else { "exhaustive" },
             "boxes": self.exact.map(|exact| exact.boxes[0]),
             "boxes_open": self.exact.map(|exact| exact.boxes[1]),
@@ -416,9 +403,15 @@ impl Finished<'_> {
     }
 }
 
-/// The facts of `run.json` that are a word or a number, as text for people: first those that are equal in every run of
-/// the study, then those that differ from run to run.
-pub(super) fn facts_of(run: &Value) -> [Vec<(String, String)>; 2] {
+/// The facts of `run.json` that are a word or a number, as text for people. Each is a name and a value.
+pub(super) struct Facts {
+    /// Those that are equal in every run of the study.
+    pub lasting: Vec<(String, String)>,
+    /// Those that differ from run to run.
+    pub timing: Vec<(String, String)>,
+}
+
+pub(super) fn facts_of(run: &Value) -> Facts {
     let plain = |value: &Value| match value {
         Value::String(text) => Some(text.clone()),
         Value::Number(number) if number.is_f64() => Some(significant(number.as_f64()?, 4)),
@@ -432,9 +425,10 @@ pub(super) fn facts_of(run: &Value) -> [Vec<(String, String)>; 2] {
     let facts = run.as_object().into_iter().flatten();
     let known = facts.filter(|(key, _)| !["schema_version", "study", "question"].contains(&key.as_str()));
     let (timing, lasting): (Vec<_>, Vec<_>) = known.partition(|(key, _)| OF_A_RUN.contains(&key.as_str()));
-    [lasting, timing].map(|facts| {
+    let in_words = |facts: Vec<(&String, &Value)>| {
         facts.into_iter().filter_map(|(key, value)| Some((key_words(key), plain(value)?))).collect()
-    })
+    };
+    Facts { lasting: in_words(lasting), timing: in_words(timing) }
 }
 
 /// The picture of the front. Designs of mixed materials are grey, and each material has a colour. For each material its

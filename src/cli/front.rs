@@ -7,6 +7,7 @@ use super::finished::catalogs_hash;
 use super::log::Log;
 use super::manifest::{FRONT, STUDY, hash};
 use super::result_folder::{settle, unfinished_in};
+use super::results::TextFile;
 use super::stop::stopped_by_signal;
 use super::time_limit::time_limit;
 use super::unfinished::Unfinished;
@@ -60,8 +61,8 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs, log: Log) -> Result<Ans
     let FrontVerb::Check(args) = &args.verb;
     let results = open_results(&args.results, catalogs)?;
     let run = &results.run;
-    let (file, text) = results.text(STUDY)?;
-    let study = read_study(Document::parse(&file, &text)?, catalogs)?;
+    let TextFile { path, text } = results.text(STUDY)?;
+    let study = read_study(Document::parse(&path, &text)?, catalogs)?;
     refuse_beyond_bounds(&study)?;
     let front = args.results.join(FRONT);
     let front_csv = results.with_todays_ids(FRONT)?;

@@ -3,11 +3,11 @@
 
 use super::exit::Answer;
 use super::failure::Failure;
-use super::finished::{Finished, FoundExactly, Written, catalogs_hash, count};
-use super::log::Log;
+use super::finished::{Finished, FoundExactly, Visited, Written, catalogs_hash, count};
 use super::manifest::{RUN, SHARD, STUDY};
 use super::result_folder::ResultFolder;
 use super::run::planned;
+use super::setup::Setup;
 use super::shard_files::{
     CANDIDATES, COMMON, MOST_LEVELS, folder_of, read_candidates_of, read_manifest, shards_in, shards_in_all,
 };
@@ -84,12 +84,7 @@ struct Shards {
 }
 
 /// Runs `armwright merge`: writes the result, and returns the text to print.
-pub(super) fn merge(
-    args: &MergeArgs,
-    catalogs: &Catalogs,
-    overlay: Option<&Path>,
-    log: Log,
-) -> Result<Answer, Failure> {
+pub(super) fn merge(args: &MergeArgs, setup: Setup) -> Result<Answer, Failure> {
     let shards = Shards::read(&args.shards)?;
     let missing = shards.missing();
     if !missing.is_empty() {
@@ -100,9 +95,9 @@ pub(super) fn merge(
             missing.join("\n  ")
         )));
     }
-    let (asked, elapsed_s) = shards.asked(catalogs)?;
+    let (asked, elapsed_s) = shards.asked(setup.catalogs)?;
     let dir = args.out.clone().unwrap_or_else(|| Path::new("results").join(folder_name(&asked.study.name)));
-    let joining = Joining { asked: &asked, elapsed_s, catalogs, overlay, dir: &dir, args, log };
+    let joining = Joining { asked: &asked, elapsed_s, setup, dir: &dir, args };
     let written = if shards.is_exact() { joining.exact(&shards)? } else { joining.exhaustive(&shards)? };
     let text = format!(
         "{}\n{} shards joined; written to {}\n{}",
@@ -119,31 +114,29 @@ struct Joining<'a> {
     asked: &'a Asked,
     /// Sum of the times that the shards took \[s\].
     elapsed_s: f64,
-    catalogs: &'a Catalogs,
-    overlay: Option<&'a Path>,
+    setup: Setup<'a>,
     dir: &'a Path,
     args: &'a MergeArgs,
-    /// Where warnings go.
-    log: Log,
 }
 
 impl Joining<'_> {
     /// Joins the shards of an exhaustive search, which visits every design.
     fn exhaustive(&self, shards: &Shards) -> Result<Written, Failure> {
-        let Self { asked, elapsed_s, catalogs, overlay, dir, log, .. } = *self;
+        let Self { asked, elapsed_s, setup, dir, .. } = *self;
         let study = &asked.study;
         shards.refuse_gaps()?;
         let swept = shards.swept(study)?;
-        let problem = ArmProblem::new(&study.space, catalogs);
+        let problem = ArmProblem::new(&study.space, setup.catalogs);
         let outcome = judge_swept(study, &problem, joined(swept, shards.designs_total));
         self.refuse_nothing(outcome.sweep.status)?;
-        self.keep(&Finished::visit(asked, (&problem, &outcome), elapsed_s, (catalogs, overlay), (dir, log)))
+        let visited = Visited { problem: &problem, outcome: &outcome, elapsed_s };
+        self.keep(&Finished::visit(asked, visited, dir, setup))
     }
 
     /// Joins the shards of an exact search.
     fn exact(&self, shards: &Shards) -> Result<Written, Failure> {
-        let Self { asked: Asked { study, text, corrections }, elapsed_s, catalogs, overlay, dir, args, log } =
-            *self;
+        let Self { asked: Asked { study, text, corrections }, elapsed_s, setup, dir, args } = *self;
+        let catalogs = setup.catalogs;
         let extent = Extent { deadline: None, gap: shards.gap(), near: args.supplements.slack() };
         let found = shards.found(study)?;
         let found = joined_exactly(study, catalogs, &found, stopped_by_signal(), extent);
@@ -162,16 +155,14 @@ impl Joining<'_> {
             near: near.as_ref(),
             exact: Some(FoundExactly { boxes: *boxes, gap: *gap, ties_listed: *ties_listed }),
             elapsed_s,
-            overlay,
-            catalogs,
+            setup,
             dir,
-            log,
         })
     }
 
     /// Fails if no design meets the limits of the study. The error says why.
     fn refuse_nothing(&self, status: Status) -> Result<(), Failure> {
-        let why = || why_infeasible(&self.asked.study, self.catalogs, stopped_by_signal(), None);
+        let why = || why_infeasible(&self.asked.study, self.setup.catalogs, stopped_by_signal(), None);
         if status == Status::Infeasible { Err(Failure::Infeasible(why())) } else { Ok(()) }
     }
 
@@ -180,7 +171,7 @@ impl Joining<'_> {
         let folder = ResultFolder::open(self.dir, RUN, &planned(&self.asked.study))?;
         let written =
             finished.keep(&self.args.supplements, stopped_by_signal(), &|files| folder.publish(files))?;
-        Ok(written.after_search(self.log))
+        Ok(written.after_search(self.setup.log))
     }
 }
 

@@ -42,6 +42,7 @@ pub(crate) mod results;
 pub(crate) mod run;
 pub(crate) mod schema;
 pub(crate) mod search;
+mod setup;
 pub(crate) mod shard;
 mod shard_files;
 pub(crate) mod shell;

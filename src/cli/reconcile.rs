@@ -7,9 +7,10 @@ use super::failure::Failure;
 use super::finished::catalogs_hash;
 use super::log::Log;
 use super::manifest::{Files, PAGE, VERDICT, hash, listed};
-use super::rerun::{CHANGES, Rerun, rerun};
+use super::rerun::{Again, CHANGES, Rerun, rerun};
 use super::result_folder::ResultFolder;
 use super::search::SearchArgs;
+use super::setup::Setup;
 use super::stop::unless_stopped;
 use super::write::refuse_inputs;
 use super::wrong_kind::{refuse_no_campaign, study_of};
@@ -61,12 +62,8 @@ pub(crate) struct ReconcileArgs {
 ///
 /// # Errors
 /// The input files have faults, or a file cannot be written.
-pub(crate) fn run(
-    args: &ReconcileArgs,
-    catalogs: &Catalogs,
-    overlay: Option<&Path>,
-    log: Log,
-) -> Result<Answer, Failure> {
+pub(crate) fn run(args: &ReconcileArgs, setup: Setup) -> Result<Answer, Failure> {
+    let Setup { catalogs, log, .. } = setup;
     match &args.study {
         // a study that has faults or cannot be searched in this way fails at once, and not after the fits
         Some(study) => drop(args.how.check(&study_of(study, catalogs)?.0, catalogs)?),
@@ -99,12 +96,13 @@ pub(crate) fn run(
     let campaign = Arc::new(campaign);
     let fitted = Arc::clone(&campaign);
     let outcome = unless_stopped(move || reconcile(&fitted))?;
-    let (mut files, terminal) = keep(&campaign, (&outcome, &hash_of_catalogs), &folder, log)?;
+    let (mut files, terminal) = keep(&campaign, &outcome, &hash_of_catalogs, &folder, log)?;
     let mut text = format!("{}{terminal}", narrow(&outcome.to_text()));
     let mut exit = Exit::Done;
     if let Some(study) = &args.study {
         let keep = |more: &[(String, Vec<u8>)]| folder.publish(&[&files, more].concat());
-        let rerun = rerun(&outcome, (study, &args.how), catalogs, overlay, (&out, &keep), log)?;
+        let again = Again { study, how: &args.how, dir: &out, keep: &keep };
+        let rerun = rerun(&outcome, &again, setup)?;
         folder.settle(Ok(rerun.exit))?;
         text.push_str(&rerun.text);
         exit = rerun.exit;
@@ -159,7 +157,8 @@ fn planned(args: &ReconcileArgs, campaign: &Campaign, catalogs: &Catalogs) -> Re
 /// is left out with a warning, and the verdict stays.
 fn keep(
     campaign: &Campaign,
-    (outcome, hash_of_catalogs): (&Outcome, &str),
+    outcome: &Outcome,
+    hash_of_catalogs: &str,
     folder: &ResultFolder,
     log: Log,
 ) -> Result<(Files, String), Failure> {

@@ -4,10 +4,10 @@ use super::corrections;
 use super::exit::Exit;
 use super::failure::Failure;
 use super::finished::{Keep, Written};
-use super::log::Log;
 use super::manifest::{Files, RUN, sealed};
 use super::result_folder::unfinished_in;
 use super::search::{SearchArgs, SearchSettings, search};
+use super::setup::Setup;
 use super::supplements::SupplementArgs;
 use super::wrong_kind::study_of;
 use crate::catalog::Catalogs;
@@ -69,19 +69,28 @@ fn nothing_applies(name: &str, corrected: &Asked) -> Rerun {
     rerun
 }
 
-/// Runs the study without and with the corrections of the outcome, each with the search options `how`. `dir` is the
-/// folder of the campaign's result. The files of a finished run are written there at once, by `keep`.
+/// What is run again, and where its files go.
+pub(super) struct Again<'a> {
+    /// Name or file of the study.
+    pub study: &'a str,
+    /// The search options of each of the two runs.
+    pub how: &'a SearchArgs,
+    /// Folder of the campaign's result.
+    pub dir: &'a Path,
+    /// Writes the files of a finished run there at once.
+    pub keep: &'a Keep<'a>,
+}
+
+/// Runs the study without and with the corrections of the outcome.
 ///
 /// # Errors
 /// The study has faults, its results cannot be written, or the user stops the search.
 pub(super) fn rerun(
     outcome: &Outcome,
-    (study, how): (&str, &SearchArgs),
-    catalogs: &Catalogs,
-    overlay: Option<&Path>,
-    (dir, keep): (&Path, &Keep),
-    log: Log,
+    &Again { study, how, dir, keep }: &Again,
+    setup: Setup,
 ) -> Result<Rerun, Failure> {
+    let catalogs = setup.catalogs;
     if outcome.verdict != Verdict::Explained {
         return Ok(not_explained(outcome, study));
     }
@@ -100,15 +109,13 @@ pub(super) fn rerun(
         let keep = &|files: &[(String, Vec<u8>)]| keep(&[kept.clone(), placed(files, folder)?].concat());
         let (record, unfinished) = (None, &unfinished_in(dir, folder));
         let settings = SearchSettings {
-            catalogs,
-            overlay,
+            setup,
             dir: &results,
             keep,
             unfinished,
             how,
             supplements: &SupplementArgs::default(),
             record,
-            log,
         };
         match search(asked, &settings) {
             Ok(written) => {

@@ -24,6 +24,13 @@ pub(super) struct Results {
     files: Option<BTreeMap<String, String>>,
 }
 
+/// A file of a result as text.
+pub(super) struct TextFile {
+    /// Path of the file, for messages.
+    pub path: String,
+    pub text: String,
+}
+
 impl Results {
     /// Opens the result in a folder. A file may be missing, for instance in a partial copy. That is an error only
     /// when the file is read.
@@ -107,14 +114,16 @@ impl Results {
         self.has(name) && self.folder.join(name).exists()
     }
 
-    /// The path of a file of the result, for messages, and the text of the file.
+    /// A file of the result as text.
     ///
     /// # Errors
     /// The same errors as of [`Results::read`], or the file is not UTF-8.
-    pub(super) fn text(&self, name: &str) -> Result<(String, String), Failure> {
-        let file = self.folder.join(name).display().to_string();
-        let text = String::from_utf8(self.read(name)?);
-        Ok((file.clone(), text.map_err(|e| Failure::File(format!("{file}: {e}")))?))
+    pub(super) fn text(&self, name: &str) -> Result<TextFile, Failure> {
+        let path = self.folder.join(name).display().to_string();
+        match String::from_utf8(self.read(name)?) {
+            Ok(text) => Ok(TextFile { path, text }),
+            Err(e) => Err(Failure::File(format!("{path}: {e}"))),
+        }
     }
 
     /// A front of the result, from the file of this name.

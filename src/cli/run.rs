@@ -5,12 +5,14 @@ use super::corrections;
 use super::exit::Answer;
 use super::extra_files::{another_stands, say_missing};
 use super::failure::Failure;
-use super::finished::{Written, catalogs_hash, facts_of, front_of_material, is_front_of_material, pretty};
-use super::log::Log;
+use super::finished::{
+    Facts, Written, catalogs_hash, facts_of, front_of_material, is_front_of_material, pretty,
+};
 use super::manifest::{FRONT, PAGE, PICTURE, RUN, SHARD, STUDY, SUMMARY};
 use super::progress::Record;
 use super::result_folder::{ResultFolder, unfinished_in};
 use super::search::{SearchArgs, SearchSettings, search};
+use super::setup::Setup;
 use super::shard::{run_shard, shard_of};
 use super::shard_files::{CANDIDATES, folder_of};
 use super::stop::refuse_if_stopped;
@@ -206,12 +208,7 @@ fn mass_limit(text: &str) -> Result<f64, String> {
 }
 
 /// Runs `armwright run`: writes the result, and returns the text to print.
-pub(super) fn run(
-    args: &RunArgs,
-    catalogs: &Catalogs,
-    overlay: Option<&Path>,
-    log: Log,
-) -> Result<Answer, Failure> {
+pub(super) fn run(args: &RunArgs, setup: Setup) -> Result<Answer, Failure> {
     if NAMES.contains(&args.study.as_str()) {
         let useless = args.options_of_a_search();
         if !useless.is_empty() {
@@ -221,29 +218,24 @@ pub(super) fn run(
                 useless.join(", ")
             )));
         }
-        return run_paper(args, catalogs, log).map(Answer::from);
+        return run_paper(args, setup).map(Answer::from);
     }
-    let asked = args.asked(catalogs)?;
+    let asked = args.asked(setup.catalogs)?;
     if let Some(shard) = args.shard {
-        return run_part(args, shard, &asked, (catalogs, overlay), log);
+        return run_part(args, shard, &asked, setup);
     }
     if asked.study.balance_choices > 1 {
-        return run_each_choice(args, &asked, (catalogs, overlay), log);
+        return run_each_choice(args, &asked, setup);
     }
     let dir = args.out.clone().unwrap_or_else(|| in_results(&args.folder(&asked.study)));
-    let written = search_into(args, &args.search, (&dir, &asked), (catalogs, overlay), log)?;
+    let written = search_into(args, &args.search, &dir, &asked, setup)?;
     let applied = corrections::to_text(&asked.corrections);
     let text = format!("{}{applied}\n{}{}", written.terminal, told(&dir, &written.files), written.timing);
     Ok(Answer { text, exit: written.exit })
 }
 
 /// Runs a study that leaves values of springs or counterweights open.
-fn run_each_choice(
-    args: &RunArgs,
-    asked: &Asked,
-    (catalogs, overlay): (&Catalogs, Option<&Path>),
-    log: Log,
-) -> Result<Answer, Failure> {
+fn run_each_choice(args: &RunArgs, asked: &Asked, setup: Setup) -> Result<Answer, Failure> {
     if args.progress.is_some() {
         let why = "each choice of springs and counterweights is a search of its own";
         return Err(Failure::Usage(format!("--progress does not go with this study: {why}")));
@@ -253,19 +245,19 @@ fn run_each_choice(
     // the text of each choice comes from the text of the study, which has the effects that the user gives
     let search = |how: &SearchArgs, dir: &Path, study: Study, text: String| {
         let asked = Asked { study, text, corrections: asked.corrections.clone() };
-        search_into(args, how, (dir, &asked), (catalogs, overlay), log)
+        search_into(args, how, dir, &asked, setup)
     };
     let further = format!("{:?} {:?}", args.supplements, args.effects);
-    run_choices(asked, &dir, &Each { how: &args.search, further, search: &search }, catalogs, log)
+    run_choices(asked, &dir, &Each { how: &args.search, further, search: &search }, setup.catalogs, setup.log)
 }
 
 /// Searches a study in the way `how` and writes its result to a folder.
 fn search_into(
     args: &RunArgs,
     how: &SearchArgs,
-    (dir, asked): (&Path, &Asked),
-    (catalogs, overlay): (&Catalogs, Option<&Path>),
-    log: Log,
+    dir: &Path,
+    asked: &Asked,
+    setup: Setup,
 ) -> Result<Written, Failure> {
     let planned = args.planned(dir, asked)?;
     // if the folder cannot be written, the run fails now and not after the search
@@ -274,21 +266,14 @@ fn search_into(
     let record = args.record(dir, &planned, unfinished)?;
     let (supplements, record) = (&args.supplements, record.as_ref());
     let keep = |files: &[(String, Vec<u8>)]| folder.publish(files);
-    let settings =
-        SearchSettings { catalogs, overlay, dir, keep: &keep, unfinished, how, supplements, record, log };
+    let settings = SearchSettings { setup, dir, keep: &keep, unfinished, how, supplements, record };
     let written = search(asked, &settings);
     folder.settle(written.as_ref().map(|written| written.exit))?;
     written
 }
 
 /// Searches one part of the designs.
-fn run_part(
-    args: &RunArgs,
-    shard: Shard,
-    asked: &Asked,
-    (catalogs, overlay): (&Catalogs, Option<&Path>),
-    log: Log,
-) -> Result<Answer, Failure> {
+fn run_part(args: &RunArgs, shard: Shard, asked: &Asked, setup: Setup) -> Result<Answer, Failure> {
     if args.effects.is_some() {
         let hint = "run the study.json of a run with --effects, which has them, in shards";
         return Err(Failure::Usage(format!("--shard does not go with --effects: {hint}")));
@@ -302,7 +287,7 @@ fn run_part(
     words.extend(args.mass_max_kg.into_iter().flat_map(|kg| ["--mass-max-kg".into(), kg.to_string()]));
     words.extend(args.search.words());
     words.extend(args.incumbents.iter().flat_map(|dir| ["--incumbents".into(), dir.display().to_string()]));
-    words.extend(overlay.into_iter().flat_map(|dir| ["--catalogs".into(), dir.display().to_string()]));
+    words.extend(setup.overlay.into_iter().flat_map(|dir| ["--catalogs".into(), dir.display().to_string()]));
     let shards = in_results(&args.folder(&asked.study)).join("shards");
     let dir = args.out.clone().unwrap_or_else(|| folder_of(&shards, shard));
     args.refuse_record_over_input()?;
@@ -312,24 +297,14 @@ fn run_part(
     let record = args.record(&dir, &planned, unfinished)?;
     let (how, supplements, record) = (&args.search, &args.supplements, record.as_ref());
     let keep = |files: &[(String, Vec<u8>)]| folder.publish(files);
-    let settings = SearchSettings {
-        catalogs,
-        overlay,
-        dir: &dir,
-        keep: &keep,
-        unfinished,
-        how,
-        supplements,
-        record,
-        log,
-    };
-    let answer = run_shard(asked, (shard, &args.incumbents), words, &settings);
+    let settings = SearchSettings { setup, dir: &dir, keep: &keep, unfinished, how, supplements, record };
+    let answer = run_shard(asked, shard, &args.incumbents, words, &settings);
     folder.settle(answer.as_ref().map(|answer| answer.exit))?;
     answer
 }
 
 /// Runs one of the studies of the paper, which are computed without a search.
-fn run_paper(args: &RunArgs, catalogs: &Catalogs, log: Log) -> Result<String, Failure> {
+fn run_paper(args: &RunArgs, Setup { catalogs, log, .. }: Setup) -> Result<String, Failure> {
     let dir = args.out.clone().unwrap_or_else(|| in_results(&args.study));
     let planned = [RUN, SUMMARY, PAGE];
     let folder = ResultFolder::open(&dir, RUN, &planned)?;
@@ -373,7 +348,7 @@ fn header_words(column: &str) -> String {
 /// The page, for a browser, of one of the paper's studies, with the pictures and tables of the study.
 fn paper_page(study: &str, files: &[(String, Vec<u8>)], run: &Value) -> DocumentPage {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    let [facts, timing] = facts_of(run);
+    let Facts { lasting: facts, timing } = facts_of(run);
     let ending = |end: &'static str| files.iter().filter_map(move |(n, b)| Some((n.strip_suffix(end)?, b)));
     DocumentPage {
         title: study.to_string(),

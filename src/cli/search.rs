@@ -3,14 +3,15 @@
 use super::exit::Exit;
 use super::extra_files::say_missing;
 use super::failure::Failure;
-use super::finished::{Finished, FoundExactly, Keep, NOTHING_ELSE, Written, catalogs_hash};
+use super::finished::{Finished, FoundExactly, Keep, NOTHING_ELSE, Visited, Written, catalogs_hash};
 use super::log::Log;
 use super::manifest::hash;
 use super::progress::{Record, Watch};
+use super::setup::Setup;
 use super::stop::stopped_by_signal;
 use super::supplements::SupplementArgs;
 use super::time_limit::time_limit;
-use super::unfinished::Unfinished;
+use super::unfinished::{Earlier, Unfinished};
 use crate::catalog::Catalogs;
 use crate::exact::Known;
 use crate::report::certificate::certificate_words;
@@ -143,6 +144,11 @@ impl SearchArgs {
         self.fresh
     }
 
+    /// What becomes of a state that an earlier process saved.
+    pub(super) fn earlier(&self) -> Earlier {
+        if self.fresh { Earlier::Removed } else { Earlier::Read }
+    }
+
     /// The names of the options on method, time limit and gap, and whether the user gives each.
     pub(super) fn given(&self) -> [(&'static str, bool); 3] {
         [
@@ -169,9 +175,7 @@ pub(super) fn part_or_none(text: &str) -> Result<f64, String> {
 
 /// The settings with which a study is searched.
 pub(super) struct SearchSettings<'a> {
-    pub catalogs: &'a Catalogs,
-    /// Folder with the user's catalog rows, which are added to the built-in ones; `None` if there is none.
-    pub overlay: Option<&'a Path>,
+    pub setup: Setup<'a>,
     /// Folder of the results.
     pub dir: &'a Path,
     /// Function that writes the files of the result.
@@ -184,8 +188,6 @@ pub(super) struct SearchSettings<'a> {
     pub supplements: &'a SupplementArgs,
     /// File in which the progress is recorded, if the user asks for it.
     pub record: Option<&'a Record>,
-    /// Log for messages and progress.
-    pub log: Log,
 }
 
 /// Searches a study and writes its result.
@@ -201,7 +203,7 @@ pub(super) fn search(asked: &Asked, settings: &SearchSettings) -> Result<Written
             asked.study.name
         )));
     }
-    let written = match settings.how.kind(&asked.study, settings.catalogs, settings.log)? {
+    let written = match settings.how.kind(&asked.study, settings.setup.catalogs, settings.setup.log)? {
         SearchMethod::Exhaustive => visit_all(asked, settings),
         SearchMethod::Exact => search_exactly(asked, settings),
     }?;
@@ -222,18 +224,19 @@ impl SearchSettings<'_> {
             "schema_version": 1,
             "study": asked.study.name,
             "study_hash": hash(asked.text.as_bytes()),
-            "catalogs_hash": catalogs_hash(self.catalogs),
+            "catalogs_hash": catalogs_hash(self.setup.catalogs),
             "tool_version": env!("CARGO_PKG_VERSION"),
             "flags": flags,
         });
-        Unfinished::open(self.unfinished, search, self.how.fresh, self.log)
+        Unfinished::open(self.unfinished, search, self.how.earlier(), self.setup.log)
     }
 }
 
 /// Searches a study by visiting every design.
 fn visit_all(asked: &Asked, settings: &SearchSettings) -> Result<Written, Failure> {
     let study = &asked.study;
-    let SearchSettings { catalogs, overlay, dir, keep, supplements, record, log, .. } = *settings;
+    let SearchSettings { setup, dir, keep, supplements, record, .. } = *settings;
+    let Setup { catalogs, log, .. } = setup;
     let problem = ArmProblem::new(&study.space, catalogs);
     let stop = stopped_by_signal();
     let unfinished = settings.go_on(asked, json!({"search": "exhaustive"}))?;
@@ -267,7 +270,8 @@ fn visit_all(asked: &Asked, settings: &SearchSettings) -> Result<Written, Failur
     if exit == Exit::Done {
         say_search_is_over(log, elapsed_s);
     }
-    let finished = Finished::visit(asked, (&problem, &outcome), elapsed_s, (catalogs, overlay), (dir, log));
+    let visited = Visited { problem: &problem, outcome: &outcome, elapsed_s };
+    let finished = Finished::visit(asked, visited, dir, setup);
     let written = finished.keep(supplements, stop, keep)?;
     Ok(match exit {
         Exit::Done => written.after_search(log),
@@ -311,7 +315,8 @@ fn stopped_words(outcome: &StudyOutcome) -> String {
 /// Searches a study by the exact method, which does not visit every design.
 fn search_exactly(asked: &Asked, settings: &SearchSettings) -> Result<Written, Failure> {
     let Asked { study, text, corrections } = asked;
-    let SearchSettings { catalogs, overlay, dir, keep, how, supplements, record, log, .. } = *settings;
+    let SearchSettings { setup, dir, keep, how, supplements, record, .. } = *settings;
+    let Setup { catalogs, log, .. } = setup;
     let stop = stopped_by_signal();
     let gap = how.gap_of(study);
     let unfinished = settings.go_on(asked, json!({"search": "exact", "gap": gap}))?;
@@ -343,10 +348,8 @@ fn search_exactly(asked: &Asked, settings: &SearchSettings) -> Result<Written, F
                 near: near.as_ref(),
                 exact: Some(FoundExactly { boxes, gap, ties_listed }),
                 elapsed_s: started.elapsed().as_secs_f64(),
-                overlay,
-                catalogs,
+                setup,
                 dir,
-                log,
             };
             if !is_interrupted {
                 say_search_is_over(log, finished.elapsed_s);

@@ -47,11 +47,12 @@ pub(super) const MOST_SHARDS: u32 = 100_000;
 /// The search does not suit the study, the shard cannot be written, or the user stops it.
 pub(super) fn run_shard(
     asked: &Asked,
-    (shard, incumbents): (Shard, &[PathBuf]),
+    shard: Shard,
+    incumbents: &[PathBuf],
     words: Vec<String>,
     settings: &SearchSettings,
 ) -> Result<Answer, Failure> {
-    let (method, designs_total) = settings.how.check_shard(&asked.study, settings.catalogs)?;
+    let (method, designs_total) = settings.how.check_shard(&asked.study, settings.setup.catalogs)?;
     let flags = match method {
         SearchMethod::Exhaustive => json!({"search": "exhaustive"}),
         SearchMethod::Exact => json!({"search": "exact", "gap": settings.how.gap_of(&asked.study)}),
@@ -61,7 +62,7 @@ pub(super) fn run_shard(
         "study": asked.study.name,
         "tool_version": env!("CARGO_PKG_VERSION"),
         "study_hash": hash(asked.text.as_bytes()),
-        "catalogs_hash": catalogs_hash(settings.catalogs),
+        "catalogs_hash": catalogs_hash(settings.setup.catalogs),
         "flags": flags,
         "designs_total": count(designs_total),
         "shard": [shard.number, shard.of],
@@ -146,10 +147,10 @@ fn visit(asked: &Asked, shard: Shard, settings: &SearchSettings) -> Result<(Sear
     let (stop, unfinished) = (stopped_by_signal(), settings.go_on(asked, flags)?);
     let started = unfinished.started();
     let watch = |total: u128, visited: &(dyn Fn() -> u64 + Sync), finished: &AtomicBool| {
-        Watch::new(started, settings.record, settings.log).designs(total, visited, finished);
+        Watch::new(started, settings.record, settings.setup.log).designs(total, visited, finished);
     };
     let (swept, range) =
-        sweep_shard(&asked.study, settings.catalogs, shard, stop, unfinished.resume(), watch)
+        sweep_shard(&asked.study, settings.setup.catalogs, shard, stop, unfinished.resume(), watch)
             .map_err(|_| unfinished.damaged())?;
     if swept.status == Status::Interrupted {
         return Err(stopped(shard));
@@ -177,9 +178,9 @@ fn search_exactly(
     let (stop, unfinished) = (stopped_by_signal(), settings.go_on(asked, flags)?);
     let started = unfinished.started();
     let watch = |known: &(dyn Fn() -> Known + Sync), finished: &AtomicBool| {
-        Watch::new(started, settings.record, settings.log).search(known, finished);
+        Watch::new(started, settings.record, settings.setup.log).search(known, finished);
     };
-    let study = (&asked.study, settings.catalogs);
+    let study = (&asked.study, settings.setup.catalogs);
     let found = exact_shard(study, (shard, gap), &given.found, stop, unfinished.resume(), watch)
         .map_err(|_| unfinished.damaged())?;
     let is_whole = found.len() == fronts_of(&asked.study.space, gap).len();

@@ -113,9 +113,18 @@ fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32], is_trial: bool) 
     out
 }
 
-/// The slot (place in the order in which the arm is built) of the joint named `joint`, the index of its piece, and the
-/// arm outboard of it. Fails if this arm breaks a limit.
-fn before(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<(usize, usize, Partial), Failure> {
+/// A design on the way to one of its joints.
+struct AtJoint {
+    /// Place of the joint in the order in which the arm is built.
+    slot: usize,
+    /// Index of the joint's piece.
+    piece: usize,
+    /// The arm outboard of the joint.
+    outboard: Partial,
+}
+
+/// The design `chosen` at the joint named `joint`. Fails if the arm outboard of it breaks a limit.
+fn before(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<AtJoint, Failure> {
     let is_joint = |p: &&SpacePiece| matches!(p, SpacePiece::Joint(_) | SpacePiece::Prismatic(_));
     let pieces = &problem.space().pieces;
     let unknown = || {
@@ -126,7 +135,7 @@ fn before(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<(usize, u
     let mut found = None;
     let walked = problem.walk(chosen, |slot, partial| {
         if problem.piece_of_slot(slot) == piece {
-            found = Some((slot, piece, partial.clone()));
+            found = Some(AtJoint { slot, piece, outboard: partial.clone() });
         }
     });
     match (found, walked) {
@@ -147,7 +156,7 @@ fn sized<'p, 'c>(
 }
 
 fn explain(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<String, Failure> {
-    let (slot, piece, partial) = before(problem, chosen, joint)?;
+    let AtJoint { slot, piece, outboard: partial } = before(problem, chosen, joint)?;
     let table = &sized(problem, piece, joint)?.table;
     let demand = problem.demand_at(&partial, slot);
     let mut out = format!("{}\n{}", demand_line(joint, &demand, table), bearing_line(joint, &demand.bearing));
@@ -165,7 +174,7 @@ fn explain(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<String, 
 const MASS: &str = "mass kg (with extras)";
 
 fn all_fits(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<String, Failure> {
-    let (slot, piece, partial) = before(problem, chosen, joint)?;
+    let AtJoint { slot, piece, outboard: partial } = before(problem, chosen, joint)?;
     let table = &sized(problem, piece, joint)?.table;
     let demand = problem.demand_at(&partial, slot);
     let mut out = format!("{}\n", demand_line(joint, &demand, table));

@@ -56,14 +56,22 @@ struct Due {
     has_failed: bool,
 }
 
+/// What becomes of a state that an earlier process saved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Earlier {
+    /// The search goes on from it.
+    Read,
+    /// It is removed, and the search begins anew.
+    Removed,
+}
+
 impl Unfinished {
-    /// Opens the file of a state. If it exists, the state is read. `search` identifies the search by the keys
-    /// `study_hash`, `catalogs_hash`, `tool_version` and `flags`. If `is_fresh`, an existing state is removed instead
-    /// of read.
+    /// Opens the file of a state. If it exists, the state is read or removed, as `earlier` says. `search` identifies
+    /// the search by the keys `study_hash`, `catalogs_hash`, `tool_version` and `flags`.
     ///
     /// # Errors
     /// The state belongs to another search, is damaged, or cannot be read.
-    pub(super) fn open(path: &Path, search: Value, is_fresh: bool, log: Log) -> Result<Self, Failure> {
+    pub(super) fn open(path: &Path, search: Value, earlier: Earlier, log: Log) -> Result<Self, Failure> {
         let every = keep_every();
         let due = Mutex::new(Due { at: Instant::now() + every, since: None, every, has_failed: false });
         let (path, started) = (path.to_path_buf(), Instant::now());
@@ -71,7 +79,7 @@ impl Unfinished {
         match std::fs::read(&out.path) {
             Err(e) if e.kind() == ErrorKind::NotFound => return Ok(out),
             Err(e) => return Err(Failure::file(&out.path, "read", &e)),
-            Ok(_) if is_fresh => remove(&out.path)?,
+            Ok(_) if earlier == Earlier::Removed => remove(&out.path)?,
             Ok(bytes) => out.go_on_from(&bytes)?,
         }
         Ok(out)
@@ -82,7 +90,8 @@ impl Unfinished {
     /// # Errors
     /// The state cannot be read or removed.
     pub(super) fn open_or_begin(path: &Path, search: &Value, log: Log) -> Result<Self, Failure> {
-        Self::open(path, search.clone(), false, log).or_else(|_| Self::open(path, search.clone(), true, log))
+        let open = |earlier| Self::open(path, search.clone(), earlier, log);
+        open(Earlier::Read).or_else(|_| open(Earlier::Removed))
     }
 
     fn go_on_from(&mut self, bytes: &[u8]) -> Result<(), Failure> {
@@ -198,19 +207,19 @@ mod tests {
     fn a_state_is_read_by_the_same_search_alone_and_only_if_it_is_whole() {
         let here = tempfile::tempdir().expect("a folder");
         let path = here.path().join("x.unfinished");
-        let open = |study: &str, fresh| Unfinished::open(&path, search(study), fresh, Log::default());
-        let first = open("a", false).expect("nothing there");
+        let open = |study: &str, earlier| Unfinished::open(&path, search(study), earlier, Log::default());
+        let first = open("a", Earlier::Read).expect("nothing there");
         assert!(first.from.is_none() && !first.is_due());
         first.keep(b"one\ntwo");
-        assert_eq!(open("a", false).expect("the same").from.as_deref(), Some(&b"one\ntwo"[..]));
-        let refused = open("b", false).err().expect("another study");
+        assert_eq!(open("a", Earlier::Read).expect("the same").from.as_deref(), Some(&b"one\ntwo"[..]));
+        let refused = open("b", Earlier::Read).err().expect("another study");
         assert!(refused.exit_code() == 2 && refused.to_string().contains("--fresh"), "{refused}");
         let whole = std::fs::read(&path).expect("a state");
         for cut in 0..whole.len() {
             std::fs::write(&path, &whole[..cut]).expect("written");
-            assert_eq!(open("a", false).err().expect("damaged").exit_code(), 7, "{cut} bytes");
+            assert_eq!(open("a", Earlier::Read).err().expect("damaged").exit_code(), 7, "{cut} bytes");
         }
-        assert!(open("b", true).expect("anew").from.is_none());
+        assert!(open("b", Earlier::Removed).expect("anew").from.is_none());
         assert!(!path.exists());
     }
 }

@@ -3,6 +3,7 @@
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
 use super::log::{Log, LogForm};
+use super::setup::Setup;
 use super::stop::listen;
 use super::{
     analyze, capacity, catalog, check, compare, design, export, front, import, merge, new, predict,
@@ -141,17 +142,23 @@ pub fn run(cli: Cli) -> Result<Answer, Failure> {
     let overlay = cli.catalogs.as_deref();
     let catalogs = Catalogs::load(overlay).map_err(Failure::catalog);
     let text = match cli.verb {
-        Verb::Run(args) => return super::run::run(&args, &catalogs?, overlay, log),
+        Verb::Run(args) => {
+            return super::run::run(&args, Setup { catalogs: &catalogs?, overlay, log });
+        }
         Verb::Front(args) => return front::run(&args, &catalogs?, log),
         Verb::Check(args) => return check::run(&args, &catalogs?),
         Verb::Completions(args) => Ok(shell::completions(&args, Cli::command())),
         Verb::Man(args) => shell::man(&args, Cli::command()),
         Verb::Schema(args) => schema::run(&args),
-        Verb::Reconcile(args) => return reconcile::run(&args, &catalogs?, overlay, log),
+        Verb::Reconcile(args) => {
+            return reconcile::run(&args, Setup { catalogs: &catalogs?, overlay, log });
+        }
         Verb::Catalog(args) => catalog::run(&args, overlay),
         Verb::Studies => Ok(crate::study::list()),
         Verb::Size(args) => size::run(&args, &catalogs?, log),
-        Verb::Merge(args) => return merge::merge(&args, &catalogs?, overlay, log),
+        Verb::Merge(args) => {
+            return merge::merge(&args, Setup { catalogs: &catalogs?, overlay, log });
+        }
         Verb::Status(args) => merge::status(&args),
         Verb::Slurm(args) => slurm::run(&args, &catalogs?, overlay),
         Verb::Capacity(args) => capacity::run(&args, &catalogs?),

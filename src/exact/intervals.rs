@@ -17,6 +17,14 @@ pub(super) const ROUNDING: f64 = 1e-12;
 /// Greatest depth to which a tree of drives is searched for drives that cannot carry a demand.
 const MOST_TREE_STEPS: usize = 6;
 
+/// Intervals of what the drive of a joint carries.
+struct Loads {
+    /// Greatest static torque \[N m\].
+    static_nm: [f64; 2],
+    /// Greatest inertia about the axis \[kg m²\].
+    inertia_kgm2: [f64; 2],
+}
+
 impl Problem<'_> {
     /// Computes every interval of a box, part by part from the tip inward, and writes it to `work`. Each node of
     /// `design_box` is replaced by the smallest node that contains all options which can carry the least load. `None`
@@ -64,7 +72,7 @@ impl Problem<'_> {
         node: &mut u32,
         work: &mut BoxWork,
     ) -> Option<()> {
-        let (static_nm, inertia_kgm2) = self.loads(piece, work);
+        let Loads { static_nm, inertia_kgm2 } = self.loads(piece, work);
         let bearing = self.bearing_loads(piece, work);
         let motion = sized.table.motion();
         let [narrowest, widest] = self.room(piece, work);
@@ -89,7 +97,7 @@ impl Problem<'_> {
         ladder: &Ladder,
         work: &mut BoxWork,
     ) -> Option<()> {
-        let (static_nm, inertia_kgm2) = self.loads(piece, work);
+        let Loads { static_nm, inertia_kgm2 } = self.loads(piece, work);
         let bearing = self.bearing_loads(piece, work);
         let [narrowest, widest] = self.room(piece, work);
         let room = [widest, narrowest];
@@ -136,9 +144,8 @@ impl Problem<'_> {
         Some(())
     }
 
-    /// Intervals of the greatest static torque on a joint over the sizing cases \[N m\] and of the greatest inertia
-    /// about its axis \[kg m²\].
-    fn loads(&self, piece: usize, work: &BoxWork) -> ([f64; 2], [f64; 2]) {
+    /// The loads on a joint over the sizing cases.
+    fn loads(&self, piece: usize, work: &BoxWork) -> Loads {
         let (mut static_nm, mut inertia_kgm2) = ([0.0f64; 2], [0.0f64; 2]);
         for (pose, weights) in self.poses.iter().zip(&work.weights).filter(|(p, _)| p.sizing) {
             let Some(row) = &pose.inertia_about[piece] else { continue };
@@ -152,7 +159,7 @@ impl Problem<'_> {
             }
         }
         let rounded = |[least, most]: [f64; 2]| [least * (1.0 - ROUNDING), most * (1.0 + ROUNDING)];
-        (rounded(static_nm), rounded(inertia_kgm2))
+        Loads { static_nm: rounded(static_nm), inertia_kgm2: rounded(inertia_kgm2) }
     }
 
     /// The least and the greatest loads on the output bearing of a joint, over the sizing cases; zero if this bearing

@@ -13,7 +13,7 @@ use super::keys::{ALL_JOINTS, HINGE, SLIDE};
 use crate::arm::bearing::Bearing;
 use crate::arm::file::{read_curve, read_joint_bearing};
 use crate::arm::joint_law::Curve;
-use crate::arm::prismatic::{Guide, Moves, Prismatic};
+use crate::arm::prismatic::{Elastic, Guide, Moves, Prismatic};
 use crate::catalog::Catalogs;
 use crate::input::json::{Document, Faults, Node};
 use serde_json::{Map, Value, json};
@@ -100,7 +100,7 @@ fn read_joint(name: &str, node: &Node, joints: &[MovingJoint], catalogs: &Catalo
     };
     let springs = match joint.slides {
         true => {
-            let (stiffness_n_per_m, guide, moves) = Prismatic::read_springs(&node.shaped(&SLIDE)?)?;
+            let Elastic { stiffness_n_per_m, guide, moves } = Prismatic::read_springs(&node.shaped(&SLIDE)?)?;
             GivenSprings::Slide { stiffness_n_per_m, guide, moves }
         }
         false => read_hinge(node, catalogs)?,

@@ -12,6 +12,7 @@ use super::snapshot::{Snapshot, Working};
 use super::time_step::{Moving, TimeStep};
 use super::tree::{Hinge, Node, Role, TreeOptions, mass_properties, tree};
 use super::xml::{Xml, numbers, triple};
+use crate::arm::body::RigidBody;
 use crate::arm::structure::JointAngle;
 use crate::mechanics::body_inertia;
 use nalgebra::{Matrix3, Vector3};
@@ -123,14 +124,14 @@ fn moving<'n>(
         _ => None,
     };
     let inertia = |node: &Node| {
-        let (mass_kg, cg_m, inertia_kgm2) = least.written(node);
+        let RigidBody { mass_kg, cg_m, inertia_kgm2 } = least.written(node);
         body_inertia(mass_kg, &cg_m, &inertia_kgm2)
     };
     Moving {
         nodes,
         inertias: nodes.iter().map(inertia).collect(),
         armatures_kgm2: hinges.iter().map(|hinge| armature_kgm2(hinge, motors).unwrap_or(0.0)).collect(),
-        positions: positions(snapshot, nodes, false),
+        positions: positions(snapshot, nodes, Springs::Straight),
         springs: hinges.iter().enumerate().filter_map(spring).collect(),
     }
 }
@@ -148,7 +149,7 @@ fn body(
     for hinge in &node.hinges {
         xml.leaf("joint", &joint(hinge, &node.origin_m, motors));
     }
-    let (mass_kg, cg_m, inertia) = least.written(node);
+    let RigidBody { mass_kg, cg_m, inertia_kgm2: inertia } = least.written(node);
     let full = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(|at| inertia[at]);
     xml.leaf(
         "inertial",
@@ -299,16 +300,23 @@ fn actuators(xml: &mut Xml, snapshot: &Snapshot, motors: &BTreeMap<String, Motor
 /// Writes the pose of the case as two keyframes. In the first, all springs are undeflected; frequencies and torques are
 /// compared in it. In the second, they are deflected by the load of the case.
 fn keyframes(xml: &mut Xml, snapshot: &Snapshot, nodes: &[Node]) {
-    let position = |deflected: bool| numbers(&positions(snapshot, nodes, deflected));
+    let position = |springs: Springs| numbers(&positions(snapshot, nodes, springs));
     xml.open("keyframe", &[]);
-    xml.leaf("key", &[("name", "pose".into()), ("qpos", position(false))]);
-    xml.leaf("key", &[("name", "deflected".into()), ("qpos", position(true))]);
+    xml.leaf("key", &[("name", "pose".into()), ("qpos", position(Springs::Straight))]);
+    xml.leaf("key", &[("name", "deflected".into()), ("qpos", position(Springs::Deflected))]);
     xml.close();
 }
 
-/// The position of every hinge in the pose of the case \[rad, m\]. If `deflected`, the springs are deflected by the
-/// load of the case; otherwise they are undeflected.
-fn positions(snapshot: &Snapshot, nodes: &[Node], deflected: bool) -> Vec<f64> {
+/// Whether springs are straight or deflected by the load of the case.
+#[derive(Clone, Copy, PartialEq)]
+enum Springs {
+    Straight,
+    Deflected,
+}
+
+/// The position of every hinge in the pose of the case \[rad, m\].
+fn positions(snapshot: &Snapshot, nodes: &[Node], springs: Springs) -> Vec<f64> {
+    let deflected = springs == Springs::Deflected;
     let (driven, pose) = (snapshot.case_joints(), snapshot.pose_si());
     let hinges = || nodes.iter().flat_map(|node| &node.hinges);
     let drive = |hinge: &Hinge| match hinge.role {
@@ -334,8 +342,8 @@ fn positions(snapshot: &Snapshot, nodes: &[Node], deflected: bool) -> Vec<f64> {
 
 /// Whether a solid can have the inertia of this body: no principal moment exceeds the sum of the other two.
 fn is_solid(node: &Node, least: &Least) -> bool {
-    let (mass_kg, _, inertia) = mass_properties(&node.inertia);
-    let moments = least.raised(mass_kg, inertia).symmetric_eigenvalues();
+    let RigidBody { mass_kg, inertia_kgm2, .. } = mass_properties(&node.inertia);
+    let moments = least.raised(mass_kg, inertia_kgm2).symmetric_eigenvalues();
     2.0 * moments.max() <= moments.sum() * (1.0 + 1e-9)
 }
 
@@ -358,13 +366,13 @@ impl Least {
         Self { mass_kg: LEAST_MASS * if arm_kg > 0.0 { arm_kg } else { 1.0 } }
     }
 
-    /// Mass, centre of gravity, and inertia about the centre of gravity of a body as the file has them.
-    fn written(&self, node: &Node) -> (f64, Vector3<f64>, Matrix3<f64>) {
-        let (mass_kg, cg_m, inertia_kgm2) = mass_properties(&node.inertia);
+    /// A body as the file has it.
+    fn written(&self, node: &Node) -> RigidBody {
+        let RigidBody { mass_kg, cg_m, inertia_kgm2 } = mass_properties(&node.inertia);
         let inertia_kgm2 = self.raised(mass_kg, inertia_kgm2);
         match mass_kg > 0.0 {
-            true => (mass_kg, cg_m, inertia_kgm2),
-            false => (self.mass_kg, node.origin_m, inertia_kgm2),
+            true => RigidBody { mass_kg, cg_m, inertia_kgm2 },
+            false => RigidBody { mass_kg: self.mass_kg, cg_m: node.origin_m, inertia_kgm2 },
         }
     }
 

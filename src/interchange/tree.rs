@@ -13,6 +13,7 @@
 use super::free_name::FreeNames;
 use super::snapshot::{Snapshot, Working};
 use crate::arm::LinkModel;
+use crate::arm::body::RigidBody;
 use crate::arm::prismatic::PrismaticPiece;
 use crate::arm::structure::{Beam, LinkPiece, Piece};
 use crate::mechanics::beam::{line_stiffnesses, tube_inertia};
@@ -79,18 +80,19 @@ pub(crate) struct Node {
     pub rods: Vec<(Vector3<f64>, Vector3<f64>, f64)>,
 }
 
-/// Mass, centre of gravity, and inertia about the centre of gravity of a rigid body, computed from its inertia matrix
-/// about the world's origin.
-pub(crate) fn mass_properties(inertia: &Matrix6<f64>) -> (f64, Vector3<f64>, Matrix3<f64>) {
+/// A rigid body, computed from its inertia matrix about the world's origin.
+pub(crate) fn mass_properties(inertia: &Matrix6<f64>) -> RigidBody {
     let mass_kg = inertia[(0, 0)];
     if mass_kg == 0.0 {
-        return (0.0, Vector3::zeros(), inertia.fixed_view::<3, 3>(3, 3).into_owned());
+        let inertia_kgm2 = inertia.fixed_view::<3, 3>(3, 3).into_owned();
+        return RigidBody { mass_kg, cg_m: Vector3::zeros(), inertia_kgm2 };
     }
     let cg_m = Vector3::new(inertia[(1, 5)], -inertia[(0, 5)], inertia[(0, 4)]) / mass_kg;
     let cross = cg_m.cross_matrix();
     let about_cg = inertia.fixed_view::<3, 3>(3, 3) + mass_kg * cross * cross;
     let rounding_kgm2 = ROUNDING * inertia.fixed_view::<3, 3>(3, 3).amax();
-    (mass_kg, cg_m, without_rounding(0.5 * (about_cg + about_cg.transpose()), rounding_kgm2))
+    let inertia_kgm2 = without_rounding(0.5 * (about_cg + about_cg.transpose()), rounding_kgm2);
+    RigidBody { mass_kg, cg_m, inertia_kgm2 }
 }
 
 /// An inertia tensor without rounding errors. It was computed as the difference of two larger tensors, so its entries

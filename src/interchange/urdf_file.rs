@@ -65,6 +65,20 @@ fn stated_tensor(link: &Link) -> Matrix3<f64> {
     Matrix3::new(i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz)
 }
 
+/// Something wrong with a robot.
+struct Problem {
+    /// Name of the link, the joint or the robot.
+    of: String,
+    problem: String,
+    hint: &'static str,
+}
+
+impl Problem {
+    fn of(name: &str, problem: impl Into<String>, hint: &'static str) -> Self {
+        Self { of: name.into(), problem: problem.into(), hint }
+    }
+}
+
 impl UrdfTree {
     /// Reads a robot from the text of a URDF file. `file` is the name of the file in messages.
     ///
@@ -99,7 +113,7 @@ impl UrdfTree {
         })?;
         let tree = Self { name: robot.name, links: robot.links, joints: robot.joints };
         let faults: Vec<Fault> =
-            tree.problems().into_iter().map(|(name, problem, hint)| fault(&name, problem, hint)).collect();
+            tree.problems().into_iter().map(|p| fault(&p.of, p.problem, p.hint)).collect();
         if faults.is_empty() { Ok(tree) } else { Err(Faults(faults)) }
     }
 
@@ -148,20 +162,20 @@ impl UrdfTree {
         links.filter(|link| least_moment_beyond_rounding(link).is_some()).map(|l| l.name.as_str()).collect()
     }
 
-    /// All faults of the robot, each with the name of the link or joint, the problem and the advice.
-    fn problems(&self) -> Vec<(String, String, &'static str)> {
+    /// All faults of the robot.
+    fn problems(&self) -> Vec<Problem> {
         let mut out = Vec::new();
         if self.links.is_empty() {
-            out.push((self.name.clone(), "has no link".into(), "give at least one <link>"));
+            out.push(Problem::of(&self.name, "has no link", "give at least one <link>"));
         }
-        let names = |kind: &str, names: Vec<&String>, out: &mut Vec<_>| {
+        let names = |kind: &str, names: Vec<&String>, out: &mut Vec<Problem>| {
             for (i, name) in names.iter().enumerate() {
                 if names[..i].contains(name) {
                     let problem = format!("the name of the {kind} is taken");
-                    out.push((name.to_string(), problem, "give each a name of its own"));
+                    out.push(Problem::of(name, problem, "give each a name of its own"));
                 }
                 if let Some((problem, hint)) = unfit_name(name) {
-                    out.push((name.to_string(), problem, hint));
+                    out.push(Problem::of(name, problem, hint));
                 }
             }
         };
@@ -173,34 +187,27 @@ impl UrdfTree {
         out
     }
 
-    fn joint_problems(&self, joint: &Joint, out: &mut Vec<(String, String, &'static str)>) {
+    fn joint_problems(&self, joint: &Joint, out: &mut Vec<Problem>) {
         for end in [&joint.parent.link, &joint.child.link] {
             if self.link(end).is_none() {
-                out.push((
-                    joint.name.clone(),
-                    format!("names the link \"{end}\", which is not in the file"),
-                    "",
-                ));
+                let problem = format!("names the link \"{end}\", which is not in the file");
+                out.push(Problem::of(&joint.name, problem, ""));
             }
         }
         let axis = Vector3::from(joint.axis.xyz.0);
         if moves(joint) && !(axis.norm() > 0.0 && axis.norm().is_finite()) {
-            out.push((
-                joint.name.clone(),
-                "has an axis without direction".into(),
-                "give <axis xyz=\"0 0 1\"/>",
-            ));
+            out.push(Problem::of(&joint.name, "has an axis without direction", "give <axis xyz=\"0 0 1\"/>"));
         }
         pose_problems(&joint.name, &joint.origin, out);
         let mimic_numbers = joint.mimic.iter().flat_map(|mimic| [mimic.multiplier, mimic.offset]).flatten();
         if mimic_numbers.into_iter().any(|number| !number.is_finite()) {
-            out.push((joint.name.clone(), "has a multiplier or an offset that is no number".into(), ""));
+            out.push(Problem::of(&joint.name, "has a multiplier or an offset that is no number", ""));
         }
         if let Some(mimic) = &joint.mimic
             && !self.joints.iter().any(|other| other.name == mimic.joint)
         {
             let problem = format!("mimics \"{}\", which is no joint of the file", mimic.joint);
-            out.push((joint.name.clone(), problem, "name a joint, or remove <mimic>"));
+            out.push(Problem::of(&joint.name, problem, "name a joint, or remove <mimic>"));
         }
         let circle = self.mimics_from(joint);
         // each circle is reported once, at its joint that comes first in the file
@@ -208,7 +215,7 @@ impl UrdfTree {
         if first.is_some_and(|first| first.name == joint.name) {
             let way = [&circle[..], &[joint.name.as_str()]].concat();
             let problem = format!("mimics itself: {}", way.join(" mimics "));
-            out.push((joint.name.clone(), problem, "remove the <mimic> of the joint that has a motor"));
+            out.push(Problem::of(&joint.name, problem, "remove the <mimic> of the joint that has a motor"));
         }
     }
 
@@ -231,13 +238,13 @@ impl UrdfTree {
 
     /// Checks that the links form a tree: exactly one link has no parent, all others have one, and every path leads
     /// to the root.
-    fn tree_problems(&self, out: &mut Vec<(String, String, &'static str)>) {
+    fn tree_problems(&self, out: &mut Vec<Problem>) {
         let mut parents: BTreeMap<&str, usize> = BTreeMap::new();
         self.joints.iter().for_each(|joint| *parents.entry(&joint.child.link).or_default() += 1);
         for (link, count) in &parents {
             if *count > 1 {
                 let problem = format!("is the child of {count} joints");
-                out.push((link.to_string(), problem, "a URDF is a tree: remove the joints that close loops"));
+                out.push(Problem::of(link, problem, "a URDF is a tree: remove the joints that close loops"));
             }
         }
         let roots: Vec<&str> =
@@ -246,7 +253,7 @@ impl UrdfTree {
             && !others.is_empty()
         {
             let problem = format!("is not the only root: {} have no parent either", others.join(", "));
-            out.push((roots[0].into(), problem, "join them to the tree by fixed joints"));
+            out.push(Problem::of(roots[0], problem, "join them to the tree by fixed joints"));
         }
         let circular = |link: &&Link| {
             let mut at = link.name.as_str();
@@ -261,7 +268,7 @@ impl UrdfTree {
             false
         };
         if let Some(link) = self.links.iter().find(circular) {
-            out.push((link.name.clone(), "is carried by itself: the joints go in a circle".into(), ""));
+            out.push(Problem::of(&link.name, "is carried by itself: the joints go in a circle", ""));
         }
     }
 }
@@ -270,14 +277,14 @@ impl UrdfTree {
 const FARTHEST_M: f64 = 1e4;
 
 /// Checks that an `<origin>` has a position and angles of a size that robots have.
-fn pose_problems(name: &str, origin: &Pose, out: &mut Vec<(String, String, &'static str)>) {
+fn pose_problems(name: &str, origin: &Pose, out: &mut Vec<Problem>) {
     let (xyz, rpy) = (origin.xyz.0, origin.rpy.0);
     if xyz.iter().chain(&rpy).any(|number| !number.is_finite()) {
         let problem = format!("has an origin that is no number: xyz {xyz:?}, rpy {rpy:?}");
-        out.push((name.to_string(), problem, "give lengths in metres and angles in radians"));
+        out.push(Problem::of(name, problem, "give lengths in metres and angles in radians"));
     } else if let Some(far_m) = xyz.iter().find(|number| number.abs() > FARTHEST_M) {
         let problem = format!("has an origin {far_m} m away; at most {FARTHEST_M} m are read");
-        out.push((name.to_string(), problem, "give lengths in metres"));
+        out.push(Problem::of(name, problem, "give lengths in metres"));
     }
 }
 
@@ -290,18 +297,15 @@ fn least_moment_beyond_rounding(link: &Link) -> Option<f64> {
 }
 
 /// Checks that the mass of a body and, unless it stands still, its principal moments are not negative.
-fn body_problems(link: &Link, stands_still: bool, out: &mut Vec<(String, String, &'static str)>) {
+fn body_problems(link: &Link, stands_still: bool, out: &mut Vec<Problem>) {
     pose_problems(&link.name, &link.inertial.origin, out);
     let mass_kg = link.inertial.mass.value;
     if !(mass_kg >= 0.0 && beyond_calculation(mass_kg).is_none()) {
-        out.push((
-            link.name.clone(),
-            format!("has a mass of {mass_kg} kg"),
-            "give a mass that is not negative",
-        ));
+        let problem = format!("has a mass of {mass_kg} kg");
+        out.push(Problem::of(&link.name, problem, "give a mass that is not negative"));
     }
     if stated_tensor(link).iter().any(|entry| !entry.is_finite()) {
-        out.push((link.name.clone(), "has an inertia that is no number".into(), ""));
+        out.push(Problem::of(&link.name, "has an inertia that is no number", ""));
         return;
     }
     if link.inertial.origin.xyz.0.iter().any(|number| !number.is_finite()) {
@@ -309,11 +313,8 @@ fn body_problems(link: &Link, stands_still: bool, out: &mut Vec<(String, String,
     }
     if let Some(least) = least_moment_beyond_rounding(link).filter(|_| !stands_still) {
         let problem = format!("has a negative principal moment of inertia, {least} kg m²");
-        out.push((
-            link.name.clone(),
-            problem,
-            "check the signs of ixy, ixz and iyz: they are entries of the tensor",
-        ));
+        let hint = "check the signs of ixy, ixz and iyz: they are entries of the tensor";
+        out.push(Problem::of(&link.name, problem, hint));
     }
 }
 

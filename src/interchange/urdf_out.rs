@@ -7,6 +7,7 @@ use super::free_name::FreeNames;
 use super::snapshot::Snapshot;
 use super::tree::{Node, TreeOptions, mass_properties, tree};
 use super::xml::{Xml, numbers, triple};
+use crate::arm::body::RigidBody;
 use crate::arm::structure::JointAngle;
 use crate::arm::{Arm, Joint};
 use nalgebra::Vector3;
@@ -65,7 +66,7 @@ fn link_name(number: usize, node: &Node, free: &mut FreeNames) -> String {
 /// Writes a link. One that has inertia and no mass gets the mass `least_kg` \[kg\], because a body has both.
 fn link(xml: &mut Xml, name: &str, node: &Node, least_kg: f64) {
     let name = [("name", name.to_string())];
-    let (mass_kg, cg_m, inertia) = mass_properties(&node.inertia);
+    let RigidBody { mass_kg, cg_m, inertia_kgm2: inertia } = mass_properties(&node.inertia);
     if mass_kg == 0.0 && inertia.amax() == 0.0 {
         return xml.leaf("link", &name);
     }

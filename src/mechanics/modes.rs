@@ -253,6 +253,13 @@ struct PlaneEnergy {
     within: [f64; 3],
 }
 
+/// The two parts of the motion of a section.
+#[derive(Clone, Copy)]
+enum Part {
+    Translation,
+    Rotation,
+}
+
 impl PlaneEnergy {
     /// Adds twice the kinetic energy of a rigid body that makes the motion `motion`.
     fn add_body(&mut self, body: &super::chain::Body, motion: &Twist) {
@@ -283,13 +290,25 @@ impl PlaneEnergy {
             let rate = beam.fields(xi) * &local;
             let velocity = rate.fixed_rows::<3>(0).into_owned();
             let spin = rate.fixed_rows::<3>(3).into_owned();
-            self.add_line(&own.frame, &velocity, &Vector3::new(along, across, across), weight, false);
-            self.add_line(&own.frame, &spin, &Vector3::new(polar, rotary_y, rotary_z), weight, true);
+            self.add_line(
+                &own.frame,
+                &velocity,
+                &Vector3::new(along, across, across),
+                weight,
+                Part::Translation,
+            );
+            self.add_line(
+                &own.frame,
+                &spin,
+                &Vector3::new(polar, rotary_y, rotary_z),
+                weight,
+                Part::Rotation,
+            );
         }
     }
 
-    /// Adds twice the kinetic energy at one Gauss point of a link: the energy of its translation or, if `rotation` is
-    /// true, of its rotation. `rate` is the velocity in the section frame `frame`, `density` the mass or inertia per
+    /// Adds twice the kinetic energy at one Gauss point of a link: the energy of its translation or of its rotation.
+    /// `rate` is the velocity in the section frame `frame`, `density` the mass or inertia per
     /// length. A rotation counts as motion in a plane if it is about the normal of the plane.
     fn add_line(
         &mut self,
@@ -297,14 +316,17 @@ impl PlaneEnergy {
         rate: &Vector3<f64>,
         density: &Vector3<f64>,
         weight: f64,
-        rotation: bool,
+        part: Part,
     ) {
         let energy = |r: &Vector3<f64>| weight * density.component_mul(r).dot(r);
         self.total += energy(rate);
         for (normal, within) in self.within.iter_mut().enumerate() {
             let n = frame.row(normal).transpose();
             let about = n * n.dot(rate);
-            *within += if rotation { energy(&about) } else { energy(&(rate - about)) };
+            *within += match part {
+                Part::Translation => energy(&(rate - about)),
+                Part::Rotation => energy(&about),
+            };
         }
     }
 

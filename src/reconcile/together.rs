@@ -76,7 +76,7 @@ fn of_all(campaign: &Campaign) -> Outcome {
 /// Reconciles the readings that are not records against time. If there are positions and other readings, but too few
 /// of one kind, only the other kind is reconciled and a reason says so.
 fn of_readings(campaign: &Campaign) -> Outcome {
-    let (loaded, placed) = campaign.parted();
+    let (loaded, placed) = (campaign.without_positions(), campaign.positions_alone());
     let (rows, count) = (rows(&loaded), placed.positions.len());
     if count == 0 {
         return analysis::reconcile(campaign);
@@ -279,13 +279,13 @@ impl Both<'_> {
     fn unexplained(&self) -> Unexplained {
         let error_mm = |stage: Option<&Stage>| stage.map_or(f64::INFINITY, |s| s.median_mm);
         let most_mm = MOST_HARM * error_mm(self.calibrated.stages.last());
-        let of = |calibrated: &Calibrated, has_laws: bool| Unexplained {
+        let without_laws = |calibrated: &Calibrated| Unexplained {
             arms: calibrated.written.clone(),
             placements: calibrated.placements.clone(),
-            has_laws,
+            has_laws: false,
         };
         if let Some(with_laws) = self.with_laws.as_ref().filter(|c| error_mm(c.stages.last()) <= most_mm) {
-            return of(with_laws, true);
+            return Unexplained { has_laws: true, ..without_laws(with_laws) };
         }
         let told = self.last_calibration().map(|i| &self.placed.stages[i]);
         if self.told && error_mm(told) <= most_mm {
@@ -293,7 +293,7 @@ impl Both<'_> {
             let arms = std::iter::once(self.corrected.clone()).chain(others).collect();
             return Unexplained { arms, placements: json!({}), has_laws: false };
         }
-        of(&self.calibrated, false)
+        without_laws(&self.calibrated)
     }
 
     /// The verdict on the arm as a whole. If positions or the other readings are not explained or not sufficient, the

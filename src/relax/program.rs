@@ -29,6 +29,14 @@ pub(super) struct Program {
     best: (f64, Vec<f64>),
 }
 
+/// What the solver finds over the options that it has.
+struct Solved {
+    /// The weights of these options, slot by slot.
+    weights: Vec<f64>,
+    /// The multipliers of the rows, all at least zero.
+    multipliers: Vec<f64>,
+}
+
 /// The result of solving the program once.
 pub(super) struct Solution {
     /// Lower bound on the mass \[kg\].
@@ -68,7 +76,7 @@ impl Program {
 
     /// Solves the program. `None` if the solver finds no solution.
     pub(super) fn solve(&mut self) -> Option<Solution> {
-        let (flat, multipliers) = self.solver()?;
+        let Solved { weights: flat, multipliers } = self.solver()?;
         let mut weights: Vec<Vec<f64>> = self.masses.iter().map(|m| vec![0.0; m.len()]).collect();
         let mut value_kg = 0.0;
         let places =
@@ -133,9 +141,8 @@ impl Program {
         grew
     }
 
-    /// Solves the program over the options that it has. Returns the weights of these options, slot by slot, and the
-    /// multipliers of the rows, all at least zero. `None` if the solver fails.
-    fn solver(&self) -> Option<(Vec<f64>, Vec<f64>)> {
+    /// Solves the program over the options that it has. `None` if the solver fails.
+    fn solver(&self) -> Option<Solved> {
         let (slots, rows) = (self.seen.len(), self.rows.len());
         let columns: usize = self.seen.iter().map(Vec::len).sum();
         let (mut starts, mut places, mut values, mut costs) = (vec![0], Vec::new(), Vec::new(), Vec::new());
@@ -169,7 +176,8 @@ impl Program {
         let solution = &solver.solution;
         let sound = |v: &[f64]| v.iter().all(|x| x.is_finite());
         let multipliers: Vec<f64> = solution.z[slots..slots + rows].iter().map(|z| z.max(0.0)).collect();
-        (sound(&solution.x) && sound(&multipliers)).then(|| (solution.x.clone(), multipliers))
+        (sound(&solution.x) && sound(&multipliers))
+            .then(|| Solved { weights: solution.x.clone(), multipliers })
     }
 }
 

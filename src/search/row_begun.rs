@@ -3,7 +3,7 @@
 use super::arms::EightArms;
 use super::row::Row;
 use super::row_bearing::BearingsBegun;
-use super::row_case::{AtJoint, AtJoints, hinge_numbers};
+use super::row_case::{AtJoint, AtJoints, Entry, hinge_numbers};
 use crate::mechanics::lowest_lanes::Outboard;
 use crate::sizing::bearing::BearingDemand;
 use crate::sizing::fit::LinkRoom;
@@ -130,11 +130,11 @@ impl Begun {
                 begun.at_root = place.local(&(state.wrench + carried.weight), &place.root_m);
             }
             begun.spread.clear();
-            begun.spread.extend(case.spread_entries.iter().map(|&(_, i, j)| {
+            begun.spread.extend(case.spread_entries.iter().map(|&Entry { row, column, .. }| {
                 // the matrix is symmetric, and only its lower triangle is listed: an entry off the diagonal counts
                 // twice
-                let both = if i == j { 1.0 } else { 2.0 };
-                both * state.inertia[(i, j)]
+                let both = if row == column { 1.0 } else { 2.0 };
+                both * state.inertia[(row, column)]
             }));
             // a case that is not judged needs no modes
             if !case.judged {

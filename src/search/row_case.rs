@@ -32,6 +32,14 @@ pub(crate) struct AtJoint {
 /// Torque and inertia about each hinge; the index is the number of the hinge.
 pub(crate) type AtJoints = Vec<AtJoint>;
 
+/// Position of an entry of an inertia matrix: its block of the eigenvalue problem, its row and its column.
+#[derive(Clone, Copy)]
+pub(crate) struct Entry {
+    pub block: usize,
+    pub row: usize,
+    pub column: usize,
+}
+
 /// Numbers of one case that depend on the pose but not on the option of the row level.
 pub(crate) struct RowCase {
     /// For each hinge, whether some load or weight turns it. At the other hinges the torque is zero in every arm.
@@ -49,9 +57,9 @@ pub(crate) struct RowCase {
     pub link_weight_at_root: [f64; 4],
     /// Whether bending of the row's link (the link of the row level) can move the tip in x, in y and in z.
     pub bends: [bool; 3],
-    /// Positions (block, row, column) of the entries of the outboard inertia matrix that enter Dunkerley's sum. Row and
-    /// column are motions of the block in which the end of the row's link can move. Empty if the row's link is rigid.
-    pub spread_entries: Vec<(usize, usize, usize)>,
+    /// The entries of the outboard inertia matrix that enter Dunkerley's sum. Row and column are motions of the block in
+    /// which the end of the row's link can move. Empty if the row's link is rigid.
+    pub spread_entries: Vec<Entry>,
     /// For each block of the eigenvalue problem, the range of `spread_entries` that belongs to it.
     pub spread_of: [Range<usize>; 2],
     /// For each block of the eigenvalue problem, the number of inner slots that take part in its modes: all from the
@@ -130,7 +138,7 @@ impl RowCase {
         };
         let spread_entries = if links_are_compliant { spread_entries(&station.modal) } else { Vec::new() };
         // the entries of block 0 come first
-        let of_first = spread_entries.partition_point(|(block, ..)| *block == 0);
+        let of_first = spread_entries.partition_point(|entry| entry.block == 0);
         let (turned, link_torque) = turning(station, slots, hinges, numbers, &link_weight);
         Self {
             turned,
@@ -297,12 +305,15 @@ fn last_compliant<const N: usize>(block: &Block<N>, first: usize, links_are_comp
     inner.unwrap_or(usize::from(of_row))
 }
 
-/// Positions (block, row, column) of the entries in the lower triangle of the outboard inertia matrix that enter
-/// Dunkerley's sum. Row and column are both motions of the same block.
-fn spread_entries(modal: &Modal) -> Vec<(usize, usize, usize)> {
-    let lower = |block: usize, motions: &[usize]| -> Vec<(usize, usize, usize)> {
+/// The entries in the lower triangle of the outboard inertia matrix that enter Dunkerley's sum. Row and column are both
+/// motions of the same block.
+fn spread_entries(modal: &Modal) -> Vec<Entry> {
+    let lower = |block: usize, motions: &[usize]| -> Vec<Entry> {
         let pairs = motions.iter().flat_map(|&i| motions.iter().map(move |&j| (i, j)));
-        pairs.filter(|(i, j)| i >= j).map(|(i, j)| (block, i, j)).collect()
+        pairs
+            .filter(|(row, column)| row >= column)
+            .map(|(row, column)| Entry { block, row, column })
+            .collect()
     };
     match modal {
         Modal::Planar(_) => [lower(0, &[0, 2, 4]), lower(1, &[1, 3, 5])].concat(),

@@ -1,6 +1,6 @@
 //! Chunks: the numbers of eight options of the row's link, next to each other in memory.
 
-use super::row_case::{Hinge, RowCase};
+use super::row_case::{Entry, Hinge, RowCase};
 use crate::mechanics::lanes::{Eight, LANES};
 use crate::mechanics::lowest_lanes::LaneLink;
 use crate::space::attributes::{OptionAttributes, StressCheck};
@@ -158,9 +158,9 @@ impl CaseChunk {
 }
 
 /// Contribution of a link to Dunkerley's sum (the sum of `1/λ` over all eigenvalues) per unit of one entry of the
-/// outboard inertia matrix. The entry is given by its block, row `i` and column `j`.
-fn spread_of(link: &StationLink, (block, i, j): (usize, usize, usize)) -> f64 {
-    (0..6).filter(|&g| link.block[g] == block).map(|g| link.end[(i, g)] * link.end[(j, g)]).sum()
+/// outboard inertia matrix.
+fn spread_of(link: &StationLink, Entry { block, row, column }: Entry) -> f64 {
+    (0..6).filter(|&g| link.block[g] == block).map(|g| link.end[(row, g)] * link.end[(column, g)]).sum()
 }
 
 /// The eight options of a chunk as the computation of the lowest mode needs them. `at(lane)` is the number of the

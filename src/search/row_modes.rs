@@ -34,6 +34,13 @@ pub(crate) struct Question<'a, 'c> {
     arms: &'a EightArms,
 }
 
+/// One block of the eigenvalue problem of a case.
+#[derive(Clone, Copy, PartialEq)]
+struct BlockOf {
+    case: usize,
+    block: usize,
+}
+
 /// A question about the lowest eigenvalue of one block of the eigenvalue problem, for eight arms.
 #[derive(Clone, Copy)]
 struct Ask<V> {
@@ -142,20 +149,20 @@ impl<'a, 'c> Question<'a, 'c> {
     /// Dunkerley's lower bound of the lowest eigenvalue of a block \[1/s²\]: the reciprocal of the sum of `1/λ` over
     /// its eigenvalues.
     #[inline(always)]
-    fn least<V: Lanes>(&self, (case, block): (usize, usize)) -> V {
+    fn least<V: Lanes>(&self, BlockOf { case, block }: BlockOf) -> V {
         V::splat(1.0) / V::load(&self.arms.cases[case].trace_s2[block])
     }
 
-    /// The blocks of the eigenvalue problems of all judged cases, each given by case and block. The block with the
+    /// The blocks of the eigenvalue problems of all judged cases. The block with the
     /// largest Dunkerley sum over the arms in the bit mask `of` comes first, since it most likely has the lowest
     /// eigenvalue.
-    fn blocks(&self, of: u8) -> impl Iterator<Item = (usize, usize)> {
-        let sum = move |(case, block): (usize, usize)| -> f64 {
+    fn blocks(&self, of: u8) -> impl Iterator<Item = BlockOf> {
+        let sum = move |BlockOf { case, block }: BlockOf| -> f64 {
             let traces = &self.arms.cases[case].trace_s2[block];
             (0..LANES).filter(|lane| of >> lane & 1 == 1).map(|lane| traces[lane]).sum()
         };
         let judged = self.at.row.cases.iter().enumerate().filter(|(_, case)| case.judged);
-        let blocks = judged.flat_map(|(case, _)| [(case, 0), (case, 1)]);
+        let blocks = judged.flat_map(|(case, _)| [0, 1].map(|block| BlockOf { case, block }));
         let (mut first, mut largest) = (None, 0.0);
         for (block, sum) in blocks.clone().map(|block| (block, sum(block))) {
             if sum > largest {
@@ -169,7 +176,7 @@ impl<'a, 'c> Question<'a, 'c> {
     /// the arms for which none was found. If the question has no guess, the bit mask has the arms with an eigenvalue
     /// below `below` instead.
     #[inline(always)]
-    fn answer<V: Lanes>(&self, (case, block): (usize, usize), ask: Ask<V>) -> (V, u8) {
+    fn answer<V: Lanes>(&self, BlockOf { case, block }: BlockOf, ask: Ask<V>) -> (V, u8) {
         let chunk = self.at.row.chunks.get(self.at.chunk).map(|chunk| &chunk.cases[case].modal);
         match (&self.at.problem.stations()[case].modal, &self.begun.cases[case].outboard) {
             (Modal::Planar(blocks), CaseOutboard::Planar(outboard)) => {

@@ -288,13 +288,13 @@ impl<'p, P: FinishRows> Sweep<'p, P> {
     /// The numbers of the designs that this sweep visits. The ranges of all shards follow each other and cover the
     /// space.
     pub fn range(&self) -> Range<u128> {
-        let each = blocks(self.problem).1;
+        let each = blocks(self.problem).designs_each;
         let Range { start, end } = self.blocks();
         start * each..end * each
     }
 
     fn blocks(&self) -> Range<u128> {
-        let all = blocks(self.problem).0;
+        let all = blocks(self.problem).count;
         let Shard { number, of } = self.shard;
         let before = |shards: u32| share(all, shards, of);
         before(number - 1)..before(number)

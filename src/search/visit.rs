@@ -45,7 +45,7 @@ impl<P: FinishRows> Visit<'_, P> {
         root: &'v P::Partial,
         keeper: impl Fn() -> K + Send + Sync + 'v,
     ) -> impl ParallelIterator<Item = K> + 'v {
-        let tasks = Tasks::of(self.problem, 0..blocks(self.problem).0);
+        let tasks = Tasks::of(self.problem, 0..blocks(self.problem).count);
         self.tasks(tasks, root, |_| true, keeper).map(|walked| walked.keeper)
     }
 
@@ -104,11 +104,17 @@ pub(crate) struct Walked<K> {
     pub keeper: K,
 }
 
-/// Number of blocks of a tree, and number of designs in each block. A block has all designs with the same arm
-/// outboard of the row level; their numbers follow each other.
-pub(crate) fn blocks(problem: &impl FinishRows) -> (u128, u128) {
+/// The blocks of a tree. A block has all designs with the same arm outboard of the row level; their numbers follow each
+/// other.
+pub(crate) struct Blocks {
+    pub count: u128,
+    /// Number of designs in each block.
+    pub designs_each: u128,
+}
+
+pub(crate) fn blocks(problem: &impl FinishRows) -> Blocks {
     let Levels { outer, row, inner } = Levels::of(problem);
-    (product(outer), u128::from(row) * product(inner))
+    Blocks { count: product(outer), designs_each: u128::from(row) * product(inner) }
 }
 
 /// Number of options at each level, in three parts: the levels outboard of the row level, the row level itself, and the

@@ -196,6 +196,15 @@ impl Tilt<'_> {
     }
 }
 
+/// Where a motor stands on a piece.
+#[derive(Clone, Copy, PartialEq)]
+enum Stands {
+    /// It moves with the piece.
+    MovingWith,
+    /// It stands where the piece begins.
+    AtStartOf,
+}
+
 impl DesignSpace {
     /// All layers that the search adds, tip first, each with the number of its piece (base to tip).
     ///
@@ -237,8 +246,8 @@ impl DesignSpace {
         out.push((index, Layer::Piece(piece)));
         out.extend(bodies.map(|bodies| (index, bodies)));
         out.extend(self.pulled(index, Side::Moving(index)));
-        out.extend(self.motors_on(index, true));
-        out.extend(self.motors_on(index, false));
+        out.extend(self.motors_on(index, Stands::MovingWith));
+        out.extend(self.motors_on(index, Stands::AtStartOf));
         out.extend(self.root_springs(link).map(|tilt| (index, tilt)));
     }
 
@@ -253,7 +262,7 @@ impl DesignSpace {
     ) {
         out.extend(carried(&joint.bodies.rotating, Carrier::RotatedFrame).map(|bodies| (index, bodies)));
         out.extend(self.pulled(index, Side::Moving(index)));
-        out.extend(self.motors_on(index, true));
+        out.extend(self.motors_on(index, Stands::MovingWith));
         let bearing = joint.bearing.stated();
         let affected = self.joint_piece(joint, Curve::Rigid, bearing);
         out.extend(leans(&affected).map(|lean| (index, lean)));
@@ -273,7 +282,7 @@ impl DesignSpace {
         }
         out.extend(carried(&joint.bodies.fixed, Carrier::Frame).map(|bodies| (index, bodies)));
         out.extend(self.pulled(index, Side::Fixed(index)));
-        out.extend(self.motors_on(index, false));
+        out.extend(self.motors_on(index, Stands::AtStartOf));
     }
 
     /// Adds the layers of the base: the springs that balance the arm, the springs of a compliant frame, and the tilts
@@ -307,14 +316,14 @@ impl DesignSpace {
             out.push((index, Layer::Travelling(added_kg)));
         }
         out.extend(self.pulled(index, Side::Moving(index)));
-        out.extend(self.motors_on(index, true));
+        out.extend(self.motors_on(index, Stands::MovingWith));
         out.push((index, Layer::Piece(piece)));
         let springs = affected.guide_rad_per_nm.iter().enumerate().filter(|(_, c)| **c > 0.0);
         out.extend(
             springs.map(|(which, c)| (index, Layer::Guide(GuideSpring { slide, which, rad_per_nm: *c }))),
         );
         out.extend(carried(&slide.staying, Carrier::Frame).map(|bodies| (index, bodies)));
-        out.extend(self.motors_on(index, false));
+        out.extend(self.motors_on(index, Stands::AtStartOf));
     }
 
     /// A prismatic joint with the effects that act on it.
@@ -355,11 +364,11 @@ impl DesignSpace {
         is_pulled.then_some((piece, Layer::Springs(on)))
     }
 
-    /// The layers of the motors that stand on the piece number `piece`. If `moves` is true, these are the motors that
-    /// move with the piece, otherwise the motors that stand where it begins. The layer of the motor of a sized
+    /// The layers of the motors that stand on the piece number `piece`, on the side that `stands` says. The layer of the motor of a sized
     /// prismatic joint includes its screw or rack.
-    fn motors_on(&self, piece: usize, moves: bool) -> impl Iterator<Item = (usize, Layer<'_>)> {
+    fn motors_on(&self, piece: usize, stands: Stands) -> impl Iterator<Item = (usize, Layer<'_>)> {
         let is_joint = !matches!(self.pieces[piece], SpacePiece::Link(_) | SpacePiece::Choice(_));
+        let moves = stands == Stands::MovingWith;
         self.pieces.iter().enumerate().filter_map(move |(of, what)| {
             let place = what.motor_place(of).filter(|place| place.piece == piece && place.moves == moves)?;
             Some((piece, Layer::Motor(MotorElsewhere { of, place, is_at_end: is_joint && moves })))

@@ -129,19 +129,16 @@ fn read_gear_kinds(node: &Node, catalogs: &Catalogs) -> Option<Vec<GearKind>> {
     if kinds.is_empty() || kinds.iter().any(has) {
         return Some(kinds);
     }
-    let words = |with_rows: bool| -> String {
+    let words_of = |counts: &dyn Fn(&GearKind) -> bool| -> String {
         let words = GearKind::WORDS.into_iter();
-        let matching = words.filter(|word| {
-            GearKind::from_word(word)
-                .is_some_and(|kind| if with_rows { has(&kind) } else { kinds.contains(&kind) })
-        });
+        let matching = words.filter(|word| GearKind::from_word(word).is_some_and(|kind| counts(&kind)));
         matching.collect::<Vec<_>>().join(", ")
     };
     node.fault(
-        format!("the catalogs have no gear of the kind {}", words(false)),
+        format!("the catalogs have no gear of the kind {}", words_of(&|kind| kinds.contains(kind))),
         &format!(
             "add rows to gears.csv in a folder of your own (--catalogs DIR), or ask for a kind that has rows: {}",
-            words(true)
+            words_of(&has)
         ),
     )
 }

@@ -8,6 +8,7 @@
 use super::definition::Study;
 use crate::arm::effect::entry::Effect;
 use crate::arm::effect::kind::Removes;
+use crate::arm::effect::validate::EffectFault;
 use crate::arm::joint_law::Curve;
 use crate::arm::{Arm, LinkModel};
 use crate::input::json::Object;
@@ -57,7 +58,7 @@ pub(super) fn check_effects(space: &DesignSpace, root: &Object) -> Option<()> {
     let Some(node) = root.optional("effects") else { return Some(()) };
     let mut sound = true;
     for (effect, node) in space.effects.iter().zip(node.array()?) {
-        if let Some((field, problem, hint)) = unfit(space, effect) {
+        if let Some(EffectFault { field, problem, hint }) = unfit(space, effect) {
             sound = false;
             node.fault_below::<()>(&field, problem, &hint);
         }
@@ -65,10 +66,10 @@ pub(super) fn check_effects(space: &DesignSpace, root: &Object) -> Option<()> {
     sound.then_some(())
 }
 
-/// The reason why an effect is not possible in the arm of a study: field, problem, advice. `None` if it is possible.
-fn unfit(space: &DesignSpace, effect: &Effect) -> Option<(String, String, String)> {
+/// The reason why an effect is not possible in the arm of a study; `None` if it is possible.
+fn unfit(space: &DesignSpace, effect: &Effect) -> Option<EffectFault> {
     if let Some(fault) = effect.faults(&space.nominal_structure()).into_iter().next() {
-        return Some((fault.field, fault.problem, fault.hint));
+        return Some(fault);
     }
     let at_joint = space.pieces.iter().find_map(|piece| match piece {
         SpacePiece::Joint(joint) if joint.name == effect.at => Some(joint),
@@ -76,29 +77,36 @@ fn unfit(space: &DesignSpace, effect: &Effect) -> Option<(String, String, String
     });
     let traits = &effect.kind()?.traits;
     match at_joint.map(|joint| &joint.drive) {
-        Some(DriveChoice::FirstFit(_) | DriveChoice::AllFits(_)) if traits.is_gear_curve => Some((
-            "effect".into(),
-            format!(
-                "soft_windup is the torsion curve of one drive, and the study chooses the drive of {} from the \
+        Some(DriveChoice::FirstFit(_) | DriveChoice::AllFits(_)) if traits.is_gear_curve => {
+            Some(EffectFault {
+                field: "effect".into(),
+                problem: format!(
+                    "soft_windup is the torsion curve of one drive, and the study chooses the drive of {} from the \
                  catalogs, each with a curve of its own",
-                effect.at
-            ),
-            "give the joint its drive in the study (gear and motor, or windup), or remove the effect".into(),
-        )),
+                    effect.at
+                ),
+                hint:
+                    "give the joint its drive in the study (gear and motor, or windup), or remove the effect"
+                        .into(),
+            })
+        }
         Some(DriveChoice::Given { mass_kg, .. })
             if traits.removes == Some(Removes::JointMass) && takes_too_much(space, effect, *mass_kg) =>
         {
-            Some((
-                "parameters.delta_kg".into(),
-                format!("takes more off {} than the {mass_kg} kg it weighs", effect.at),
-                "give the joint its mass_kg, or a smaller loss".into(),
-            ))
+            Some(EffectFault {
+                field: "parameters.delta_kg".into(),
+                problem: format!("takes more off {} than the {mass_kg} kg it weighs", effect.at),
+                hint: "give the joint its mass_kg, or a smaller loss".into(),
+            })
         }
-        _ if effect.is_of_bending() && space.links == LinkModel::Rigid => Some((
-            "effect".into(),
-            format!("{} changes how a link bends, and the study holds its links rigid", effect.effect),
-            "set \"links\" of \"models\" to \"full\", or remove the effect".into(),
-        )),
+        _ if effect.is_of_bending() && space.links == LinkModel::Rigid => Some(EffectFault {
+            field: "effect".into(),
+            problem: format!(
+                "{} changes how a link bends, and the study holds its links rigid",
+                effect.effect
+            ),
+            hint: "set \"links\" of \"models\" to \"full\", or remove the effect".into(),
+        }),
         _ => None,
     }
 }
@@ -142,23 +150,29 @@ pub fn apply_corrections(
 }
 
 impl CorrectedStudy {
-    fn say(&mut self, what: String, applied: bool, words: impl Into<String>) {
-        self.corrections.push(Correction { what, applied, words: words.into() });
+    /// Notes a correction that is applied. `words` tell what it changes.
+    fn applies(&mut self, what: String, words: impl Into<String>) {
+        self.corrections.push(Correction { what, applied: true, words: words.into() });
+    }
+
+    /// Notes a correction that is not applied. `words` tell why.
+    fn leaves_out(&mut self, what: String, words: impl Into<String>) {
+        self.corrections.push(Correction { what, applied: false, words: words.into() });
     }
 
     fn effect(&mut self, space: &DesignSpace, effect: &Effect) {
         let what = effect.label();
         if effect.is_of_test() {
-            return self.say(what, false, OF_TEST);
+            return self.leaves_out(what, OF_TEST);
         }
-        if let Some((_, problem, hint)) = unfit(space, effect) {
-            return self.say(what, false, format!("{problem}; {hint}"));
+        if let Some(EffectFault { problem, hint, .. }) = unfit(space, effect) {
+            return self.leaves_out(what, format!("{problem}; {hint}"));
         }
         match &mut self.file["effects"] {
             Value::Array(list) => list.push(effect.to_json()),
             none => *none = json!([effect.to_json()]),
         }
-        self.say(what, true, parameters(effect));
+        self.applies(what, parameters(effect));
     }
 
     fn calibration(&mut self, space: &DesignSpace, name: &str, factor: f64) {
@@ -167,7 +181,7 @@ impl CorrectedStudy {
         if !matches!(quantity, "stiffness" | "mass" | "bearing_stiffness" | "guide_stiffness") {
             let words =
                 "it belongs to the measured arm; the study keeps its geometry and the catalog's materials";
-            return self.say(what, false, words);
+            return self.leaves_out(what, words);
         }
         let found = space.pieces.iter().enumerate().find_map(|(index, piece)| match piece {
             SpacePiece::Joint(joint) if joint.name == part => Some((index, joint)),
@@ -178,9 +192,9 @@ impl CorrectedStudy {
             return self.calibrate_prismatic(&space.pieces[index], index, quantity, factor, what);
         }
         match found {
-            None => self.say(what, false, format!("the study has no joint {part}")),
+            None => self.leaves_out(what, format!("the study has no joint {part}")),
             Some((_, SpaceJoint { drive: DriveChoice::FirstFit(_) | DriveChoice::AllFits(_), .. })) => {
-                self.say(what, false, "the study chooses this joint's drive: it keeps its catalog ratings");
+                self.leaves_out(what, "the study chooses this joint's drive: it keeps its catalog ratings");
             }
             Some((index, SpaceJoint { drive: DriveChoice::Given { curve, mass_kg, .. }, bearing, .. })) => {
                 let entry = &mut self.file["chain"][index];
@@ -188,9 +202,9 @@ impl CorrectedStudy {
                     ("stiffness", _) => write_curve(entry, &curve.stiffened(factor)),
                     ("mass", _) => entry["mass_kg"] = json!(mass_kg * factor),
                     (_, Some(bearing)) => entry["bearing"] = bearing.stiffened(factor).to_json(),
-                    _ => return self.say(what, false, "the bearing of this joint is rigid in the study"),
+                    _ => return self.leaves_out(what, "the bearing of this joint is rigid in the study"),
                 }
-                self.say(what, true, "the study gives this joint's drive: its value is calibrated");
+                self.applies(what, "the study gives this joint's drive: its value is calibrated");
             }
         }
     }
@@ -219,7 +233,7 @@ impl CorrectedStudy {
         for key in ["stiffness_n_per_m", "mass_kg", "guide"] {
             self.file["chain"][index][key] = written[key].clone();
         }
-        self.say(what, true, "the study gives this joint: its value is calibrated");
+        self.applies(what, "the study gives this joint: its value is calibrated");
     }
 }
 

@@ -1,7 +1,7 @@
 //! Joints at which no drive meets the demand, whatever the limits of the study: the failing check, by how much it
 //! fails, and what would help.
 
-use super::limit::{short, toward};
+use super::limit::{rounded_down, short};
 use crate::arm::joint_law::Curve;
 use crate::catalog::Catalogs;
 use crate::catalog::gear::{Gear, GearKind, GearMass};
@@ -197,7 +197,7 @@ fn no_legal_drive(table: &DriveTable, demand: &JointDemand) -> String {
             short(needed),
             short(speed),
             short(needed - speed),
-            toward(speed, false),
+            rounded_down(speed),
             missing_words(table),
         ),
         None => table.smallest_shortfall(demand).map_or_else(

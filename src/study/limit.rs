@@ -105,7 +105,7 @@ impl Quantity {
     /// The keys of a study file that limit this quantity, as far as a design with the value `reached` violates them.
     /// Each key comes with a value that would admit the design.
     fn enough(self, constraints: &Constraints, reached: f64) -> Vec<(&'static str, f64)> {
-        let round = |x: f64| toward(x, !self.is_least());
+        let round = if self.is_least() { rounded_down } else { rounded_up };
         let key = match self {
             Self::Mode => return mode_keys(constraints, reached).map(|(key, x)| (key, round(x))).collect(),
             Self::Deflection => "tip_deflection_max_mm",
@@ -156,12 +156,23 @@ pub(super) fn short(x: f64) -> String {
     significant(x, 4)
 }
 
-/// Rounds a number to five significant digits, up if `up` is true, else down. Limits are rounded to the side that
-/// admits more designs, so that a value that suffices still does so after rounding.
-pub(super) fn toward(x: f64, up: bool) -> f64 {
-    let scale = 10f64.powi(4 - libm::log10(x.abs().max(f64::MIN_POSITIVE)).floor() as i32);
-    let scaled = x * scale;
-    (if up { (scaled * (1.0 + 1e-12)).ceil() } else { (scaled * (1.0 - 1e-12)).floor() }) / scale
+// Limits are rounded to the side that admits more designs, so that a value that suffices still does so after rounding.
+
+/// Rounds a number up to five significant digits.
+fn rounded_up(x: f64) -> f64 {
+    let scale = five_digits(x);
+    (x * scale * (1.0 + 1e-12)).ceil() / scale
+}
+
+/// Rounds a number down to five significant digits.
+pub(super) fn rounded_down(x: f64) -> f64 {
+    let scale = five_digits(x);
+    (x * scale * (1.0 - 1e-12)).floor() / scale
+}
+
+/// The power of ten by which a number has five digits before the point.
+fn five_digits(x: f64) -> f64 {
+    10f64.powi(4 - libm::log10(x.abs().max(f64::MIN_POSITIVE)).floor() as i32)
 }
 
 #[cfg(test)]
@@ -171,10 +182,10 @@ mod tests {
 
     #[test]
     fn a_value_that_is_enough_is_rounded_to_stay_enough() {
-        assert_eq!(toward(2.917_24, true), 2.9173);
-        assert_eq!(toward(2.917_24, false), 2.9172);
-        assert!(toward(12.0, true) >= 12.0 && toward(12.0, false) <= 12.0);
-        assert!(toward(1e-7 / 3.0, true) >= 1e-7 / 3.0);
+        assert_eq!(rounded_up(2.917_24), 2.9173);
+        assert_eq!(rounded_down(2.917_24), 2.9172);
+        assert!(rounded_up(12.0) >= 12.0 && rounded_down(12.0) <= 12.0);
+        assert!(rounded_up(1e-7 / 3.0) >= 1e-7 / 3.0);
     }
 
     #[test]

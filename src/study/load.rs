@@ -9,10 +9,17 @@ use crate::catalog::Catalogs;
 use crate::input::json::{Document, InputError, read_text};
 use std::path::Path;
 
-/// The text of the study `name`, built in or from a file, and the name of the study in messages.
-fn study_text(name: &str) -> Result<(String, String), Refusal> {
+/// The text of a study.
+struct StudyText {
+    /// Name of the study in messages.
+    title: String,
+    text: String,
+}
+
+/// The text of the study `name`, built in or from a file.
+fn study_text(name: &str) -> Result<StudyText, Refusal> {
     if let Some(text) = named(name) {
-        return Ok((format!("{name} (built in)"), text.to_string()));
+        return Ok(StudyText { title: format!("{name} (built in)"), text: text.to_string() });
     }
     let path = Path::new(name);
     if crate::paper::names::NAMES.contains(&name) {
@@ -20,7 +27,7 @@ fn study_text(name: &str) -> Result<(String, String), Refusal> {
         return Err(Refusal::Unknown(format!("{name} {words}")));
     }
     match read_text(path) {
-        Ok(text) => Ok((name.to_string(), text)),
+        Ok(text) => Ok(StudyText { title: name.to_string(), text }),
         Err(_) if !name.contains(['/', '.']) && !path.is_dir() => {
             let known = crate::study::names();
             let near = crate::input::json::closest(name, &known)
@@ -38,8 +45,8 @@ fn study_text(name: &str) -> Result<(String, String), Refusal> {
 /// [`Refusal::Unknown`] if `name` is neither a built-in study nor a file, [`Refusal::Unreadable`] if the file cannot
 /// be read, or [`Refusal::Faulty`] with all of its faults.
 pub fn load_study(name: &str, catalogs: &Catalogs) -> Result<(Study, String), Refusal> {
-    let (file, text) = study_text(name)?;
-    Ok((read_study(Document::parse(&file, &text)?, catalogs)?, text))
+    let StudyText { title, text } = study_text(name)?;
+    Ok((read_study(Document::parse(&title, &text)?, catalogs)?, text))
 }
 
 /// Refuses a study that leaves values of springs or counterweights open, because its space has the first choice alone.

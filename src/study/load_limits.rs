@@ -75,12 +75,12 @@ pub(crate) fn check_limits(document: Document) -> Result<(), Faults> {
 }
 
 fn check_joints(root: &Node) -> Option<()> {
-    let all: Vec<Option<()>> = object(root, &[], true)?
+    let all: Vec<Option<()>> = any_object(root)?
         .required("joints")?
         .array()?
         .iter()
         .map(|node| {
-            let joint = object(node, &[], true)?;
+            let joint = any_object(node)?;
             joint.required("name")?.string()?;
             let limits = [TORQUE, FORCE].into_iter().filter_map(|key| joint.optional(key));
             let sound: Vec<Option<f64>> =
@@ -124,10 +124,16 @@ fn read_joints(root: &Node, arm: &Arm) -> Option<Vec<LoadLimit>> {
     limits
 }
 
-/// A node as an object with the keys `known`, or with any keys at all. Returns `None` after recording a fault.
-fn object<'a>(node: &Node<'a>, known: &[&str], any: bool) -> Option<Object<'a>> {
+/// A node as an object with the keys `known`, or with any keys if it is `of_import`. Returns `None` after recording a
+/// fault.
+fn object<'a>(node: &Node<'a>, known: &[&str], of_import: bool) -> Option<Object<'a>> {
+    if of_import { any_object(node) } else { node.object(known) }
+}
+
+/// A node as an object with any keys. Returns `None` after recording a fault.
+fn any_object<'a>(node: &Node<'a>) -> Option<Object<'a>> {
     let all: Vec<&str> = node.entries()?.into_iter().map(|(key, _)| key).collect();
-    node.object(if any { &all } else { known })
+    node.object(&all)
 }
 
 /// Reads the limit of the joint with the name `text`. Faults of the name are recorded at the node `name`. The outer

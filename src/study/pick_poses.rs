@@ -38,12 +38,30 @@ struct PickPoses {
     divided_hz: Option<f64>,
 }
 
+/// A driven joint with its range.
+#[derive(Debug, Clone, PartialEq)]
+struct JointRange {
+    joint: DrivenJoint,
+    /// Lower and upper end \[deg or mm\].
+    range: [f64; 2],
+    /// Whether the study states the range.
+    is_stated: bool,
+}
+
+/// The worst pose of a pick for one objective.
+struct WorstFor<'a> {
+    objective: Objective,
+    /// Factor from the library's unit of the objective to the printed one (mm, Hz).
+    of_unit: f64,
+    pose: &'a WorstPose,
+}
+
 /// The picks of a front in their worst poses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PicksInPoses {
     picks: Vec<PickPoses>,
-    /// Each driven joint with its range \[deg or mm\], and whether the study states the range.
-    ranges: Vec<(DrivenJoint, [f64; 2], bool)>,
+    /// The range of each driven joint, base to tip.
+    ranges: Vec<JointRange>,
     range_words: Vec<String>,
     /// Whether the judged cases have different loads.
     has_loads: bool,
@@ -64,7 +82,7 @@ pub fn picks_in_poses(problem: &ArmProblem, front: &FrontTable) -> PicksInPoses 
         ranges: stated_ranges(space)
             .into_iter()
             .zip(ranges)
-            .map(|((joint, is_stated), range)| (joint, range, is_stated))
+            .map(|((joint, is_stated), range)| JointRange { joint, range, is_stated })
             .collect(),
         range_words: range_words(space),
         has_loads: loads(&cases).len() > 1,
@@ -104,21 +122,23 @@ impl PickPoses {
         format!("{} ({})", self.pick.names.join(", "), self.pick.design.design_id)
     }
 
-    /// The worst pose for deflection and the worst pose for the lowest mode, each with its objective and the factor
-    /// from the library's unit to the printed one (mm, Hz).
-    fn both(&self) -> [(Objective, f64, &WorstPose); 2] {
-        [(Objective::Deflection, 1e3, &self.worst.deflection), (Objective::Mode, 1.0, &self.worst.mode)]
+    /// The worst pose for deflection and the worst pose for the lowest mode.
+    fn both(&self) -> [WorstFor<'_>; 2] {
+        [
+            WorstFor { objective: Objective::Deflection, of_unit: 1e3, pose: &self.worst.deflection },
+            WorstFor { objective: Objective::Mode, of_unit: 1.0, pose: &self.worst.mode },
+        ]
     }
 
     /// Those of the two worst poses (for deflection and for lowest mode) in which the objective is worse than in the
     /// judged cases by more than [`WORSE_BY`].
-    fn worse(&self) -> impl Iterator<Item = (Objective, f64, &WorstPose)> {
-        self.both().into_iter().filter(|(_, _, pose)| pose.worse() > WORSE_BY)
+    fn worse(&self) -> impl Iterator<Item = WorstFor<'_>> {
+        self.both().into_iter().filter(|worst| worst.pose.worse() > WORSE_BY)
     }
 
     fn sentence(
         &self,
-        (objective, of_unit, pose): (Objective, f64, &WorstPose),
+        WorstFor { objective, of_unit, pose }: WorstFor,
         driven: &[DrivenJoint],
         has_loads: bool,
     ) -> String {
@@ -167,7 +187,7 @@ impl PicksInPoses {
 
     /// The driven joints of the arm, base to tip.
     fn driven(&self) -> Vec<DrivenJoint> {
-        self.ranges.iter().map(|(joint, _, _)| joint.clone()).collect()
+        self.ranges.iter().map(|range| range.joint.clone()).collect()
     }
 
     /// A sentence for each pick and each objective (deflection, lowest mode) that is worse in some pose than in the
@@ -220,7 +240,7 @@ impl PicksInPoses {
 
     /// The entry on the worst poses in `run.json`.
     fn to_json(&self) -> Value {
-        let range = |(joint, [low, high], is_stated): &(DrivenJoint, [f64; 2], bool)| {
+        let range = |JointRange { joint, range: [low, high], is_stated }: &JointRange| {
             let unit = joint.motion.unit();
             json!({"joint": joint.name, format!("low_{unit}"): low, format!("high_{unit}"): high, "stated": is_stated})
         };
@@ -272,7 +292,7 @@ impl PicksInPoses {
         ]);
         let driven = self.driven();
         for of in &self.picks {
-            for (objective, of_unit, pose) in of.both() {
+            for WorstFor { objective, of_unit, pose } in of.both() {
                 table.row([
                     of.pick.names.join(", "),
                     of.pick.design.design_id.clone(),

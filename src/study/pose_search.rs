@@ -106,6 +106,14 @@ pub(super) struct PoseRanges {
     free: Vec<usize>,
 }
 
+/// How many joints a compass search turns at once.
+#[derive(Clone, Copy)]
+enum Moves {
+    OneJoint,
+    /// Two joints are turned at once where no single joint improves the score.
+    OneOrTwoJoints,
+}
+
 impl PoseRanges {
     /// The ranges of all joints \[deg or mm\]. Until [`that_matter`](Self::that_matter) is called, every joint counts
     /// as one that influences the score.
@@ -174,13 +182,15 @@ impl PoseRanges {
         let mut climbed: Vec<Scored> = self
             .starts(from)
             .into_par_iter()
-            .map(|start| self.climbed(start, &COARSE_DEG, false, &score))
+            .map(|start| self.climbed(start, &COARSE_DEG, Moves::OneJoint, &score))
             .collect();
         climbed.sort_by(|a, b| b.score.total_cmp(&a.score));
         climbed.dedup_by(|a, b| a.pose_deg == b.pose_deg);
         climbed.truncate(FINE_SEARCHES);
-        let followed: Vec<Scored> =
-            climbed.into_par_iter().map(|start| self.climbed(start, &FINE_DEG, true, &score)).collect();
+        let followed: Vec<Scored> = climbed
+            .into_par_iter()
+            .map(|start| self.climbed(start, &FINE_DEG, Moves::OneOrTwoJoints, &score))
+            .collect();
         followed.into_iter().reduce(|best, other| if other.score > best.score { other } else { best })
     }
 
@@ -212,19 +222,22 @@ impl PoseRanges {
     }
 
     /// The result of a compass search from the pose `start`. Each of `steps_deg` \[deg\] is used until no move with
-    /// this step improves the score. With `in_pairs`, two joints are turned at once where no single joint improves it.
+    /// this step improves the score.
     fn climbed(
         &self,
         start: Scored,
         steps_deg: &[f64],
-        in_pairs: bool,
+        moves: Moves,
         score: &impl Fn(&[f64]) -> f64,
     ) -> Scored {
         let mut here = start;
         for &step_deg in steps_deg {
             for _ in 0..MOST_MOVES {
                 let single = self.turned_once(&here, step_deg, score);
-                let pair = || if in_pairs { self.turned_in_pair(&here, step_deg, score) } else { None };
+                let pair = || match moves {
+                    Moves::OneJoint => None,
+                    Moves::OneOrTwoJoints => self.turned_in_pair(&here, step_deg, score),
+                };
                 match single.or_else(pair) {
                     Some(better) => here = better,
                     None => break,

@@ -1,7 +1,7 @@
 //! Motors of a study that do not sit at their joints, and stages between them and their gears.
 
 use crate::arm::LinkBody;
-use crate::arm::transmission::{Carrier, HungOn, Placed, Seen, SeenMotion, Transmission};
+use crate::arm::transmission::{Carrier, HungOn, MotorAt, Placed, Seen, SeenMotion, Transmission};
 use crate::arm::transmissions::{Driven, place_all};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::GearKind;
@@ -81,7 +81,7 @@ fn behind_one_ratio(
 /// fault: such a motor must not sit along a tube.
 fn of_sized(driven: &[Driven], number: usize, placed: &Placed, pieces: &mut [SpacePiece]) -> Option<()> {
     let of = driven.iter().find(|of| of.joint == number)?;
-    let (piece, on, point_m) = placed.motor;
+    let MotorAt { element: piece, on, point_m } = placed.motor;
     if !of.transmission.as_ref()?.is_elsewhere() {
         return Some(());
     }

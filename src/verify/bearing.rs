@@ -143,21 +143,24 @@ impl BearingRatings {
         }
     }
 
-    /// The moment at the centre of the bearing \[N m\], and the equivalent radial force \[N\]: the radial force plus
-    /// the moment converted to a force at the pitch circle.
-    fn across(&self, load: &BearingLoad) -> (f64, f64) {
-        let moment_nm = load.moment_nm + self.centre_m * load.radial_n;
-        (moment_nm, load.radial_n + self.per_moment_per_m * moment_nm)
+    /// The moment at the centre of the bearing \[N m\].
+    fn moment_nm(&self, load: &BearingLoad) -> f64 {
+        load.moment_nm + self.centre_m * load.radial_n
+    }
+
+    /// The equivalent radial force \[N\]: the radial force plus the moment converted to a force at the pitch circle.
+    fn across_n(&self, load: &BearingLoad) -> f64 {
+        load.radial_n + self.per_moment_per_m * self.moment_nm(load)
     }
 
     /// Static equivalent load `P₀` of the bearing under `load` \[N\].
     fn static_n(&self, load: &BearingLoad) -> f64 {
-        self.across(load).1 + 0.44 * load.axial_n
+        self.across_n(load) + 0.44 * load.axial_n
     }
 
     /// Dynamic equivalent load `P_c` of the bearing under `load` \[N\].
     fn dynamic_n(&self, load: &BearingLoad) -> f64 {
-        let (_, across_n) = self.across(load);
+        let across_n = self.across_n(load);
         let is_radial = load.axial_n <= 1.5 * across_n;
         let (x, y) = if is_radial { (1.0, 0.45) } else { (0.67, 0.67) };
         x * across_n + y * load.axial_n
@@ -165,7 +168,7 @@ impl BearingRatings {
 
     /// Whether the bearing passes all of its checks under the demand `asked`.
     pub(super) fn hold(&self, asked: &BearingDemand) -> bool {
-        self.across(&asked.running).0 <= self.running_nm
+        self.moment_nm(&asked.running) <= self.running_nm
             && self.static_n(&asked.at_rest) <= self.at_rest_n
             && self.static_n(&asked.in_stop) <= self.in_stop_n
             && self.dynamic_n(&asked.at_rest) <= self.life_n

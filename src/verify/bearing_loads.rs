@@ -12,7 +12,6 @@ use super::layout::{Coordinate, Point};
 use super::pose::Builder;
 use super::span::{Linear, Span};
 use crate::arm::load::LoadCase;
-use nalgebra::Vector3;
 
 /// Components of the load on a bearing: the forces along two axes at right angles to the axis of the joint, the force
 /// along the axis of the joint, and the moments about the same two axes.
@@ -101,9 +100,13 @@ fn at_rest(builder: &Builder, joint: usize) -> Components<Linear> {
     let placed = &builder.layout.joints[joint];
     let carried = builder.carried(&Point { at_m: placed.at_m, rank: placed.rank, inside_m: None });
     let [u, v] = placed.across;
-    let sides: Components<(bool, Vector3<f64>)> =
-        [(true, u), (true, v), (true, placed.axis), (false, u), (false, v)];
-    sides.map(|(is_force, direction)| carried.along(is_force, &direction))
+    [
+        carried.force_along(&u),
+        carried.force_along(&v),
+        carried.force_along(&placed.axis),
+        carried.moment_about(&u),
+        carried.moment_about(&v),
+    ]
 }
 
 impl PosedBearing {

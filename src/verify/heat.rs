@@ -55,7 +55,9 @@ impl MotorHeat {
     /// The numbers of a drive with this gear and motor. The joint cruises at `speed_rad_s`, which it reaches with
     /// `acceleration_rad_s2`, or has the stated duty `stated`. `None` if the catalog leaves a needed number blank.
     pub(super) fn of(
-        (gear, motor, stage): (&Gear, &Motor, &AskedStage),
+        gear: &Gear,
+        motor: &Motor,
+        stage: &AskedStage,
         speed_rad_s: f64,
         acceleration_rad_s2: f64,
         stated: &[StatedPhase],

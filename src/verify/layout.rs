@@ -88,13 +88,26 @@ pub(super) struct PlacedSpring {
 }
 
 impl PlacedSpring {
-    /// Displacement and rotation of the point `at_m`, which is outboard of the spring, per unit of the spring's
-    /// coordinate.
-    pub(super) fn way(&self, at_m: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
+    /// Motion of the point `at_m`, which is outboard of the spring, per unit of the spring's coordinate.
+    pub(super) fn way(&self, at_m: &Vector3<f64>) -> Motion {
         match self.slides {
-            true => (self.axis, Vector3::zeros()),
-            false => (self.axis.cross(&(at_m - self.at_m)), self.axis),
+            true => Motion::along(self.axis),
+            false => Motion { moved: self.axis.cross(&(at_m - self.at_m)), turned: self.axis },
         }
+    }
+}
+
+/// Displacement and rotation of a point, per unit of a coordinate.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Motion {
+    pub moved: Vector3<f64>,
+    pub turned: Vector3<f64>,
+}
+
+impl Motion {
+    /// A displacement without rotation.
+    fn along(moved: Vector3<f64>) -> Self {
+        Self { moved, turned: Vector3::zeros() }
     }
 }
 
@@ -295,25 +308,26 @@ const BENDING: [Shape; 4] = [
 const REST: [Shape; 4] = [Shape::ShearZ, Shape::ShearY, Shape::Twist, Shape::Stretch];
 
 impl Shape {
-    /// Displacement and rotation of the section at the distance `x` from the root, per unit of the shape, in the
-    /// tube's frame. The root is clamped.
-    fn field(self, x: f64, length_m: f64) -> (Vector3<f64>, Vector3<f64>) {
+    /// Motion of the section at the distance `x` from the root, per unit of the shape, in the tube's frame. The root is
+    /// clamped.
+    fn field(self, x: f64, length_m: f64) -> Motion {
         let slope = |linear: bool| if linear { x - x * x / length_m } else { x };
         let moved =
             |linear: bool| if linear { x * x / 2.0 - x.powi(3) / (3.0 * length_m) } else { x * x / 2.0 };
-        let none = Vector3::zeros();
         match self {
             // a positive rotation about y moves the end along -z, one about z moves it along y
-            Shape::BendZ { linear } => {
-                (Vector3::new(0.0, 0.0, moved(linear)), Vector3::new(0.0, -slope(linear), 0.0))
-            }
-            Shape::BendY { linear } => {
-                (Vector3::new(0.0, moved(linear), 0.0), Vector3::new(0.0, 0.0, slope(linear)))
-            }
-            Shape::ShearZ => (Vector3::new(0.0, 0.0, x), none),
-            Shape::ShearY => (Vector3::new(0.0, x, 0.0), none),
-            Shape::Twist => (none, Vector3::new(x, 0.0, 0.0)),
-            Shape::Stretch => (Vector3::new(x, 0.0, 0.0), none),
+            Shape::BendZ { linear } => Motion {
+                moved: Vector3::new(0.0, 0.0, moved(linear)),
+                turned: Vector3::new(0.0, -slope(linear), 0.0),
+            },
+            Shape::BendY { linear } => Motion {
+                moved: Vector3::new(0.0, moved(linear), 0.0),
+                turned: Vector3::new(0.0, 0.0, slope(linear)),
+            },
+            Shape::ShearZ => Motion::along(Vector3::new(0.0, 0.0, x)),
+            Shape::ShearY => Motion::along(Vector3::new(0.0, x, 0.0)),
+            Shape::Twist => Motion { moved: Vector3::zeros(), turned: Vector3::new(x, 0.0, 0.0) },
+            Shape::Stretch => Motion::along(Vector3::new(x, 0.0, 0.0)),
         }
     }
 
@@ -367,11 +381,12 @@ pub(super) fn coordinates(layout: &Layout, model: LinkModel, tilting: &[bool]) -
 }
 
 impl Layout {
-    /// Displacement and rotation of `point` per unit of `coordinate`, in the world frame. Zero if the point is inboard
-    /// of the element that deforms.
-    pub(super) fn motion(&self, coordinate: Coordinate, point: &Point) -> (Vector3<f64>, Vector3<f64>) {
-        let still = (Vector3::zeros(), Vector3::zeros());
-        let turned = |axis: &Vector3<f64>, at_m| (axis.cross(&(point.at_m - at_m)), *axis);
+    /// Motion of `point` per unit of `coordinate`, in the world frame. Zero if the point is inboard of the element that
+    /// deforms.
+    pub(super) fn motion(&self, coordinate: Coordinate, point: &Point) -> Motion {
+        let still = Motion::default();
+        let turned =
+            |axis: &Vector3<f64>, at_m| Motion { moved: axis.cross(&(point.at_m - at_m)), turned: *axis };
         match coordinate {
             Coordinate::Joint(joint) => {
                 let joint = &self.joints[joint];
@@ -384,7 +399,7 @@ impl Layout {
             Coordinate::Shift(joint, which) => {
                 let joint = &self.joints[joint];
                 let direction = joint.across.get(which).unwrap_or(&joint.axis);
-                if joint.rank < point.rank { (*direction, Vector3::zeros()) } else { still }
+                if joint.rank < point.rank { Motion::along(*direction) } else { still }
             }
             Coordinate::Spring(spring) => {
                 let spring = &self.springs[spring];
@@ -396,18 +411,19 @@ impl Layout {
 }
 
 impl PlacedTube {
-    /// Displacement and rotation of `point` per unit of a shape of this tube, in the world frame. The point lies in the
-    /// tube or outboard of it. `None` for a point inboard of the tube.
-    fn motion(&self, shape: Shape, point: &Point) -> Option<(Vector3<f64>, Vector3<f64>)> {
+    /// Motion of `point` per unit of a shape of this tube, in the world frame. The point lies in the tube or outboard of
+    /// it. `None` for a point inboard of the tube.
+    fn motion(&self, shape: Shape, point: &Point) -> Option<Motion> {
         let world = |x: f64| {
-            let (moved, turned) = shape.field(x, self.length_m);
-            (self.frame * moved, self.frame * turned)
+            let Motion { moved, turned } = shape.field(x, self.length_m);
+            Motion { moved: self.frame * moved, turned: self.frame * turned }
         };
         if self.rank == point.rank {
             return point.inside_m.map(world);
         }
-        let (moved, turned) = world(self.length_m);
+        let Motion { moved, turned } = world(self.length_m);
         let end_m = self.root_m + self.frame.column(0) * self.length_m;
-        (self.rank < point.rank).then(|| (moved + turned.cross(&(point.at_m - end_m)), turned))
+        let moved = moved + turned.cross(&(point.at_m - end_m));
+        (self.rank < point.rank).then_some(Motion { moved, turned })
     }
 }

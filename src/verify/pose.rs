@@ -73,6 +73,12 @@ pub(super) struct Carried {
     per_load: Vec<Wrench>,
 }
 
+/// Displacements and rotations of a point in the world frame, each list with one entry per unit of each coordinate.
+struct Motions {
+    moved: Vec<Vector3<f64>>,
+    turned: Vec<Vector3<f64>>,
+}
+
 /// The inputs from which a [`Pose`] is computed.
 #[derive(Clone, Copy)]
 pub(super) struct Builder<'a> {
@@ -143,10 +149,17 @@ impl Wrench {
 }
 
 impl Carried {
-    /// Component along `direction` of the force, or of the moment if `is_force` is `false`, as a linear function of the
-    /// loads.
-    pub(super) fn along(&self, is_force: bool, direction: &Vector3<f64>) -> Linear {
-        let part = |wrench: &Wrench| direction.dot(if is_force { &wrench.force } else { &wrench.moment });
+    /// Component of the force along `direction`, as a linear function of the loads.
+    pub(super) fn force_along(&self, direction: &Vector3<f64>) -> Linear {
+        self.linear(|wrench| direction.dot(&wrench.force))
+    }
+
+    /// Component of the moment about `axis`, as a linear function of the loads.
+    pub(super) fn moment_about(&self, axis: &Vector3<f64>) -> Linear {
+        self.linear(|wrench| axis.dot(&wrench.moment))
+    }
+
+    fn linear(&self, part: impl Fn(&Wrench) -> f64) -> Linear {
         Linear { fixed: part(&self.fixed), per_load: self.per_load.iter().map(part).collect() }
     }
 }
@@ -211,7 +224,7 @@ impl Builder<'_> {
     fn torque(&self, joint: usize) -> Linear {
         let joint = &self.layout.joints[joint];
         let carried = self.carried(&Point { at_m: joint.at_m, rank: joint.rank, inside_m: None });
-        carried.along(false, &joint.axis)
+        carried.moment_about(&joint.axis)
     }
 
     /// Displacement of the tip if the bearing of `joint` had a compliance of 1 rad/(N m). The joint's two axes of tilt
@@ -232,8 +245,11 @@ impl Builder<'_> {
     fn by_spring(&self, spring: usize) -> LinearVector {
         let spring = &self.layout.springs[spring];
         let carried = self.carried(&Point { at_m: spring.at_m, rank: spring.rank, inside_m: None });
-        let along_m = spring.way(&self.layout.tip_m).0 * spring.compliance;
-        let load = carried.along(spring.slides, &spring.axis);
+        let along_m = spring.way(&self.layout.tip_m).moved * spring.compliance;
+        let load = match spring.slides {
+            true => carried.force_along(&spring.axis),
+            false => carried.moment_about(&spring.axis),
+        };
         LinearVector {
             fixed: along_m * load.fixed,
             per_load: load.per_load.iter().map(|load| along_m * *load).collect(),
@@ -307,13 +323,13 @@ impl Builder<'_> {
         let rotation = &self.layout.tip_rotation;
         let payload = Point { at_m: payload_at(self.layout, case), rank: usize::MAX, inside_m: None };
         let spin = Matrix3::from_diagonal(&case.payload.inertia_about_cg_kgm2.map(|i| i.max(0.0).sqrt()));
-        let (moved, turned) = self.motions(&payload);
+        let Motions { moved, turned } = self.motions(&payload);
         for axis in 0..3 {
             add_square(&mut out, &along(&moved, &Vector3::ith(axis, 1.0)), case.payload.mass_kg);
             add_square(&mut out, &along(&turned, &(rotation * spin.column(axis))), 1.0);
         }
         for mass in &self.layout.masses {
-            let (mut moved, turned) = self.motions(&mass.carrier);
+            let Motions { mut moved, turned } = self.motions(&mass.carrier);
             moved.iter_mut().zip(&turned).for_each(|(moved, turned)| *moved += turned.cross(&mass.arm_m));
             for axis in 0..3 {
                 add_square(&mut out, &along(&moved, &Vector3::ith(axis, 1.0)), mass.mass_kg);
@@ -331,7 +347,8 @@ impl Builder<'_> {
     pub(super) fn inertia_per(&self) -> Vec<Vec<f64>> {
         let drives = self.layout.joints.iter().map(|joint| {
             let mut out = self.no_inertia();
-            let (moved, _) = self.motions(&Point { at_m: joint.at_m, rank: joint.rank, inside_m: None });
+            let Motions { moved, .. } =
+                self.motions(&Point { at_m: joint.at_m, rank: joint.rank, inside_m: None });
             for axis in 0..3 {
                 add_square(&mut out, &along(&moved, &Vector3::ith(axis, 1.0)), 1.0);
             }
@@ -348,7 +365,7 @@ impl Builder<'_> {
         let placed = &self.layout.tubes[tube];
         for (xi, weight) in GAUSS {
             let weight_m = weight * placed.length_m;
-            let (moved, turned) = self.motions(&self.inside(tube, xi * placed.length_m));
+            let Motions { moved, turned } = self.motions(&self.inside(tube, xi * placed.length_m));
             for axis in 0..3 {
                 let direction = placed.frame.column(axis).into_owned();
                 add_square(&mut out[axis.min(1)], &along(&moved, &direction), weight_m);
@@ -358,9 +375,10 @@ impl Builder<'_> {
         out
     }
 
-    /// Displacements and rotations of `point` in the world frame, each list with one entry per unit of each coordinate.
-    fn motions(&self, point: &Point) -> (Vec<Vector3<f64>>, Vec<Vector3<f64>>) {
-        self.coordinates.iter().map(|&coordinate| self.layout.motion(coordinate, point)).unzip()
+    fn motions(&self, point: &Point) -> Motions {
+        let each = self.coordinates.iter().map(|&coordinate| self.layout.motion(coordinate, point));
+        let (moved, turned) = each.map(|motion| (motion.moved, motion.turned)).unzip();
+        Motions { moved, turned }
     }
 
     fn no_inertia(&self) -> Vec<f64> {

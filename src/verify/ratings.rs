@@ -71,10 +71,14 @@ impl Ratings {
         duty: &Duty,
     ) -> Option<Self> {
         let heat = match duty.checks_heat {
-            true => {
-                let parts = (gear, motor, &duty.stage);
-                MotorHeat::of(parts, duty.speed_rad_s, duty.acceleration_rad_s2, &duty.stated.phases)?
-            }
+            true => MotorHeat::of(
+                gear,
+                motor,
+                &duty.stage,
+                duty.speed_rad_s,
+                duty.acceleration_rad_s2,
+                &duty.stated.phases,
+            )?,
             false => MotorHeat::NONE,
         };
         let bearing = BearingRatings::of(bearing, [duty.mean_speed_rad_s, duty.life_h]);

@@ -7,7 +7,7 @@
 
 use super::envelope::envelope;
 use super::gears::bearing;
-use super::row::Row;
+use super::row::{Order, Row};
 use crate::catalog::envelope::Envelope;
 use crate::catalog::gear::{Gear, GearKind, LifeLaw};
 use crate::catalog::motor::{Motor, MotorKind};
@@ -99,10 +99,10 @@ fn check(row: &Row) {
         ("k2_nm_per_rad", "k3_nm_per_rad", "a gear stiffens: K1 <= K2 <= K3"),
     ];
     for (low, high, hint) in pairs {
-        row.ascending(&[(low, row.number(low)), (high, row.number(high))], false, hint);
+        row.ascending(&[(low, row.number(low)), (high, row.number(high))], Order::NotFalling, hint);
     }
     let breaks = [("t1_nm", row.number("t1_nm")), ("t2_nm", row.number("t2_nm"))];
-    row.ascending(&breaks, true, "the first segment of the torsion curve ends before the second");
+    row.ascending(&breaks, Order::Rising, "the first segment of the torsion curve ends before the second");
     if let Some(speed) = row.number("max_speed_rpm").filter(|&speed| speed > 1000.0) {
         let hint = "speeds are the output's; the motor's are the ratio times as large";
         row.warn("max_speed_rpm", format!("= {speed} is fast for a joint"), hint);

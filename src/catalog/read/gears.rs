@@ -1,7 +1,7 @@
 //! Rows of `gears.csv`, and the checks within one row.
 
 use super::envelope::envelope;
-use super::row::Row;
+use super::row::{Order, Row};
 use crate::catalog::gear::{BearingRatings, Gear, GearKind, LifeLaw};
 
 /// The gear that a row describes; `None` if its name or source is blank or not valid.
@@ -80,36 +80,46 @@ fn check(row: &Row) {
     order(
         row,
         &["rated_torque_nm", "average_torque_limit_nm", "repeated_peak_torque_nm"],
-        false,
+        Order::NotFalling,
         "rated <= average limit <= repeated peak < momentary peak",
     );
     order(
         row,
         &["repeated_peak_torque_nm", "momentary_peak_torque_nm"],
-        kind(row) == GearKind::StrainWave,
+        if kind(row) == GearKind::StrainWave { Order::Rising } else { Order::NotFalling },
         "rated <= average limit <= repeated peak < momentary peak",
     );
     order(
         row,
         &["k1_nm_per_rad", "k2_nm_per_rad", "k3_nm_per_rad"],
-        false,
+        Order::NotFalling,
         "a gear stiffens: K1 <= K2 <= K3",
     );
-    order(row, &["t1_nm", "t2_nm"], true, "the first segment of the torsion curve ends before the second");
+    order(
+        row,
+        &["t1_nm", "t2_nm"],
+        Order::Rising,
+        "the first segment of the torsion curve ends before the second",
+    );
     order(
         row,
         &["average_input_speed_limit_rpm", "max_input_speed_rpm"],
-        false,
+        Order::NotFalling,
         "the limit for the average speed is not above that for the peak",
     );
     order(
         row,
         &["mass_component_set_kg", "mass_housed_unit_kg"],
-        true,
+        Order::Rising,
         "the housed unit contains the component set",
     );
     for limit in ["buckling_torque_nm", "ratcheting_torque_nm"] {
-        order(row, &["momentary_peak_torque_nm", limit], false, "a gear survives its momentary peak torque");
+        order(
+            row,
+            &["momentary_peak_torque_nm", limit],
+            Order::NotFalling,
+            "a gear survives its momentary peak torque",
+        );
     }
     if let (Some(pitch_m), Some(outer_mm)) =
         (row.number("bearing_pitch_diameter_m"), row.number("outer_diameter_mm"))
@@ -132,9 +142,9 @@ fn check(row: &Row) {
     }
 }
 
-fn order(row: &Row, columns: &[&'static str], strict: bool, hint: &str) {
+fn order(row: &Row, columns: &[&'static str], order: Order, hint: &str) {
     let figures: Vec<_> = columns.iter().map(|column| (*column, row.number(column))).collect();
-    row.ascending(&figures, strict, hint);
+    row.ascending(&figures, order, hint);
 }
 
 /// Warns of numbers of a row that are far from the numbers of all known harmonic drives of the same size. Such a number

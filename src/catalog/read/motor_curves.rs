@@ -2,7 +2,7 @@
 //! output.
 
 use super::log::Log;
-use super::row::Row;
+use super::row::{Order, Row};
 use crate::catalog::Catalogs;
 use crate::catalog::gear::{Gear, GearKind};
 use crate::catalog::motor::MotorCurvePoint;
@@ -26,7 +26,7 @@ pub(crate) fn attach(catalogs: &mut Catalogs, rows: &[Row]) {
         }
         row.ascending(
             &[("continuous_torque_nm", continuous_torque_nm), ("peak_torque_nm", peak_torque_nm)],
-            false,
+            Order::NotFalling,
             "the peak torque is not below the continuous torque",
         );
         let point = MotorCurvePoint { speed_rpm, continuous_torque_nm, peak_torque_nm };

@@ -1,7 +1,7 @@
 //! Rows of `motors.csv`, and the checks within one row.
 
 use super::envelope::envelope;
-use super::row::Row;
+use super::row::{Order, Row};
 use crate::catalog::motor::{Motor, MotorKind};
 use std::f64::consts::PI;
 
@@ -36,7 +36,7 @@ fn check(row: &Row) {
         ),
     ];
     for (low, high, hint) in pairs {
-        row.ascending(&[(low, row.number(low)), (high, row.number(high))], false, hint);
+        row.ascending(&[(low, row.number(low)), (high, row.number(high))], Order::NotFalling, hint);
     }
     power(row);
     inertia(row);

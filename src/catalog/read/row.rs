@@ -8,6 +8,22 @@ use crate::input::json::closest;
 use crate::input::magnitude::{beyond_calculation, not_positive};
 use crate::input::names::{unfit_cell, unfit_name};
 
+/// How numbers must follow each other.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Order {
+    /// Each number is larger than the one before.
+    Rising,
+    /// No number is smaller than the one before.
+    NotFalling,
+}
+
+impl Order {
+    /// Whether `next` may follow `before`.
+    pub(crate) fn holds(self, before: f64, next: f64) -> bool {
+        !(next < before || (self == Self::Rising && next == before))
+    }
+}
+
 /// One row: the cells in the order of the file's known columns. `None` is the cell of an absent column.
 pub(crate) struct Row<'a> {
     file: CatalogFile,
@@ -137,12 +153,12 @@ impl<'a> Row<'a> {
     }
 
     /// Reports those of the numbers in `figures` (column and value) that are smaller than the number before them.
-    /// Unknown numbers are skipped. With `strict`, a number that equals the one before is reported too.
-    pub(crate) fn ascending(&self, figures: &[(&str, Option<f64>)], strict: bool, hint: &str) {
+    /// Unknown numbers are skipped.
+    pub(crate) fn ascending(&self, figures: &[(&str, Option<f64>)], order: Order, hint: &str) {
         let known: Vec<_> = figures.iter().filter_map(|(column, x)| Some((*column, (*x)?))).collect();
         for pair in known.windows(2) {
             let [(low_column, low), (column, x)] = [pair[0], pair[1]];
-            if x < low || (strict && x == low) {
+            if !order.holds(low, x) {
                 let relation = if x == low { "must exceed" } else { "is below" };
                 self.fault(column, format!("= {x} {relation} {low_column} = {low}"), hint);
             }

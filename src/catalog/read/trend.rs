@@ -2,6 +2,7 @@
 //! with the rated point. Deviations are only warnings, because vendors print some.
 
 use super::log::Log;
+use super::row::Order;
 use crate::catalog::efficiency::EfficiencyKind;
 use crate::catalog::gear::{Gear, GearKind};
 use crate::catalog::{Catalogs, Provenance};
@@ -49,10 +50,10 @@ pub(crate) fn check(catalogs: &Catalogs, log: &Log) {
     let by_size = families(&catalogs.gears, |g| g.ratio, |g| f64::from(g.size));
     let by_ratio = families(&catalogs.gears, |g| f64::from(g.size), |g| g.ratio);
     for family in &by_size {
-        GROW_WITH_SIZE.iter().for_each(|figure| grows(family, *figure, true, log));
+        GROW_WITH_SIZE.iter().for_each(|figure| grows(family, *figure, Order::Rising, log));
     }
     for family in &by_ratio {
-        GROW_WITH_RATIO.iter().for_each(|figure| grows(family, *figure, false, log));
+        GROW_WITH_RATIO.iter().for_each(|figure| grows(family, *figure, Order::NotFalling, log));
     }
     catalogs.gears.iter().for_each(|gear| rated_point(catalogs, gear, log));
 }
@@ -68,11 +69,11 @@ fn families(gears: &[Gear], common: fn(&Gear) -> f64, rising: fn(&Gear) -> f64) 
     families.into_values().collect()
 }
 
-fn grows(family: &[&Gear], (column, figure): Figure, strict: bool, log: &Log) {
+fn grows(family: &[&Gear], (column, figure): Figure, order: Order, log: &Log) {
     let known: Vec<_> = family.iter().filter_map(|gear| Some((*gear, figure(gear)?))).collect();
     for pair in known.windows(2) {
         let [(smaller, low), (gear, x)] = [pair[0], pair[1]];
-        if x < low || (strict && x == low) {
+        if !order.holds(low, x) {
             let relation = if x == low { "equals" } else { "is out of line with" };
             let problem = format!("{} = {} {relation} {} = {}", gear.id, x.abs(), smaller.id, low.abs());
             warn(

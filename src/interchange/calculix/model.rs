@@ -255,8 +255,8 @@ impl Builder<'_> {
             (!element.twists.is_empty()).then_some((beam, mesh))
         });
         let (Some(link), Some((beam, mesh))) = (link, flexible) else {
-            let (mass_kg, cg_m, inertia) = mass_properties(&own.rigid);
-            return self.rigid(mass_kg, &cg_m, &inertia, &element.name);
+            let RigidBody { mass_kg, cg_m, inertia_kgm2 } = mass_properties(&own.rigid);
+            return self.rigid(mass_kg, &cg_m, &inertia_kgm2, &element.name);
         };
         let first = self.model.nodes_m.len();
         self.model.nodes_m.extend(&mesh.nodes_m);

@@ -246,24 +246,32 @@ impl Posterior {
     /// The 95 % interval of the slope with parameter index `p`, whose range is `low` to `high`. The distribution of
     /// the slope is a mixture of normal distributions, one per cell, each cut off at the ends of the range.
     fn slope(&self, p: usize, (low, high): (f64, f64)) -> Interval {
-        let parts: Vec<(f64, f64, f64)> = self
+        struct Part {
+            u: f64,
+            sd: f64,
+            mass: f64,
+        }
+        let parts: Vec<Part> = self
             .masses()
             .map(|(_, cell, mass)| {
                 let (u, sd) = (cell.u[p], cell.deviations[p].clamp(1e-9, 1e9));
                 let inside = normal_below((high - u) / sd) - normal_below((low - u) / sd);
-                (u, sd, mass / inside.max(1e-12))
+                Part { u, sd, mass: mass / inside.max(1e-12) }
             })
             .collect();
         let below = |v: f64| -> f64 {
-            let part = |(u, sd, mass): &(f64, f64, f64)| {
+            let part = |Part { u, sd, mass }: &Part| {
                 mass * (normal_below((v - u) / sd) - normal_below((low - u) / sd))
             };
             parts.iter().map(part).sum()
         };
         let density = |v: f64| -> f64 {
-            parts.iter().map(|(u, sd, mass)| mass / sd * libm::exp(-0.5 * ((v - u) / sd).powi(2))).sum()
+            parts
+                .iter()
+                .map(|Part { u, sd, mass }| mass / sd * libm::exp(-0.5 * ((v - u) / sd).powi(2)))
+                .sum()
         };
-        let peak = parts.iter().map(|(u, _, _)| density(*u)).fold(0.0, f64::max);
+        let peak = parts.iter().map(|part| density(part.u)).fold(0.0, f64::max);
         let all = below(high);
         let quantile = |part: f64| {
             let (mut from, mut to) = (low, high);

@@ -117,7 +117,7 @@ impl ModalTest {
         let mass = posed.mass_matrix();
         let added = |c: &Chain| c.pose_rad(&pose_rad, &empty, Vector3::zeros()).mass_matrix() - &mass;
         let factors = layout.with_mass.iter().map(|chain| Factor::of(&added(chain))).collect();
-        let (tip, spin) = tip_jacobians(&posed);
+        let TipJacobians { tip, spin } = tip_jacobians(&posed);
         Self {
             factors,
             geometry: PoseGeometry::new(layout, nominal, &row.pose_deg),
@@ -550,12 +550,19 @@ fn tangent(law: &JointLaw, torque_nm: f64, width: f64) -> f64 {
     law.tangent_compliance_rad_per_nm(torque_nm) - sharp + smooth
 }
 
-/// Displacement of the tip (first) and rotation of the last frame (second), per unit of each strain coordinate.
-fn tip_jacobians(posed: &Posed) -> (Matrix3xX<f64>, Matrix3xX<f64>) {
+/// Motions of the last frame per unit of each strain coordinate.
+struct TipJacobians {
+    /// Displacement of the tip.
+    tip: Matrix3xX<f64>,
+    /// Rotation of the last frame.
+    spin: Matrix3xX<f64>,
+}
+
+fn tip_jacobians(posed: &Posed) -> TipJacobians {
     let twists = posed.tip_twists();
     let tip: Vec<Vector3<f64>> = twists.iter().map(|t| displacement_at(t, &posed.tip_m)).collect();
     let spin: Vec<Vector3<f64>> = twists.iter().map(|t| t.fixed_rows::<3>(3).into_owned()).collect();
-    (Matrix3xX::from_columns(&tip), Matrix3xX::from_columns(&spin))
+    TipJacobians { tip: Matrix3xX::from_columns(&tip), spin: Matrix3xX::from_columns(&spin) }
 }
 
 #[cfg(test)]

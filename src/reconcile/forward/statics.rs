@@ -305,19 +305,26 @@ fn follow_from(
     }
 }
 
+/// The laws of a joint that belong to one load.
+struct LawsOfLoad {
+    /// The law when the reference of the reading was read.
+    reference: JointLaw,
+    /// The law under the load.
+    loaded: JointLaw,
+}
+
 /// Computes the twists (torsion angles) of a joint under successive loads like `follow`, for a joint whose law differs
-/// from load to load. For each load, `laws` gives the law when the reference of its reading was read, and the law under
-/// the load. The twist under a load is computed with the two laws of this load, through all loads from rest to this
+/// from load to load, by `laws`. The twist under a load is computed with the two laws of this load, through all loads from rest to this
 /// one.
 fn follow_changing(
-    laws: impl Iterator<Item = (JointLaw, JointLaw)>,
+    laws: impl Iterator<Item = LawsOfLoad>,
     dead_nm: f64,
     loaded_nm: &[f64],
     twists_rad: &mut [f64],
 ) {
     let mut own_rad = vec![0.0; loaded_nm.len()];
-    for (load, (reference, law)) in laws.enumerate() {
-        follow_from(&reference, &law, dead_nm, &loaded_nm[..=load], &mut own_rad[..=load]);
+    for (load, LawsOfLoad { reference, loaded }) in laws.enumerate() {
+        follow_from(&reference, &loaded, dead_nm, &loaded_nm[..=load], &mut own_rad[..=load]);
         twists_rad[load] = own_rad[load];
     }
 }
@@ -434,7 +441,10 @@ impl StaticPose {
             Some(softening) => {
                 let unchanged = coefficients.law(j, Channel::Static).at_angle(angle_rad);
                 let rows = self.loads.iter().map(|load| load.when.row);
-                let laws = rows.map(|row| (unchanged.softer(softening.reference_factor(row)), law(row)));
+                let laws = rows.map(|row| LawsOfLoad {
+                    reference: unchanged.softer(softening.reference_factor(row)),
+                    loaded: law(row),
+                });
                 follow_changing(laws, dead_nm, loaded_nm, twists_rad);
             }
         }

@@ -201,8 +201,17 @@ pub fn seen_from_tool(payload: &Payload, tool_m: &Vector3<f64>) -> Payload {
     Payload { cg_m: payload.cg_m - tool_m, ..*payload }
 }
 
-/// Torsion law, kinematic twist and torque \[N m\] of each joint, from base to tip.
-fn joints(posed: &Posed) -> Vec<(JointLaw, Twist, f64)> {
+/// A joint in a pose.
+struct PosedJoint {
+    /// Torsion law.
+    law: JointLaw,
+    /// Kinematic twist.
+    twist: Twist,
+    torque_nm: f64,
+}
+
+/// The joints in a pose, from base to tip.
+fn joints(posed: &Posed) -> Vec<PosedJoint> {
     let torques = posed.statics().joint_torques_nm;
     let mut twists = posed.tip_twists().into_iter();
     let laws = posed.elements().filter_map(|element| {
@@ -213,13 +222,13 @@ fn joints(posed: &Posed) -> Vec<(JointLaw, Twist, f64)> {
             Compliance::Linear(_) | Compliance::Slide { .. } | Compliance::Lift(_) => None,
         }
     });
-    laws.zip(torques).map(|((law, twist), (_, torque))| (law, twist, torque)).collect()
+    laws.zip(torques).map(|((law, twist), (_, torque_nm))| PosedJoint { law, twist, torque_nm }).collect()
 }
 
 /// State of each joint's friction play, as a torque, when the arm has come to rest in this pose \[N m\], from base to
 /// tip.
 fn rest(posed: &Posed) -> Vec<f64> {
-    joints(posed).iter().map(|(law, _, torque)| law.play_at_rest_nm(*torque)).collect()
+    joints(posed).iter().map(|joint| joint.law.play_at_rest_nm(joint.torque_nm)).collect()
 }
 
 /// Displacement of the tip from its place in the weightless arm \[m\]. `play` is the state of each joint's friction
@@ -228,8 +237,8 @@ fn tip_m(posed: &Posed, play: &mut [f64]) -> Vector3<f64> {
     let joints = joints(posed);
     let statics = posed.statics();
     let mut tip = statics.tip_displacement_m;
-    for ((law, twist, torque), state) in joints.into_iter().zip(play) {
-        let followed = law.play_angle_rad(torque, state) - law.rising_angle_rad(torque);
+    for (PosedJoint { law, twist, torque_nm }, state) in joints.into_iter().zip(play) {
+        let followed = law.play_angle_rad(torque_nm, state) - law.rising_angle_rad(torque_nm);
         tip += displacement_at(&(twist * followed), &posed.tip_m);
     }
     tip

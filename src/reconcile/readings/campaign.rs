@@ -394,19 +394,20 @@ impl Campaign {
         out
     }
 
-    /// Splits the campaign in two. The first has the readings other than absolute positions, and the second has the
-    /// positions. Records are in neither.
-    pub fn parted(&self) -> (Self, Self) {
-        let loaded =
-            Self { positions: Vec::new(), records: Vec::new(), other_arms: Vec::new(), ..self.clone() };
-        let placed = Self {
+    /// The campaign without absolute positions and without records.
+    pub fn without_positions(&self) -> Self {
+        Self { positions: Vec::new(), records: Vec::new(), other_arms: Vec::new(), ..self.clone() }
+    }
+
+    /// The campaign with absolute positions alone.
+    pub fn positions_alone(&self) -> Self {
+        Self {
             statics: Vec::new(),
             modal: Vec::new(),
             windup: Vec::new(),
             records: Vec::new(),
             ..self.clone()
-        };
-        (loaded, placed)
+        }
     }
 
     /// Whether the campaign has displacements, frequencies or bench readings.

@@ -129,8 +129,15 @@ struct StateColumns {
     temperature: Option<usize>,
 }
 
+/// Whether a table must have a column of payload masses.
+#[derive(Clone, Copy, PartialEq)]
+enum PayloadColumn {
+    Needed,
+    Optional,
+}
+
 impl StateColumns {
-    fn find(table: &Table, joints: &[DrivenJoint], payload_needed: bool) -> Option<Self> {
+    fn find(table: &Table, joints: &[DrivenJoint], payload: PayloadColumn) -> Option<Self> {
         let expected: Vec<String> = joints.iter().map(|joint| format!("q_{}", joint.key())).collect();
         for column in table.columns.iter().filter(|c| c.starts_with("q_") && !expected.contains(c)) {
             table.fault(
@@ -145,7 +152,7 @@ impl StateColumns {
         const MASS: &str = "payload_kg";
         table.check_family("payload", &[MASS, CG[0], CG[1], CG[2]]);
         let cg = CG.map(|name| table.optional(name));
-        let mass = match payload_needed || cg.iter().any(Option::is_some) {
+        let mass = match payload == PayloadColumn::Needed || cg.iter().any(Option::is_some) {
             true => Some(table.required(MASS)?),
             false => table.optional(MASS),
         };
@@ -205,8 +212,11 @@ pub(crate) fn static_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Sta
     table.check_family("force", &FORCE);
     let force = FORCE.map(|name| table.optional(name));
     // if there is a force, a payload is not necessary
-    let loads_needed = force.iter().all(Option::is_none);
-    let state = StateColumns::find(table, &arm.driven_joints(), loads_needed);
+    let payload = match force.iter().all(Option::is_none) {
+        true => PayloadColumn::Needed,
+        false => PayloadColumn::Optional,
+    };
+    let state = StateColumns::find(table, &arm.driven_joints(), payload);
     let components = VectorColumns::find(table, &DISPLACEMENT, purpose);
     let branch = table.optional("branch");
     let (Some(state), Some(components)) = (state, components) else { return Vec::new() };
@@ -233,7 +243,7 @@ pub(crate) fn static_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Sta
 
 /// Reads the rows of `modal.csv`. `purpose` says whether readings may be blank. Faults are recorded in `table`.
 pub(crate) fn modal_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<ModalRow> {
-    let state = StateColumns::find(table, &arm.driven_joints(), false);
+    let state = StateColumns::find(table, &arm.driven_joints(), PayloadColumn::Optional);
     let mode = table.required("mode");
     let readings = ["frequency_hz", "sigma_hz"].map(|name| reading_column(table, name, purpose));
     let (Some(state), Some(mode), [Some(frequency), Some(sigma_hz)]) = (state, mode, readings) else {
@@ -316,7 +326,7 @@ pub(crate) fn position_rows(
         );
         return Vec::new();
     }
-    let state = StateColumns::find(table, driven, false);
+    let state = StateColumns::find(table, driven, PayloadColumn::Optional);
     let components = VectorColumns::find(table, &POSITION, purpose);
     let point = table.optional("point");
     let test = table.optional("test");

@@ -270,11 +270,24 @@ fn outboard_kg(subject: &Subject, joint: &str) -> f64 {
         .sum()
 }
 
+/// Stiffnesses of a joint with which the readings are still explained \[N m/rad\].
+struct StiffnessRange {
+    joint: String,
+    low: f64,
+    high: f64,
+}
+
+impl StiffnessRange {
+    fn ratio(&self) -> f64 {
+        self.high / self.low
+    }
+}
+
 /// Sentences on joints whose stiffness cannot be identified: the readings are still explained with very different
 /// values of this stiffness. The joint with the widest range comes first.
 fn unidentified_stiffnesses(search: &Search, explaining: &[Scored], subjects: &[Subject]) -> Vec<String> {
     let joints = search.forward.nominal.structure.joints().filter(|j| !j.law.is_rigid());
-    let mut ranges: Vec<(String, f64, f64)> = joints
+    let mut ranges: Vec<StiffnessRange> = joints
         .map(|joint| {
             let ends = explaining.par_iter().zip(subjects).take(MOST_PROFILES).map(|(set, subject)| {
                 let stiffness = stiffness_nm_per_rad(subject, &joint.name);
@@ -283,16 +296,16 @@ fn unidentified_stiffnesses(search: &Search, explaining: &[Scored], subjects: &[
             });
             let ends: Vec<(f64, f64)> = ends.collect();
             let (low, high) = span(ends.into_iter().flat_map(|(low, high)| [low, high]));
-            (joint.name.clone(), low, high)
+            StiffnessRange { joint: joint.name.clone(), low, high }
         })
-        .filter(|(_, low, high)| high / low > WIDEST_STIFFNESS_RATIO)
+        .filter(|range| range.ratio() > WIDEST_STIFFNESS_RATIO)
         .collect();
-    ranges.sort_by(|a, b| (b.2 / b.1).total_cmp(&(a.2 / a.1)));
+    ranges.sort_by(|a, b| b.ratio().total_cmp(&a.ratio()));
     ranges
         .into_iter()
-        .map(|(name, low, high)| {
+        .map(|StiffnessRange { joint, low, high }| {
             format!(
-                "the stiffness of {name} cannot be identified: the readings are explained as well with {low:.0} as with \
+                "the stiffness of {joint} cannot be identified: the readings are explained as well with {low:.0} as with \
                  {high:.0} N m/rad"
             )
         })

@@ -68,6 +68,21 @@ pub(crate) struct Selection {
     pub given_up: bool,
 }
 
+/// A candidate that was added to a model without a full fit.
+struct Screened {
+    /// Index of the candidate.
+    candidate: usize,
+    /// The parameters from which a full fit starts.
+    u: Vec<f64>,
+    score: f64,
+}
+
+impl Screened {
+    fn best_first(a: &Self, b: &Self) -> std::cmp::Ordering {
+        b.score.total_cmp(&a.score).then(a.candidate.cmp(&b.candidate))
+    }
+}
+
 /// The predictions of a model at one point, and their derivatives at this point.
 struct Linearized {
     here: Point,
@@ -251,7 +266,7 @@ impl<'a> Search<'a> {
             screened.extend(self.screen(&nominal));
             screened.extend(self.by_size(&nominal));
         }
-        let starts = screened.into_iter().map(|(c, u, _)| ([base.effects.as_slice(), &[c]].concat(), u));
+        let starts = screened.into_iter().map(|s| ([base.effects.as_slice(), &[s.candidate]].concat(), s.u));
         let mut known: Vec<Scored> = Vec::new();
         let mut fresh: Vec<(Vec<usize>, Vec<f64>)> = Vec::new();
         for (effects, u) in starts {
@@ -338,8 +353,8 @@ impl<'a> Search<'a> {
     }
 
     /// The candidates that, according to the linearized model, raise the score of the model `base` most, the best
-    /// first. Each is given as its index, the parameters from which a full fit starts, and the score.
-    fn screen(&self, base: &Scored) -> Vec<(usize, Vec<f64>, f64)> {
+    /// first.
+    fn screen(&self, base: &Scored) -> Vec<Screened> {
         let model = self.model(&base.effects);
         let sharp = self.linearized(&model, &base.u);
         // the smoothing must be the same before and after a change, because the nominal curves of other joints have
@@ -355,19 +370,19 @@ impl<'a> Search<'a> {
             true => smooth.as_ref().unwrap_or(&sharp),
             false => &sharp,
         };
-        let mut tried: Vec<(usize, Vec<f64>, f64)> = (0..self.candidates.len())
+        let mut tried: Vec<Screened> = (0..self.candidates.len())
             .into_par_iter()
             .filter(|i| base.effects.iter().all(|e| !self.candidates[*e].is_variant_of(&self.candidates[*i])))
             .filter_map(|i| self.best_start(&model, about(i), i))
-            .map(|(i, u, score)| (i, u, score - self.price(&[i])))
+            .map(|s| Screened { score: s.score - self.price(&[s.candidate]), ..s })
             .collect();
-        tried.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
+        tried.sort_by(Screened::best_first);
         // variants of one effect must not displace other effects from the list
         let mut variants: Vec<usize> = Vec::new();
-        tried.retain(|(i, ..)| {
-            let own = variants.iter().filter(|v| self.candidates[**v].is_variant_of(&self.candidates[*i]));
+        tried.retain(|&Screened { candidate: i, .. }| {
+            let own = variants.iter().filter(|v| self.candidates[**v].is_variant_of(&self.candidates[i]));
             let is_kept = own.count() < MOST_VARIANTS;
-            variants.push(*i);
+            variants.push(i);
             is_kept
         });
         tried.truncate(FULL_FITS);
@@ -375,10 +390,9 @@ impl<'a> Search<'a> {
     }
 
     /// The candidates that come closest to the readings when they are added to the model `base` at one of a few
-    /// sizes, the closest first: index, parameters from which a full fit starts, and minus half of the objective.
-    /// They are needed if much is missing: a model that is linearized about `base` then does not predict the effect
+    /// sizes, the closest first. Their score is minus half of the objective. They are needed if much is missing: a model that is linearized about `base` then does not predict the effect
     /// of a candidate on the frequencies well enough.
-    fn by_size(&self, base: &Scored) -> Vec<(usize, Vec<f64>, f64)> {
+    fn by_size(&self, base: &Scored) -> Vec<Screened> {
         let model = self.model(&base.effects);
         let here = evaluate(self.forward, &model, &base.u, self.weights);
         // frequencies take long to solve for: displacements choose the start, frequencies choose the size
@@ -403,11 +417,11 @@ impl<'a> Search<'a> {
             };
             let tried = TRIED_SIZES.into_iter().filter_map(best_start);
             let (objective, u) = least(tried.map(|u| (misfit(&u, self.weights), u)))?;
-            Some((index, u, -0.5 * objective))
+            Some(Screened { candidate: index, u, score: -0.5 * objective })
         };
         let open = (0..self.candidates.len()).into_par_iter().filter(|i| !base.effects.contains(i));
-        let mut tried: Vec<(usize, Vec<f64>, f64)> = open.filter_map(best_size).collect();
-        tried.sort_by(|a, b| b.2.total_cmp(&a.2).then(a.0.cmp(&b.0)));
+        let mut tried: Vec<Screened> = open.filter_map(best_size).collect();
+        tried.sort_by(Screened::best_first);
         tried.truncate(FULL_FITS);
         tried
     }
@@ -424,12 +438,7 @@ impl<'a> Search<'a> {
         self.candidates[candidate].kind.traits.steps_frequencies() || !base.break_points().is_empty()
     }
 
-    fn best_start(
-        &self,
-        base: &Model<'a>,
-        about: &Linearized,
-        index: usize,
-    ) -> Option<(usize, Vec<f64>, f64)> {
+    fn best_start(&self, base: &Model<'a>, about: &Linearized, index: usize) -> Option<Screened> {
         let Linearized { here, slopes } = about;
         let candidate = &self.candidates[index];
         let mut model = base.with(candidate);
@@ -452,7 +461,7 @@ impl<'a> Search<'a> {
             .iter()
             .map(|start| at_start(start))
             .max_by(|a, b| a.1.total_cmp(&b.1))
-            .map(|(u, score)| (index, u, score))
+            .map(|(u, score)| Screened { candidate: index, u, score })
     }
 
     /// Best parameters and score of the model `model` (the model at `here` and one candidate). The model is linearized

@@ -133,7 +133,7 @@ impl PickedArm {
     }
 
     fn drawing(&self, solved: &Solved) -> Figure {
-        let view = View::of(&solved.lines, &solved.lines, true);
+        let view = View::from_the_side(&solved.lines);
         let mut sketch = self.sketch(solved, &solved.lines, &view);
         sketch.factor = sketch.fitting_factor();
         let factor = shortest(sketch.factor);
@@ -164,7 +164,7 @@ impl PickedArm {
 
     fn mode_figures(&self, solved: &Solved) -> Vec<Figure> {
         let figure = |(i, (mode, line)): (usize, &(Mode, Vec<Station>))| {
-            let view = View::of(line, &solved.lines, false);
+            let view = View::of(line, &solved.lines);
             let mut sketch = self.sketch(solved, line, &view);
             sketch.factor = sketch.fitting_factor();
             sketch.title = format!("mode {}: {} Hz", i + 1, significant(mode.frequency_hz, 4));
@@ -384,21 +384,25 @@ struct View {
 }
 
 impl View {
-    /// The plane in which an arm is drawn: the vertical plane through base and tip. It is the view from above instead,
-    /// if the points `moving` move mostly out of the vertical plane and `keep_upright` is false. `arm` has the points
-    /// of the centre line.
-    fn of(moving: &[Station], arm: &[Station], keep_upright: bool) -> Self {
+    /// The vertical plane through base and tip. `arm` has the points of the centre line.
+    fn from_the_side(arm: &[Station]) -> Self {
         let tip = arm.last().map_or(Vector3::zeros(), |s| s.at_m);
         let level = Vector3::new(tip.x, tip.y, 0.0);
         let right = if level.norm() > 1e-6 { level.normalize() } else { Vector3::x() };
-        let side = Self { right, up: Vector3::z(), upright: true, words: "Seen from the side." };
+        Self { right, up: Vector3::z(), upright: true, words: "Seen from the side." }
+    }
+
+    /// The view from the side or, if the points `moving` move mostly out of its plane, from above.
+    fn of(moving: &[Station], arm: &[Station]) -> Self {
+        let side = Self::from_the_side(arm);
         let most =
             |of: &dyn Fn(&Vector3<f64>) -> f64| moving.iter().map(|s| of(&s.moved_m)).fold(0.0, f64::max);
         let sideways = most(&|m| m.dot(&side.across()).abs());
-        if keep_upright || sideways < SIDEWAYS_SHARE * most(&|m| m.norm()) {
+        if sideways < SIDEWAYS_SHARE * most(&|m| m.norm()) {
             return side;
         }
-        Self { right, up: Vector3::z().cross(&right), upright: false, words: "Seen from above." }
+        let up = Vector3::z().cross(&side.right);
+        Self { right: side.right, up, upright: false, words: "Seen from above." }
     }
 
     fn across(&self) -> Vector3<f64> {

@@ -172,20 +172,35 @@ impl Plot {
         head(&self.title, &self.description, self.width_px, self.height_px)
     }
 
-    /// Ends of an axis: its stated range, or else the smallest and largest value of the data. Without any data they are
-    /// 1 and 10. `along_x` says which axis it is.
-    fn extent(&self, axis: &Axis, along_x: bool) -> (f64, f64) {
-        let guides = self.guides.iter().filter(|g| g.vertical == along_x).map(|g| g.value);
-        let points = self.series.iter().flat_map(|s| &s.points).filter(|p| self.shows(p));
-        let values = points.map(|(x, y)| if along_x { *x } else { *y }).chain(guides);
-        let (low, high) = values
-            .filter(|v| usable(axis.scale, *v))
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
-        axis.range.unwrap_or(if low <= high { (low, high) } else { (1.0, 10.0) })
+    /// Ends of the x axis.
+    fn x_extent(&self) -> (f64, f64) {
+        let guides = self.guides.iter().filter(|g| g.vertical).map(|g| g.value);
+        self.x.extent(self.shown().map(|(x, _)| *x).chain(guides))
+    }
+
+    /// Ends of the y axis.
+    fn y_extent(&self) -> (f64, f64) {
+        let guides = self.guides.iter().filter(|g| !g.vertical).map(|g| g.value);
+        self.y.extent(self.shown().map(|(_, y)| *y).chain(guides))
+    }
+
+    fn shown(&self) -> impl Iterator<Item = &(f64, f64)> {
+        self.series.iter().flat_map(|s| &s.points).filter(|p| self.shows(p))
     }
 
     fn shows(&self, point: &(f64, f64)) -> bool {
         usable(self.x.scale, point.0) && usable(self.y.scale, point.1)
+    }
+}
+
+impl Axis {
+    /// Ends of the axis: its stated range, or else the smallest and largest value of the data. Without any data they
+    /// are 1 and 10.
+    fn extent(&self, values: impl Iterator<Item = f64>) -> (f64, f64) {
+        let (low, high) = values
+            .filter(|v| usable(self.scale, *v))
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+        self.range.unwrap_or(if low <= high { (low, high) } else { (1.0, 10.0) })
     }
 }
 
@@ -206,8 +221,8 @@ pub(super) struct Canvas {
 
 impl Canvas {
     pub(super) fn new(plot: &Plot) -> Self {
-        let (x_low, x_high) = plot.extent(&plot.x, true);
-        let (y_low, y_high) = plot.extent(&plot.y, false);
+        let (x_low, x_high) = plot.x_extent();
+        let (y_low, y_high) = plot.y_extent();
         let (top, bottom) = (46.0, plot.height_px - 58.0);
         let y = rule(plot.y.scale, y_low, y_high, ((bottom - top) / 60.0) as usize);
         let labels = y.ticks.iter().filter_map(|t| t.label.as_deref());

@@ -54,6 +54,14 @@ pub(super) struct Branchings {
     pub curves: Vec<Numbers>,
 }
 
+/// A force and a compliance whose product displaces the tip.
+struct Product<'p> {
+    /// Position of the compliance in the list of numbers.
+    number: usize,
+    work: &'p LinearVector,
+    compliance: Span,
+}
+
 impl Rows<'_> {
     /// Ways to divide a subproblem, the most promising first. `left` is the subproblem after its options were reduced,
     /// with the mixture that no weights refute.
@@ -139,7 +147,7 @@ impl Rows<'_> {
             let pose = self.pose(case);
             let loads = &members.loads[pose.water];
             let left_out =
-                self.products(part, pose, members).into_iter().map(|(number, work, compliance)| {
+                self.products(part, pose, members).into_iter().map(|Product { number, work, compliance }| {
                     let forces = work.along(&direction, loads);
                     let per_load = work.per_load.iter().enumerate();
                     let force = work.fixed.dot(&direction)
@@ -155,21 +163,15 @@ impl Rows<'_> {
         self.tips.iter().map(of_tip).sum()
     }
 
-    /// Every product of force and compliance by which a part displaces the tip in a case. Each is given by the position
-    /// of the compliance in the list of numbers, the force, and the interval of the compliance.
-    fn products<'p>(
-        &self,
-        part: usize,
-        pose: &'p Pose,
-        members: &Members,
-    ) -> Vec<(usize, &'p LinearVector, Span)> {
+    /// Every product of force and compliance by which a part displaces the tip in a case.
+    fn products<'p>(&self, part: usize, pose: &'p Pose, members: &Members) -> Vec<Product<'p>> {
         let Some(tube) = part.checked_sub(self.columns.joints) else {
-            let tilt = members.drives[part].tilt_rad_per_nm;
-            return vec![(self.columns.tilt(part), &pose.by_tilts[part], tilt)];
+            let compliance = members.drives[part].tilt_rad_per_nm;
+            return vec![Product { number: self.columns.tilt(part), work: &pose.by_tilts[part], compliance }];
         };
         let works = pose.works[tube].iter().zip(compliances(members.tubes[tube])).enumerate();
         let number = |which| self.columns.tubes[tube] + place::compliance(self.skeleton.waters.len(), which);
-        works.map(|(which, (work, compliance))| (number(which), work, compliance)).collect()
+        works.map(|(which, (work, compliance))| Product { number: number(which), work, compliance }).collect()
     }
 
     /// Ways to divide a subproblem at the torques of a judged case, each with its score. The score is positive if the

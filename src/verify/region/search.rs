@@ -14,7 +14,7 @@ use super::branch::Branchings;
 use super::parts_table::PartsTable;
 use super::rows::Rows;
 use super::subproblem::{Shape, Subproblem};
-use super::upper_bounds::UpperBounds;
+use super::upper_bounds::{Node, UpperBounds};
 use super::weights::Reduced;
 use crate::pareto::objectives::Objectives;
 use std::sync::Arc;
@@ -78,7 +78,7 @@ impl RegionSearch<'_> {
         mut subproblem: Subproblem,
         branch: Branch,
     ) -> Found {
-        let Some((upper, halves)) = uppers.node(at) else { return Found::default() };
+        let Some(Node { upper, halves }) = uppers.node(at) else { return Found::default() };
         let mut found = Found::default();
         let branchings = match self.narrow(&mut subproblem, upper, &mut found.boxes) {
             Narrowed::Refuted => return found,

@@ -16,9 +16,14 @@ const BETTER_BY: f64 = 2e-7;
 /// A binary tree over the local upper bounds of a front. The root is node 0.
 pub(super) struct UpperBounds(Vec<Node>);
 
-/// A node of the tree: the upper bound that covers all bounds below the node, and the indices of its two halves. A
-/// leaf has no halves.
-type Node = (UpperBound, Option<[usize; 2]>);
+/// A node of the tree.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Node {
+    /// The upper bound that covers all bounds below the node.
+    pub upper: UpperBound,
+    /// Indices of the two halves of the node; a leaf has none.
+    pub halves: Option<[usize; 2]>,
+}
 
 impl UpperBounds {
     /// The local upper bounds that a front leaves open within the limits. Every feasible design that no design of the
@@ -33,7 +38,7 @@ impl UpperBounds {
         Self(nodes)
     }
 
-    /// The node with the number `at`: its upper bound and its two halves. Node 0 is the root; it is missing (`None`) if
+    /// The node with the number `at`. Node 0 is the root; it is missing (`None`) if
     /// no region is open.
     pub(super) fn node(&self, at: usize) -> Option<Node> {
         self.0.get(at).copied()
@@ -87,7 +92,7 @@ fn left_open(rows: &[UpperBound], limits: UpperBound) -> Vec<UpperBound> {
 /// most, and each half is divided in the same way. Returns the index of the node.
 fn grow(uppers: &mut [UpperBound], nodes: &mut Vec<Node>) -> usize {
     let here = nodes.len();
-    nodes.push((uppers[0], None));
+    nodes.push(Node { upper: uppers[0], halves: None });
     if uppers.len() > 1 {
         let width = |axis: usize| {
             let finite = uppers.iter().map(|c| c.numbers()[axis].max(1e-9)).filter(|x| x.is_finite());
@@ -101,7 +106,8 @@ fn grow(uppers: &mut [UpperBound], nodes: &mut Vec<Node>) -> usize {
         uppers.select_nth_unstable_by(half, |a, b| a.numbers()[axis].total_cmp(&b.numbers()[axis]));
         let (low, high) = uppers.split_at_mut(half);
         let halves = [grow(low, nodes), grow(high, nodes)];
-        nodes[here] = (nodes[halves[0]].0.join(&nodes[halves[1]].0), Some(halves));
+        let upper = nodes[halves[0]].upper.join(&nodes[halves[1]].upper);
+        nodes[here] = Node { upper, halves: Some(halves) };
     }
     here
 }
@@ -113,7 +119,7 @@ mod tests {
 
     /// Whether a design is below some upper bound under a node.
     fn is_below(uppers: &UpperBounds, at: usize, design: &UpperBound) -> bool {
-        uppers.node(at).is_some_and(|(upper, halves)| {
+        uppers.node(at).is_some_and(|Node { upper, halves }| {
             design.is_within(&upper)
                 && halves.is_none_or(|halves| halves.into_iter().any(|half| is_below(uppers, half, design)))
         })
@@ -158,7 +164,7 @@ mod tests {
         let limits = UpperBound { mass_kg: 20.0, tip_m: 20.0, hz: 0.0 };
         let [all, few] = [0.0, 0.1].map(|apart| UpperBounds::new(&rows, limits, apart));
         assert!(few.0.len() < all.0.len());
-        for (upper, halves) in &all.0 {
+        for Node { upper, halves } in &all.0 {
             assert!(halves.is_some() || is_below(&few, 0, upper));
         }
     }

@@ -3,6 +3,7 @@
 
 use super::{Builder, Law, one_or_both};
 use crate::arm::effect::channel::Channel;
+use std::ops::Range;
 
 /// A function that builds a column of a channel's readings. Its argument is a function that gives the entry of a datum
 /// from the index and the predicted reading of this datum.
@@ -58,10 +59,10 @@ impl Builder<'_> {
         let readings = rows.iter().flat_map(|r| r.measured).flatten();
         let largest_mm = readings.fold(0.0f64, |m, d| m.max(d.value_mm.abs()));
         let row = |i: usize| self.forward.data[i].index;
-        let along = |vertical: bool| {
+        let along = |components: Range<usize>| {
             column(&|i, _| {
                 let component = self.forward.data[i].component;
-                if (component == 2) == vertical {
+                if components.contains(&component) {
                     largest_mm * load_n(row(i))[component] / largest_n
                 } else {
                     0.0
@@ -71,12 +72,19 @@ impl Builder<'_> {
         let kept = rows_in_pose(rows.iter().map(|r| r.pose_deg.as_slice()));
         let longest = kept.iter().copied().max().unwrap_or(0).max(1) as f64;
         let is_carrying = |r: usize| rows[r].payload.mass_kg > 0.0;
-        let gain = |carrying: bool| column(&|i, d| if is_carrying(row(i)) == carrying { d } else { 0.0 });
+        let gain_where = |holds: &dyn Fn(usize) -> bool| column(&|i, d| if holds(row(i)) { d } else { 0.0 });
+        let gain_of_payloads = || gain_where(&is_carrying);
         let law = |what: &str, columns| Law { what: what.into(), effect: None, columns };
         let mut out = vec![
-            law("static readings under payloads with a gain of their own", vec![gain(true)]),
-            law("payloads that weigh a factor of what is stated", vec![self.heavier_payloads(gain(true))]),
-            law("static readings under tip forces alone with a gain of their own", vec![gain(false)]),
+            law("static readings under payloads with a gain of their own", vec![gain_of_payloads()]),
+            law(
+                "payloads that weigh a factor of what is stated",
+                vec![self.heavier_payloads(gain_of_payloads())],
+            ),
+            law(
+                "static readings under tip forces alone with a gain of their own",
+                vec![gain_where(&|r| !is_carrying(r))],
+            ),
             law(
                 "static readings that grow while a pose is kept",
                 vec![column(&|i, d| d * kept[row(i)] as f64 / longest)],
@@ -84,7 +92,7 @@ impl Builder<'_> {
         ];
         out.extend(one_or_both(
             "static readings that follow the load wherever the tip is",
-            [along(false), along(true)],
+            [along(0..2), along(2..3)],
         ));
         out
     }

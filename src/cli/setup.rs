@@ -1,0 +1,16 @@
+//! What the options of every verb set: the catalogs, and where messages go.
+
+use super::log::Log;
+use crate::catalog::Catalogs;
+use std::path::Path;
+
+/// What the options that every verb has set.
+#[derive(Clone, Copy)]
+pub(crate) struct Setup<'a> {
+    /// The built-in catalogs with the user's rows.
+    pub catalogs: &'a Catalogs,
+    /// Folder with the user's catalog rows; `None` if there is none.
+    pub overlay: Option<&'a Path>,
+    /// Log for messages and progress.
+    pub log: Log,
+}
