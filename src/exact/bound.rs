@@ -1,5 +1,7 @@
 //! The bound of a box: for each objective, the best value that any of its members could have.
 //!
+//! A box is a set of designs; its members are these designs. An incumbent is a design that was found already.
+//!
 //! - *mass*: the sum of the least masses.
 //! - *tip deflection*: torques, forces and compliances are intervals, so each component of the tip's displacement lies
 //!   in an interval too. The bound is the length of the shortest displacement within these intervals.
@@ -69,7 +71,7 @@ impl From<BoxBound> for Objectives {
 
 /// The result of bounding a box.
 pub(super) enum Verdict {
-    /// No member meets the constraints, or an incumbent dominates the bound.
+    /// No member meets the constraints, or an incumbent dominates the bound and therefore every member.
     Pruned,
     /// The box has this bound, and a member of it may be on the front.
     Open(BoxBound),
@@ -223,7 +225,7 @@ impl<'c> Problem<'c> {
 
     /// The least tip deflection over the members of the box \[m\], in the judged case in which it is greatest. The
     /// function also writes the forces, torques, slopes and tip directions of the box to `work`. `None` if no member
-    /// keeps the forces within the force bounds of the problem.
+    /// keeps the forces within the intervals to which branching has restricted them (the force bounds of the problem).
     pub(super) fn least_tip_m(&self, work: &mut BoxWork) -> Option<f64> {
         let mut worst = 0.0f64;
         work.worst_tip = None;

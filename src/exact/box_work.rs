@@ -1,4 +1,6 @@
 //! The numbers of one box of designs as intervals: the least and the greatest value over its members.
+//!
+//! A box is a set of designs. A piece is a joint with its drive, or a link.
 
 use super::parts::{INERTIAS, LeastDemand, LinkBox, STIFFNESSES, inertia, stiffness_of};
 use super::pose::{Row, TILT, TORSION};
@@ -62,8 +64,8 @@ pub(super) struct BoxWork {
     /// Upper bound of the tip's deflection \[m\], one entry for each judged case in which contributions to the tip's
     /// displacement may oppose each other.
     pub(super) greatest_tip_m: Vec<f64>,
-    /// For each piece, the relative growth of the tip's least deflection if the stiffnesses of the piece had middle
-    /// values and not their greatest.
+    /// For each piece, the relative growth of the tip's least deflection if each stiffness of the piece were the
+    /// geometric mean of its least and its greatest value, instead of its greatest value.
     pub(super) tip_growth: Vec<f64>,
     /// Buffers of the inverse iteration that improves trial shapes.
     pub(super) shape: ShapeWork,

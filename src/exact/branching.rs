@@ -1,8 +1,13 @@
 //! The choice of how to divide a region that may still have a member below a local upper bound.
 //!
-//! The Lagrangian bound (`lagrangian.rs`) ends with a mixture: several relaxed designs with weights that sum to one.
-//! The bound is loose where these designs differ, and where the product of a force and a compliance is replaced by its
-//! McCormick underestimate. There are two ways to branch:
+//! A local upper bound is a mass, a deflection and a frequency; a design below it is new to the front. A region is a
+//! set of designs, given by the options that remain at each level and by bounds on torques.
+//!
+//! The Lagrangian bound (`lagrangian.rs`) is a lower bound of a weighted sum of inequalities (rows) over a region. It ends
+//! with a mixture: several relaxed designs with weights that sum to one. A relaxed design takes at each level the option
+//! that is cheapest in this sum, and the torques of its gears need not agree with its weights. The bound is loose where
+//! these designs differ. It is also loose where the product of a force and a compliance, each known as an interval, is
+//! replaced by a linear function below it (its McCormick underestimate). There are two ways to branch:
 //!
 //! - on the options of a level, where the mixed designs differ or a product is underestimated;
 //! - on a joint torque. A force is uncertain because of all the weights outboard and not because of one level, so
@@ -175,8 +180,8 @@ impl Rows<'_> {
         branchings
     }
 
-    /// Tip displacement by which the McCormick bound underestimates force times compliance in one strain coordinate
-    /// \[m\]. It is the excess `more` of the force over its least value, times the excess of the compliance over its
+    /// Tip displacement by which the McCormick bound (a linear function below the product of two numbers in intervals)
+    /// underestimates force times compliance in one strain coordinate \[m\]. It is the excess `more` of the force over its least value, times the excess of the compliance over its
     /// least value. Both are means over the mixture.
     fn product(&self, mixed: &Mixed, judged: usize, row: &Row, more: f64) -> f64 {
         let tip_per_unit = self.work.tip_directions[judged].dot(&row.tip_m);
@@ -224,8 +229,8 @@ impl Problem<'_> {
         }
     }
 
-    /// The two problems into which `branching` divides this one. `kept` has, for each level, the nodes of its base tree
-    /// that remain. `None` if all options lie on one side.
+    /// The two problems into which `branching` divides this one. `kept` has, for each level, the nodes that remain of
+    /// its base tree (the tree over all options of the level). `None` if all options lie on one side.
     pub(super) fn branch(&self, kept: &[Vec<u32>], branching: &Branching) -> Option<[Self; 2]> {
         match branching.by {
             BranchOn::Options { level, axis } => {
@@ -244,7 +249,8 @@ impl Problem<'_> {
     }
 
     /// Divides the options of `level` at the value `at` of the key coordinate `axis`. Returns, for each side and every
-    /// level, the nodes of the level's base tree that remain. `None` if all options of the level lie on one side.
+    /// level, the nodes that remain of the level's base tree (the tree over all its options). `None` if all options of
+    /// the level lie on one side.
     fn branch_on_options(
         &self,
         kept: &[Vec<u32>],

@@ -45,7 +45,7 @@ struct Joints<'c> {
 }
 
 impl<'c> Joints<'c> {
-    /// The joints of a space, whose drives are tabulated.
+    /// Collects the joints of a space. `tabulated` has the drives of each joint with the loads that they can carry.
     fn new(space: &'c DesignSpace, tabulated: &TabulatedJoints<'c>) -> Self {
         let numbers = piece_numbers(space);
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
@@ -108,7 +108,7 @@ impl JointNeeds {
 impl<'c> Problem<'c> {
     /// Prepares a space for the exact search, with only those link options for which `takes` is true. `ties` tells
     /// whether drives of equal mass, torsion curve and bearing stiffness become one option. `None` if some level
-    /// (choice) has no option.
+    /// (choice) has no option, or if this search cannot treat a piece of the arm.
     pub(super) fn new(
         space: &'c DesignSpace,
         catalogs: &'c Catalogs,
@@ -163,8 +163,8 @@ impl<'c> Problem<'c> {
         Some(problem.with_inertias())
     }
 
-    /// Compiles one layer of the chain, which belongs to the piece at `place`. The drives of a joint are taken out of
-    /// `joints`. `takes` and `ties` have the same meaning as in [`new`](Self::new). `None` if a choice has no option,
+    /// Compiles one layer of the chain: the piece at `place`, or a spring, a mass or a load that belongs to this piece.
+    /// The drives of a joint are taken out of `joints`. `takes` and `ties` have the same meaning as in [`new`](Self::new). `None` if a choice has no option,
     /// or if this search cannot treat the layer.
     fn part(
         &mut self,
@@ -324,8 +324,9 @@ impl<'c> Problem<'c> {
         Rays::new(motion, static_nm, inertia_kgm2)
     }
 
-    /// Adds the inertia matrices of every judged case to the problem. The ideal arm of the box of all designs shows
-    /// which coordinates deflect elastically. No matrices are added if no design meets the constraints.
+    /// Adds the inertia matrices of every judged case to the problem. Which coordinates deflect elastically is taken
+    /// from the ideal arm of the box of all designs. This arm has every stiffness at its greatest and every inertia at
+    /// its least. No matrices are added if no design meets the constraints.
     pub(super) fn with_inertias(mut self) -> Self {
         let mut work = BoxWork::default();
         let filled = self.fill(&mut self.root(), &mut work);

@@ -89,7 +89,8 @@ impl Problem<'_> {
     }
 
     /// Removes dominated drives from `design_box`, whose numbers are in `work`. `tip_m` is the least tip deflection of
-    /// the box \[m\]. Returns whether the box became smaller; `None` if no design is left.
+    /// the box \[m\]. Returns whether the box became smaller; `None` if no design is left. The numbers in `work` are not
+    /// updated.
     pub(super) fn prune_dominated_drives(
         &self,
         design_box: &mut [u32],
@@ -137,8 +138,8 @@ impl Problem<'_> {
         })
     }
 
-    /// Whether every gear inboard vibrates with the same slope and the same play as before if the piece becomes lighter
-    /// by `lost_n` \[N\].
+    /// Whether every gear inboard keeps its tangent stiffness in the modes if the piece becomes lighter by `lost_n`
+    /// \[N\]: the slope of its torsion curve and the slope of its lost motion both stay.
     fn slopes_stay(&self, piece: usize, lost_n: f64, work: &BoxWork) -> bool {
         self.judged_cases().all(|case| {
             self.poses[case].rows.iter().filter(|row| row.piece > piece).all(|row| {

@@ -1,7 +1,8 @@
 //! Finds better incumbents than the probes did, by a genetic algorithm that starts with their designs.
 //!
-//! The proof of a front is faster with better incumbents, because everything that the incumbents leave open has to be
-//! searched. Probes find some hundreds of designs one by one. The algorithm makes further designs from these. A child
+//! Incumbents are the designs found so far. The proof of a front is faster with better incumbents, because every design
+//! that no incumbent dominates has to be searched. A probe is a quick descent to one good design; the probes find some
+//! hundreds of designs one by one. The algorithm makes further designs from these. A child
 //! takes some parts from a parent of similar mass, or options close to its first parent's, and is kept if no design
 //! seen before dominates it. Of designs that differ by little, one is kept for each cell of a grid
 //! ([`thinned`](super::grid::thinned)), so that they do not crowd out the others.
@@ -26,8 +27,8 @@ use std::sync::Arc;
 
 /// Greatest number of generations. Later ones hardly find better designs.
 const GENERATIONS: u64 = 20;
-/// Fraction of a time limit after which no further generation begins. A pass proves a gap, and a generation proves
-/// nothing.
+/// Fraction of a time limit after which no further generation begins. The rest of the time is for the passes of the
+/// search, because a pass proves a gap and a generation proves nothing.
 const MOST_TIME: f64 = 0.25;
 /// Greatest number of children in a generation. In a small space, a generation has as many children as the square
 /// root of the number of designs.

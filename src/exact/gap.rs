@@ -1,4 +1,7 @@
 //! The gap of a search: how near to every design of the study some found design is while boxes are open.
+//!
+//! A box is a set of designs. It is open if it was neither discarded nor evaluated. Its bound has the best mass, tip
+//! deflection and lowest mode that one of its designs could have.
 
 use super::bound::BoxBound;
 use crate::pareto::objectives::Objectives;

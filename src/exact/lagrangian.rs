@@ -1,9 +1,14 @@
 //! The Lagrangian bound of a box, part by part, and the multipliers that improve it.
 //!
+//! A box is a set of designs, its members. A local upper bound is a mass, a deflection and a frequency, and the search
+//! asks whether a member is below it (lighter, stiffer and with a higher mode). A row is an inequality that every such
+//! member satisfies: on the mass, on the displacement of the tip, on a mode or on a torque.
+//!
 //! For multipliers `y ≥ 0`, the weighted sum of the rows ([`rows`](super::rows)) is a sum of one number for each part,
 //! the price of the part. The least sum over all members of the box is therefore the sum of the least prices, which
 //! are found level by level; the parts that have them make a *relaxed design*. This least sum is the value of the dual
-//! function at `y`. If it exceeds the weighted limits of a local upper bound, no member lies below that bound.
+//! function at `y`. If it exceeds the weighted limits of a local upper bound, no member lies below that bound. The bound
+//! is then *refuted*.
 //!
 //! The next multipliers are the solution of a matrix game against the relaxed designs found so far (Kelley's
 //! cutting-plane method). If no multipliers refute the bound, the modes of the mixed arm give new rows. The mixed arm
@@ -27,7 +32,7 @@ const STEPS: usize = 3;
 type Arm = (Vec<[f64; STIFFNESSES]>, Vec<[f64; INERTIAS]>);
 
 /// The numbers of a joint that is to be added to a relaxed design (the cheapest parts under some multipliers). `curve`
-/// is `None` for a rigid joint.
+/// is `None` for a rigid joint. `tilt_rad_per_nm` has the least and the greatest tilt of its bearing per moment.
 struct AddedJoint<'a> {
     piece: usize,
     mass_kg: f64,

@@ -1,6 +1,7 @@
-//! The search for the first incumbents by quick descents (probes).
+//! The search for the first incumbents by quick descents (probes). Incumbents are designs that were found already; boxes
+//! that they dominate are pruned.
 //!
-//! A probe minimizes one weighted sum of the logarithms of mass, deflection and mode. It follows the half with the
+//! A probe minimizes one weighted sum of the logarithms of mass, deflection and the reciprocal of the mode. It follows the half with the
 //! better bound of every box down to one design, and then optimizes one level at a time with the other levels fixed.
 //! Its result proves nothing, but a search with good incumbents prunes early.
 
@@ -81,8 +82,8 @@ pub(super) fn probe<'p>(
     best.into_iter().flatten().collect()
 }
 
-/// Makes short probes, as many as `dives`, and returns what they find. A short probe only descends once; it does not optimize the levels one by
-/// one.
+/// Makes as many short probes as `dives` says, and returns what they find. A short probe descends once and does not
+/// optimize the levels one by one.
 pub(super) fn dives(budget: &Budget, problem: &Problem, dives: usize) -> Findings {
     let mut all = Findings::default();
     let Some(shapes) = problem.first_shapes(&mut BoxWork::default()) else { return all };

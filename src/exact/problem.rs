@@ -13,7 +13,8 @@ use crate::space::design_space::DesignSpace;
 use crate::space::slot::SizedJoint;
 use std::sync::Arc;
 
-/// A compiled design space. Pieces are counted from the tip, and most lists have one entry for each piece.
+/// A compiled design space. A piece is a joint, a link, or a spring or mass between them. Pieces are counted from the
+/// tip, and most lists have one entry for each piece.
 #[derive(Clone)]
 pub(super) struct Problem<'c> {
     pub space: &'c DesignSpace,
@@ -86,8 +87,9 @@ impl Part<'_> {
     }
 }
 
-/// The drives that a first-fit joint can get, by rising mass. The ladder returns the box around any contiguous run of
-/// these drives.
+/// The drives that a first-fit joint (one that takes the lightest drive which carries its demand) can get, by rising
+/// mass. The ladder returns the box around any contiguous run of these drives: the least and the greatest value of each
+/// number over them.
 pub(super) struct Ladder {
     /// `runs[k][i]` is the box around the `2^k` drives from index `i` on. The box around any run of drives is the union
     /// of two of these boxes.
