@@ -3,11 +3,11 @@
 //! A box is a set of designs; its members are these designs. A piece is a joint with its drive, or a link.
 //!
 //! A bearing transmits the wrench of everything outboard. This is the wrench of gravity and load, and the wrench that
-//! arises while one joint accelerates (its ramp) or stops and the other joints are at rest ([`bearing_loads`](crate::space::bearing_loads)). Every
-//! component of such a wrench is linear in the weights and the inertias of the parts, so its range over a box is an
-//! interval. A load (moment, radial or axial force) is the length of a vector of components. The least load takes each
-//! component at its least magnitude, the greatest load takes each component at its greatest. For a box of one design
-//! both loads equal the load of this design.
+//! arises while one joint accelerates (its ramp) or stops and the other joints are at rest
+//! ([`bearing_loads`](crate::space::bearing_loads)). Every component of such a wrench is linear in the weights and the
+//! inertias of the parts, so its range over a box is an interval. A load (moment, radial or axial force) is the length
+//! of a vector of components. The least load takes each component at its least magnitude, the greatest load takes each
+//! component at its greatest. For a box of one design both loads equal the load of this design.
 
 use super::parts::INERTIAS;
 use crate::mechanics::{Twist, Wrench, linear, rotation_twist, stack};

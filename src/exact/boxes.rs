@@ -1,10 +1,10 @@
 //! Branch and bound box by box.
 //!
-//! A box is a set of designs. It is bounded, and then either discarded (pruned) or halved; the halves are treated in the
-//! same way. A box of one design is evaluated. The designs found so far are the incumbents; a box is pruned if one of them
-//! dominates its bound. A *pass* is one search of the whole space with a fixed slack: the fraction by which a box may be
-//! better than the incumbents and is still pruned. A *task* is the work of one thread between two exchanges of findings,
-//! and a *round* is a set of tasks that run side by side.
+//! A box is a set of designs. It is bounded, and then either discarded (pruned) or halved; the halves are treated in
+//! the same way. A box of one design is evaluated. The designs found so far are the incumbents; a box is pruned if one
+//! of them dominates its bound. A *pass* is one search of the whole space with a fixed slack: the fraction by which a
+//! box may be better than the incumbents and is still pruned. A *task* is the work of one thread between two exchanges
+//! of findings, and a *round* is a set of tasks that run side by side.
 
 use super::bound::{BoxBound, DesignBox, Verdict};
 use super::box_work::BoxWork;

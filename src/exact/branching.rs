@@ -3,11 +3,11 @@
 //! A local upper bound is a mass, a deflection and a frequency; a design below it is new to the front. A region is a
 //! set of designs, given by the options that remain at each level and by bounds on torques.
 //!
-//! The Lagrangian bound (`lagrangian.rs`) is a lower bound of a weighted sum of inequalities (rows) over a region. It ends
-//! with a mixture: several relaxed designs with weights that sum to one. A relaxed design takes at each level the option
-//! that is cheapest in this sum, and the torques of its gears need not agree with its weights. The bound is loose where
-//! these designs differ. It is also loose where the product of a force and a compliance, each known as an interval, is
-//! replaced by a linear function below it (its McCormick underestimate). There are two ways to branch:
+//! The Lagrangian bound (`lagrangian.rs`) is a lower bound of a weighted sum of inequalities (rows) over a region. It
+//! ends with a mixture: several relaxed designs with weights that sum to one. A relaxed design takes at each level the
+//! option that is cheapest in this sum, and the torques of its gears need not agree with its weights. The bound is
+//! loose where these designs differ. It is also loose where the product of a force and a compliance, each known as an
+//! interval, is replaced by a linear function below it (its McCormick underestimate). There are two ways to branch:
 //!
 //! - on the options of a level, where the mixed designs differ or a product is underestimated;
 //! - on a joint torque. A force is uncertain because of all the weights outboard and not because of one level, so
@@ -181,8 +181,8 @@ impl Rows<'_> {
     }
 
     /// Tip displacement by which the McCormick bound (a linear function below the product of two numbers in intervals)
-    /// underestimates force times compliance in one strain coordinate \[m\]. It is the excess `more` of the force over its least value, times the excess of the compliance over its
-    /// least value. Both are means over the mixture.
+    /// underestimates force times compliance in one strain coordinate \[m\]. It is the excess `more` of the force over
+    /// its least value, times the excess of the compliance over its least value. Both are means over the mixture.
     fn product(&self, mixed: &Mixed, judged: usize, row: &Row, more: f64) -> f64 {
         let tip_per_unit = self.work.tip_directions[judged].dot(&row.tip_m);
         (tip_per_unit * more * self.softer(mixed, judged, row)).abs()

@@ -164,8 +164,8 @@ impl<'c> Problem<'c> {
     }
 
     /// Compiles one layer of the chain: the piece at `place`, or a spring, a mass or a load that belongs to this piece.
-    /// The drives of a joint are taken out of `joints`. `takes` and `ties` have the same meaning as in [`new`](Self::new). `None` if a choice has no option,
-    /// or if this search cannot treat the layer.
+    /// The drives of a joint are taken out of `joints`. `takes` and `ties` have the same meaning as in
+    /// [`new`](Self::new). `None` if a choice has no option, or if this search cannot treat the layer.
     fn part(
         &mut self,
         (place, layer): (usize, Layer<'c>),

@@ -1,8 +1,8 @@
 //! A cover of the space by boxes. It is refined by halving the boxes with the greatest gap first.
 //!
 //! A box is a set of designs. The boxes contain every design that no design found dominates, and each has a bound: the
-//! best mass, deflection and mode that a member could have. The bounds therefore tell how near the designs found come to
-//! every design of the space. This distance is the gap ([`gap`](super::gap)). The gap of the cover is the gap of its
+//! best mass, deflection and mode that a member could have. The bounds therefore tell how near the designs found come
+//! to every design of the space. This distance is the gap ([`gap`](super::gap)). The gap of the cover is the gap of its
 //! worst box.
 
 use super::bound::{BoxBound, Verdict};

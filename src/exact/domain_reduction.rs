@@ -3,8 +3,8 @@
 //! In a space that is too large to tabulate these options are few, so the relaxation (`src/relax`), a linear program
 //! over mixtures of parts, can be solved with them alone.
 //!
-//! A subproblem is the problem with only some of its options. It is first reduced: options that no design below the known
-//! design's objectives can have are excluded. Then it may be branched, which divides it into two subproblems.
+//! A subproblem is the problem with only some of its options. It is first reduced: options that no design below the
+//! known design's objectives can have are excluded. Then it may be branched, which divides it into two subproblems.
 
 use super::box_work::BoxWork;
 use super::kinds::Ties;

@@ -89,8 +89,8 @@ impl Problem<'_> {
     }
 
     /// Removes dominated drives from `design_box`, whose numbers are in `work`. `tip_m` is the least tip deflection of
-    /// the box \[m\]. Returns whether the box became smaller; `None` if no design is left. The numbers in `work` are not
-    /// updated.
+    /// the box \[m\]. Returns whether the box became smaller; `None` if no design is left. The numbers in `work` are
+    /// not updated.
     pub(super) fn prune_dominated_drives(
         &self,
         design_box: &mut [u32],

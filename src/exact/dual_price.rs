@@ -1,10 +1,9 @@
 //! The price of a part under Lagrange multipliers, and the cheapest part below a node of a tree.
 //!
-//! A row is an inequality that every design of interest satisfies: on the mass, on the displacement of the tip, on a mode
-//! or on a torque ([`rows`](super::rows)). The multipliers are the weights of the rows in a sum. Every number of a part
-//! (mass, inertia, compliance, stiffness) has a dual price: the amount per unit of this number that the part adds to the
-//! weighted sum. The price of the part is the sum over
-//! its numbers.
+//! A row is an inequality that every design of interest satisfies: on the mass, on the displacement of the tip, on a
+//! mode or on a torque ([`rows`](super::rows)). The multipliers are the weights of the rows in a sum. Every number of a
+//! part (mass, inertia, compliance, stiffness) has a dual price: the amount per unit of this number that the part adds
+//! to the weighted sum. The price of the part is the sum over its numbers.
 
 use super::joint_play::JointPlay;
 use super::parts::{INERTIAS, LinkBox, STIFFNESSES, inertia, stiffness_of};

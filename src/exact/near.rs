@@ -1,8 +1,9 @@
 //! The search for designs near a finished front, box by box.
 //!
-//! The shortfall of a design ([`Shortfall`]) is the least fraction by which it is worse than some design of the front. A
-//! box is a set of designs, its members. Every objective of a box's bound is at least as good as the same objective of any
-//! member, so no member has a smaller shortfall than the bound. A box is pruned if the shortfall of its bound is too large.
+//! The shortfall of a design ([`Shortfall`]) is the least fraction by which it is worse than some design of the front.
+//! A box is a set of designs, its members. Every objective of a box's bound is at least as good as the same objective
+//! of any member, so no member has a smaller shortfall than the bound. A box is pruned if the shortfall of its bound is
+//! too large.
 //!
 //! Near designs may be dominated. Therefore a box is not pruned because a known design dominates it, and drives that a
 //! lighter drive dominates are not removed. Once more designs have been found than were asked for, the greatest allowed

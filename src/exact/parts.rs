@@ -1,6 +1,7 @@
 //! The numbers of a part on which bounds depend, and their intervals over a box of parts.
 //!
-//! A part is a tube or a drive. A box of parts is a set of them, its members. The bounds of a box hold for every member.
+//! A part is a tube or a drive. A box of parts is a set of them, its members. The bounds of a box hold for every
+//! member.
 
 use super::torsion::{BreakPoints, CurveBox};
 use super::tree::{Bounds, Key};
@@ -150,9 +151,9 @@ impl Bounds for LinkBox {
         }
     }
 
-    /// The logarithms of mass and stiffnesses, by which the tree separates tubes. Mass is weighted twice, because it is an
-    /// objective and also loads everything inboard. Shear stiffness is weighted little and axial stiffness not at all,
-    /// because they hardly change any objective.
+    /// The logarithms of mass and stiffnesses, by which the tree separates tubes. Mass is weighted twice, because it is
+    /// an objective and also loads everything inboard. Shear stiffness is weighted little and axial stiffness not at
+    /// all, because they hardly change any objective.
     fn key(&self) -> Key {
         let s = self.low.stiffnesses.map(|s| if s.is_finite() { libm::log(s) } else { 0.0 });
         [2.0 * libm::log(self.low.inertias[inertia::MASS]), s[0], 0.7 * s[1], 0.1 * s[2], 0.3 * s[3]]
@@ -320,8 +321,8 @@ impl Bounds for DriveBox {
         }
     }
 
-    /// The numbers by which the tree separates drives: first those of the torsion curve, because all drives with the same
-    /// gear have the same curve, and then mass and capacity.
+    /// The numbers by which the tree separates drives: first those of the torsion curve, because all drives with the
+    /// same gear have the same curve, and then mass and capacity.
     fn key(&self) -> Key {
         let k = self.curve.map_or([0.0; 3], |c| {
             let w = &c.stiff.windup;

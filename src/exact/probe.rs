@@ -1,9 +1,9 @@
-//! The search for the first incumbents by quick descents (probes). Incumbents are designs that were found already; boxes
-//! that they dominate are pruned.
+//! The search for the first incumbents by quick descents (probes). Incumbents are designs that were found already;
+//! boxes that they dominate are pruned.
 //!
-//! A probe minimizes one weighted sum of the logarithms of mass, deflection and the reciprocal of the mode. It follows the half with the
-//! better bound of every box down to one design, and then optimizes one level at a time with the other levels fixed.
-//! Its result proves nothing, but a search with good incumbents prunes early.
+//! A probe minimizes one weighted sum of the logarithms of mass, deflection and the reciprocal of the mode. It follows
+//! the half with the better bound of every box down to one design, and then optimizes one level at a time with the
+//! other levels fixed. Its result proves nothing, but a search with good incumbents prunes early.
 
 use super::bound::{BoxBound, DesignBox, Verdict};
 use super::box_work::BoxWork;

@@ -1,8 +1,8 @@
 //! Reduced-cost fixing: it removes the options that no member below a local upper bound can have.
 //!
-//! A member is a design of the box that is searched. It is below a local upper bound if its mass and deflection are less
-//! and its mode is higher. Every such member satisfies some inequalities ([`rows`](super::rows)). Multipliers are weights
-//! of these inequalities. The price of a part is what it adds to their weighted sum.
+//! A member is a design of the box that is searched. It is below a local upper bound if its mass and deflection are
+//! less and its mode is higher. Every such member satisfies some inequalities ([`rows`](super::rows)). Multipliers are
+//! weights of these inequalities. The price of a part is what it adds to their weighted sum.
 //!
 //! At a dual point (a set of multipliers), let every other part be the cheapest one. The weighted limits then allow a
 //! greatest price for the remaining part. An option with a higher price belongs to no member below the local upper
@@ -66,7 +66,8 @@ impl Rows<'_> {
     }
 
     /// Nodes of a level's base tree (the tree over all options) below `node`. They contain every option that no dual
-    /// point excludes. `afforded` has, for each dual point, the prices of the level and the greatest price that an option may have.
+    /// point excludes. `afforded` has, for each dual point, the prices of the level and the greatest price that an
+    /// option may have.
     fn affordable(&self, piece: usize, node: u32, afforded: &[PricedLimit]) -> Vec<u32> {
         let prices: Vec<EightPrices> = afforded.chunks(LANES).map(EightPrices::new).collect();
         let prices = &prices[..];

@@ -1,10 +1,10 @@
 //! The bound of a region. Its result is either a proof that the region is empty, or the surviving options, ways to
 //! branch and promising designs.
 //!
-//! A region is the set of designs below a local upper bound: with less than its mass, less than its deflection and a higher
-//! mode. The proof is a weighted sum of inequalities ([`rows`](super::rows)) that no design satisfies. The weights are the
-//! multipliers. A relaxed design is the cheapest choice of parts in such a sum, and a mixture is a weighted mean of several
-//! relaxed designs.
+//! A region is the set of designs below a local upper bound: with less than its mass, less than its deflection and a
+//! higher mode. The proof is a weighted sum of inequalities ([`rows`](super::rows)) that no design satisfies. The
+//! weights are the multipliers. A relaxed design is the cheapest choice of parts in such a sum, and a mixture is a
+//! weighted mean of several relaxed designs.
 
 use super::bound::{BoxBound, DesignBox};
 use super::box_work::BoxWork;
@@ -38,8 +38,8 @@ pub(super) struct Survivors {
     pub candidates: Vec<DesignBox>,
 }
 
-/// For each set of multipliers that was tried for a box: its dual point, and the relaxed design that minimizes the weighted
-/// sum.
+/// For each set of multipliers that was tried for a box: its dual point, and the relaxed design that minimizes the
+/// weighted sum.
 #[derive(Default)]
 struct Proofs {
     points: Vec<DualPoint>,

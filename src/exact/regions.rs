@@ -1,11 +1,11 @@
 //! The search region by region.
 //!
-//! Incumbents are the designs found so far. A region is the part of the objective space below a [`LocalUpperBound`] of the
-//! incumbents. Far fewer options can belong to a design of a region than the space has. A dual point is a set of weights
-//! for the inequalities that bound a region ([`rows`](super::rows)); the price of a part is what it adds to their weighted
-//! sum. A dual point excludes every option whose price exceeds what the local upper bound allows
-//! ([`reduced_cost`](super::reduced_cost)). With fewer options the bounds are sharper, and
-//! more options can be excluded.
+//! Incumbents are the designs found so far. A region is the part of the objective space below a [`LocalUpperBound`] of
+//! the incumbents. Far fewer options can belong to a design of a region than the space has. A dual point is a set of
+//! weights for the inequalities that bound a region ([`rows`](super::rows)); the price of a part is what it adds to
+//! their weighted sum. A dual point excludes every option whose price exceeds what the local upper bound allows
+//! ([`reduced_cost`](super::reduced_cost)). With fewer options the bounds are sharper, and more options can be
+//! excluded.
 //!
 //! A local upper bound is *refuted* if no design is below it. Local upper bounds are refuted several at a time, by one
 //! bound that covers all of them. A set of bounds that is not
@@ -36,8 +36,8 @@ const WORTH_IT: f64 = 0.1;
 /// Width of a grid cell for the thinning of incumbents, as a fraction of the slack.
 const THINNING_CELL: f64 = 0.45;
 
-/// The options that may belong to a design of a region. Its trial shapes and its multipliers (in `warm_start`) are those
-/// of the larger region of which it is a part, until its own are computed.
+/// The options that may belong to a design of a region. Its trial shapes and its multipliers (in `warm_start`) are
+/// those of the larger region of which it is a part, until its own are computed.
 #[derive(Clone)]
 pub(super) struct Subproblem<'p> {
     problem: Arc<Problem<'p>>,

@@ -1,7 +1,8 @@
 //! Rows that bound mass, deflection and mode of a box's members together.
 //!
-//! A box is a set of designs, its members. The bound of a box takes every part at its lightest *and* at its stiffest, but
-//! a part is one or the other. A row is a linear inequality. The rows below are sums of one number for each part, so lightness and stiffness are traded part by part:
+//! A box is a set of designs, its members. The bound of a box takes every part at its lightest *and* at its stiffest,
+//! but a part is one or the other. A row is a linear inequality. The rows below are sums of one number for each part,
+//! so lightness and stiffness are traded part by part:
 //!
 //! - *mass*: the sum of the masses. It is exact.
 //! - *displacement of the tip* in a case, along a fixed direction: the twists of the gears, each at a torque of its
