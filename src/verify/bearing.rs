@@ -44,16 +44,20 @@ pub(super) struct BearingDemand {
     pub in_stop: BearingLoad,
 }
 
-/// The limits of one bearing in its joint. An infinite limit is not checked.
+/// The limits of one bearing in its joint. An infinite limit limits nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct BearingRatings {
     /// Distance R along the axis from the centre of the bearing to the face of its flange \[m\].
     centre_m: f64,
     /// Radial force that is equivalent to a moment of 1 N m, `2 / d_p` for the pitch diameter `d_p` \[1/m\].
     per_moment_per_m: f64,
+    /// Greatest moment at the centre of the bearing in running \[N m\].
     running_nm: f64,
+    /// Greatest static equivalent load `P₀` at rest \[N\].
     at_rest_n: f64,
+    /// Greatest static equivalent load `P₀` in an emergency stop \[N\].
     in_stop_n: f64,
+    /// Greatest dynamic equivalent load `P_c` under which the bearing reaches the required life \[N\].
     life_n: f64,
 }
 
@@ -127,7 +131,7 @@ impl BearingRatings {
     pub(super) fn of(bearing: Option<&Bearing>, duty: [f64; 2]) -> Self {
         let Some(bearing) = bearing else { return Self::UNLIMITED };
         let printed = &bearing.ratings;
-        // a stated offset is measured from the centre of the bearing, so no further lever is added
+        // a lever that the study states is measured from the centre of the bearing, so no further distance is added
         let centre_m = bearing.offset_m.map_or(printed.offset_m.unwrap_or(0.0), |_| 0.0);
         let running_nm = bearing.permissible_moment_nm.unwrap_or(f64::INFINITY);
         let of_moment = Self { centre_m, running_nm, ..Self::UNLIMITED };

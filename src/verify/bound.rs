@@ -1,5 +1,8 @@
 //! Bounds for the members of a box: least mass, least deflection, and the ideal arm (every stiffness greatest,
 //! every inertia least).
+//!
+//! A box is a set of designs, its members. A region is the set of designs below a mass, below a deflection and above a
+//! frequency.
 
 use super::bearing::BearingDemand;
 use super::bearing_loads::Largest;

@@ -1,4 +1,7 @@
 //! The choice of the level at which a box is divided.
+//!
+//! A box is a set of designs. Its ideal point has a mass, a deflection and a mode, each at least as good as that of any
+//! design of the box. A level is the choice of one drive or one tube.
 
 use super::bound::{IdealPoint, Members, compliances};
 use super::boxes::Boxes;

@@ -4,7 +4,8 @@ use crate::pareto::objectives::Objectives;
 
 /// Relative difference up to which two objectives count as equal.
 const EQUAL_WITHIN: f64 = 1e-9;
-/// A design of the front discards a box only if it is better by this margin in at least one objective (relative).
+/// Relative margin by which a design of the front must be better in at least one objective to dominate a design or a
+/// whole box of designs. With it, rounding cannot decide.
 const BETTER_BY: f64 = 1e-7;
 
 /// The designs of a front, sorted by mass, in a form in which the highest frequency among the designs up to a given

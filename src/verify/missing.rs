@@ -1,4 +1,5 @@
-//! Search for designs that belong on a front and are missing from it.
+//! Search for designs that belong on a front and are missing from it. A design belongs on the front if it meets all
+//! checks and limits and no design of the front dominates it.
 
 use super::boxes::Boxes;
 use super::drives::Ties;
@@ -42,7 +43,8 @@ pub struct Looked {
 
 /// Checks whether the verifier's bounds are valid for a question.
 ///
-/// If they are not valid, a sentence that names what the bounds do not take into account.
+/// # Errors
+/// A sentence that names what the bounds do not take into account, if they are not valid.
 pub fn conditions(question: &Question) -> Result<(), String> {
     match question.motion.grows() {
         true => Ok(()),

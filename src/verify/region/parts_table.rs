@@ -1,4 +1,5 @@
-//! All parts of a space, as lists of numbers that can have prices.
+//! All parts of a space, as lists of numbers that can have prices. The price of a number is what each unit of it adds
+//! to a weighted sum of inequalities ([`rows`](super::rows)).
 //!
 //! The list of a tube has its mass; for each of the study's surroundings its weight and its inertias per length;
 //! its stiffnesses and its compliances. The tubes of a link are in a tree whose nodes store the least and the

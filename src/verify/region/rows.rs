@@ -1,7 +1,11 @@
 //! Linear inequalities that every member of a subproblem below an upper bound satisfies, as sums over the parts.
 //!
+//! The upper bound is a mass, a deflection and a frequency. A design is below it if it is no heavier, deflects no
+//! further and has no lower mode. A subproblem has the options that such a design may have, and its members are the
+//! designs that these options make.
+//!
 //! | sum over the parts | upper limit |
-//! |---|---|---|
+//! |---|---|
 //! | mass: the sum of the parts' masses | mass of the upper bound |
 //! | in a judged case, displacement of the tip along a direction `e` | deflection of the upper bound |
 //! | in a judged case, for a shape `x`: `λ xᵀMx - xᵀKx`, `λ` of the upper bound | 0 |
@@ -263,8 +267,9 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Adds to `row`, which bounds the tip's displacement along `direction`, a linear lower bound of one displacement: force
-    /// times compliance. `number` is the position of the compliance in the list of numbers, and `least` its least value.
+    /// Adds to `row`, which bounds the tip's displacement along `direction`, a linear lower bound of one displacement:
+    /// force times compliance. `number` is the position of the compliance in the list of numbers, and `least` its least
+    /// value.
     fn add_product(&self, row: &mut Row, number: usize, least: f64, force: &Force, direction: &Vector3<f64>) {
         row.per_number[number] += force.least;
         let per_load = force.work.per_load.iter().map(|per| least * per.dot(direction));

@@ -1,4 +1,7 @@
-//! A subproblem: the options of each part that members below an upper bound may have.
+//! A subproblem: the options of each part that designs below an upper bound may have.
+//!
+//! An upper bound is a mass, a deflection and a frequency. The members of a subproblem are the designs that its options
+//! make.
 
 use super::super::bound::Members;
 use super::super::drive_range::DriveRange;

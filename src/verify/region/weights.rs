@@ -1,5 +1,8 @@
 //! Weighted sums of a subproblem's rows (surrogate constraints).
 //!
+//! A subproblem has the options that designs below an upper bound (a mass, a deflection and a frequency) may have; its
+//! members are the designs that these options make. The rows are linear inequalities ([`rows`](super::rows)).
+//!
 //! With non-negative weights, a weighted sum of the rows is at most zero for every member below the upper bound. The
 //! least value of this sum over all members is found part by part. If it is positive, no member lies below the upper
 //! bound. Otherwise the distance of this least value from zero tells which options are too expensive for any member
