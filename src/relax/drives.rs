@@ -1,4 +1,5 @@
-//! Drops the drives that cannot meet any demand that the remaining options leave possible.
+//! Drops the drives that are too weak, or needlessly strong, for every demand that the remaining options of the other
+//! pieces leave possible.
 
 use super::parts::Parts;
 use super::statics::CaseLoads;

@@ -113,8 +113,9 @@ impl Search<'_> {
         }
     }
 
-    /// Drops the options that cannot satisfy some inequality, even if every other piece takes the option that is best
-    /// for this inequality.
+    /// Drops the options with which some inequality is violated even if every other piece takes the option that is best
+    /// for this inequality. Drives that cannot meet their demand are dropped too. This is repeated until nothing
+    /// changes.
     fn reduce(&mut self) {
         loop {
             let mut dropped = self.parts.drop_drives(self.problem, self.cases);

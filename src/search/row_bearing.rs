@@ -1,5 +1,8 @@
 //! Loads on the output bearings of inner joints, eight designs at once.
 //!
+//! A row is the set of designs that differ in the choice of one part alone, the row level. Inner joints are the joints
+//! from the row level to the base. If the row level is a link, this link is the row's link.
+//!
 //! The loads are defined in [`bearing_loads`](crate::space::bearing_loads). Each load is a sum of three terms: from
 //! everything outboard of the row, from the row's link, and from the inner drives. The third term grows linearly with
 //! the masses of these drives. Each term is projected in advance on the five force and moment components that load a

@@ -1,4 +1,7 @@
 //! The numbers of a row that depend on the arm outboard of it. They are computed once for all designs of the row.
+//!
+//! A row is the set of designs that differ in the choice of one part alone, the row level. Its designs have the arm
+//! outboard of the row level in common.
 
 use super::arms::EightArms;
 use super::row::Row;

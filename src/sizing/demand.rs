@@ -33,7 +33,8 @@ pub struct JointMotion {
     pub acceleration_over_gravity: f64,
     /// Which interpretation of Eq 8 is used.
     pub linear_reading: LinearReading,
-    /// Ratio of emergency deceleration to normal acceleration, at least 1.
+    /// Factor on the linear torque in an emergency stop: ratio of emergency deceleration to normal acceleration, but at
+    /// least 1.
     pub stop_factor: f64,
     /// Duration of an emergency stop in ramp times.
     pub ramps_in_a_stop: f64,
@@ -232,7 +233,7 @@ impl JointDemand {
         Self { bearing, ..self }
     }
 
-    /// This demand with `room` as the largest diameters of gear and motor.
+    /// This demand with `room` as the largest widths of gear and motor.
     pub fn with_room(self, room: LinkRoom) -> Self {
         Self { room, ..self }
     }
@@ -272,7 +273,7 @@ pub fn stop_torque_nm(static_torque_nm: f64, linear_torque_nm: f64, stop_factor:
 }
 
 /// Cube of the cubic mean torque over a duty cycle \[(N m)³\]: T_mean³ = Σ |T_i|³ n_i t_i / Σ n_i t_i (Eq 18.2 of the
-/// vendor). `weights` are those of the cycle.
+/// vendor). `weights` are the weights of the cycle's terms.
 #[inline]
 pub fn cubic_mean_cubed_nm3(weights: MeanTorqueWeights, static_torque_nm: f64, linear_torque_nm: f64) -> f64 {
     let cube = |x: f64| x * x * x;

@@ -76,7 +76,7 @@ pub struct Drive<'c> {
     pub gear: &'c Gear,
     /// The motor.
     pub motor: &'c Motor,
-    /// Which mass of the gear is used: that of the component set or of the housed unit.
+    /// Which mass of the gear is used: the mass of the component set or the mass of the housed unit.
     pub gear_mass: GearMass,
     /// Where the output bearing comes from.
     pub bearing: BearingSource,
@@ -100,7 +100,7 @@ impl Drive<'_> {
         self.gear.envelope_as(self.gear_mass)
     }
 
-    /// What the joint weighs beyond gear, motor and bearing.
+    /// The masses of the joint in addition to gear, motor and bearing: housing, brake, encoders, cables and so on.
     pub fn extras(&self) -> Extras {
         self.extras.with_parts(self.gear, self.motor, self.gear_mass)
     }

@@ -24,7 +24,7 @@ pub enum RejectedPart {
         /// Name of the actuator.
         actuator: String,
     },
-    /// A gear that passes its own checks, but that has no motor which passes too. The checks listed are those with the
+    /// A gear that passes its own checks, but that has no motor which passes too. The listed checks were made with the
     /// nearest motor: the motor whose smallest margin is the largest.
     GearWithoutMotor {
         /// Name of the gear.
@@ -32,7 +32,7 @@ pub enum RejectedPart {
         /// Name of the nearest motor, whose smallest margin is the largest.
         nearest_motor: String,
     },
-    /// A motor that fails with some of the gears that pass their own checks. The checks listed are those with the
+    /// A motor that fails with some of the gears that pass their own checks. The listed checks were made with the
     /// nearest gear: the gear with which the smallest margin of the motor is the largest.
     Motor {
         /// Name of the motor.
@@ -314,8 +314,8 @@ impl<'c> DriveTable<'c> {
         Rejection { joint: self.joint().to_string(), part, checks, also_lacks }
     }
 
-    /// The columns that a rejected part leaves blank, without those that `checks` name; none if every check was made. A
-    /// check names only the first rating that it lacks.
+    /// The columns that a rejected part leaves blank, except the columns that `checks` name already. Empty if every
+    /// check was made. A check names only the first rating that it lacks.
     fn also_lacks(&self, part: &RejectedPart, checks: &[Check]) -> Vec<&'static str> {
         let named: Vec<&str> = checks
             .iter()
@@ -404,7 +404,8 @@ fn nearest_trial<'t, 'c: 't>(trials: impl Iterator<Item = &'t Trial<'c>>) -> Opt
     trials.reduce(|best, t| if nearness(t) > nearness(best) { t } else { best })
 }
 
-/// Those of `checks` that exclude a part. The smallest margin comes first; checks that could not be made come last.
+/// The checks in `checks` that exclude a part. The smallest margin comes first; checks that could not be made come
+/// last.
 pub(super) fn not_holding(checks: Vec<Check>) -> Vec<Check> {
     let mut failed: Vec<_> = checks.into_iter().filter(|c| !c.holds()).collect();
     let key = |c: &Check| c.torque_margin().unwrap_or(f64::INFINITY);

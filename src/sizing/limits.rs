@@ -52,9 +52,9 @@ pub struct DriveLimits {
     pub mean_torque_cubed_nm3: f64,
     /// Limits of the output bearing.
     pub bearing: BearingLimits,
-    /// Outer diameters of the parts.
+    /// Widths of gear and motor, as far as the study limits them.
     pub widths: DriveWidths,
-    /// Ratios of the motor's torque to its continuous torque.
+    /// Numbers from which the motor's heat under a demand is computed.
     pub heat: MotorHeat,
 }
 
@@ -256,8 +256,9 @@ fn gear_stop_nm(gear: &Gear) -> Rating {
 }
 
 /// Torque at the joint in an emergency stop at which an actuator brakes with its peak torque \[N m\]: T_peak - s J_out
-/// α. Its motor brakes its own rotor too, s times as hard as it is accelerated in a ramp. Infinite for other drives,
-/// whose rotor does not load the gear.
+/// α. Here s is the factor of the stop (emergency deceleration over the acceleration α of a ramp), and J_out is the
+/// inertia of the rotor at the output, which the motor must brake too. Infinite for other drives, whose rotor does not
+/// load the gear.
 pub(super) fn actuator_stop_nm(drive: &Drive, motion: &JointMotion) -> Rating {
     if drive.gear.kind != GearKind::Actuator {
         return Ok(f64::INFINITY);

@@ -239,7 +239,7 @@ impl<'c> DriveTable<'c> {
     fn raise_ladder(&mut self) {
         for index in 0..self.limits.len() {
             let limits = self.limits[index];
-            // whatever a covered drive holds, a lighter one holds too
+            // a lighter drive meets every demand that a covered drive meets
             if self.is_covered(&limits) {
                 continue;
             }
@@ -254,8 +254,8 @@ impl<'c> DriveTable<'c> {
         }
     }
 
-    /// Whether some step of the ladder has no limit that is stricter than the same one of `limits`. No step of a flight
-    /// is such a step if the weakest limits of the flight are not.
+    /// Whether some step of the ladder covers `limits`: none of its limits is stricter than the same limit of `limits`.
+    /// If the weakest limits of a flight do not cover `limits`, no step of the flight does, and the flight is skipped.
     fn is_covered(&self, limits: &DriveLimits) -> bool {
         let flights = self.ladder_flights.iter().zip(self.ladder_limits.chunks(STEPS_OF_FLIGHT));
         let mut near = flights.filter(|(most, _)| most.cover(limits)).flat_map(|(_, flight)| flight);
@@ -395,8 +395,8 @@ impl<'c> DriveTable<'c> {
         }
     }
 
-    /// The first step of the ladder up to which some drive may meet `demand`. Most demands are met near the beginning,
-    /// so the stride is doubled until the step is passed, and then the interval is bisected.
+    /// The first step of the ladder for which some drive up to this step may meet `demand`. Most demands are met near
+    /// the beginning. Therefore the stride is doubled until the step is passed, and then the interval is bisected.
     #[inline]
     fn first_step_within_reach(&self, demand: &JointDemand) -> usize {
         let reach = &self.ladder_reach;

@@ -19,8 +19,9 @@ pub struct StatedPhase {
 /// takes the place of the study's cycle. The static torque, peak and emergency stop that follow from poses and masses
 /// are still checked.
 ///
-/// A phase at half the speed of the next one (within 5 %) is a ramp up to it; a phase at half the speed of the one
-/// before is a ramp down from it. In ramps rotor and wave generator are accelerated too.
+/// A phase at half the speed of the next phase (within 5 %) is a ramp up to the speed of the next phase. A phase at
+/// half the speed of the phase before is a ramp down from that speed. In ramps rotor and wave generator are accelerated
+/// too.
 ///
 /// ```
 /// use armwright::sizing::{StatedDuty, StatedPhase};
@@ -167,11 +168,11 @@ impl StatedDemand {
 /// torque to continuous torque for each newton metre at the joint, and c is this ratio for each rad/s² of the joint.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct StatedHeat {
-    /// Sum of w T² (w: fraction of the time; T: torque) \[(N m)²\]: first over the phases in which the motor drives,
-    /// then over those in which the load drives it.
+    /// Sum of w T² (w: fraction of the time; T: torque) \[(N m)²\]: first over the phases in which the motor drives the
+    /// load, then over the phases in which the load drives the motor.
     torque_nm2: [f64; 2],
-    /// Sum of w T α (α: acceleration of the joint) over the phases in which the motor drives, then over those in which
-    /// the load drives it \[N m rad/s²\].
+    /// Sum of w T α (α: acceleration of the joint) \[N m rad/s²\]: first over the phases in which the motor drives the
+    /// load, then over the phases in which the load drives the motor.
     mixed_nm_rad_s2: [f64; 2],
     /// Sum of w α² over all phases \[rad²/s⁴\].
     acceleration_rad2_s4: f64,
@@ -187,8 +188,8 @@ impl StatedHeat {
         torque + 2.0 * inertia_s2 * mixed + inertia_s2 * inertia_s2 * self.acceleration_rad2_s4
     }
 
-    /// The sums of this duty at the input of `stage`, whose own inertia is left out: a duty in numbers states torques and
-    /// not what accelerates the stage. Where the load drives, the stage's losses help the motor.
+    /// The sums of this duty at the input of `stage`. The inertia of the stage is left out, because a duty in numbers
+    /// states torques and not what accelerates the stage. Where the load drives, the stage's losses help the motor.
     fn before(self, stage: &Stage) -> Self {
         let per_nm = [1.0 / (stage.ratio * stage.efficiency), stage.efficiency / stage.ratio];
         Self {

@@ -55,7 +55,8 @@ impl SpacePrismatic {
         out
     }
 
-    /// Acceleration of the joint in its ramps \[m/s²\]: that of its sized drive, or that of the tip if the drive is given.
+    /// Acceleration of the joint in its ramps \[m/s²\]. A sized drive has an acceleration of its own; with a given
+    /// drive it is the acceleration of the tip.
     pub(crate) fn acceleration_m_s2(&self, asked: &MotionRequirement) -> f64 {
         let sized = self.drive.as_ref().map(|drive| drive.motion(asked).acceleration_rad_s2);
         sized.unwrap_or(asked.tip_acceleration_m_s2())

@@ -339,7 +339,8 @@ pub(crate) fn bodies_at(
 }
 
 /// Reach of each joint, base to tip \[m\]: the largest displacement of the tip per radian of the joint over the given
-/// cases. It is the distance of the tip from the joint's axis, unless the joint drives passive joints.
+/// cases. It is the distance of the tip from the joint's axis. If the joint turns passive joints (joints of a linkage),
+/// it differs from this distance, because the tip moves with these joints too.
 pub(crate) fn reaches_m<'a>(space: &DesignSpace, cases: impl Iterator<Item = &'a Case>) -> Vec<f64> {
     let joints: Vec<(usize, Vector3<f64>)> = space
         .pieces
