@@ -1,4 +1,4 @@
-//! Linkages: which joints turn another joint, beyond what its own drive does, and how far.
+//! Linkages: which joints turn another joint in addition to its own drive, and how far.
 //!
 //! In a linkage, driving joints turn a passive joint. A driven joint is turned by other joints if its motor sits
 //! inboard of them: while the motor stands still, they turn the driven joint through its stages

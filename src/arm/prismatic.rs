@@ -106,8 +106,8 @@ pub struct Guide {
     pub limits: GuideLimits,
 }
 
-/// The largest loads that a guide holds, each acting alone: the ratings of the maker over the safety factor that it
-/// asks for. `None` means unknown.
+/// The largest loads that a guide holds, each acting alone. They are the ratings of the maker divided by the safety
+/// factor for which the maker asks. `None` means unknown.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GuideLimits {
     /// Force across the travel, along the y or the z axis of the guide \[N\].
@@ -338,7 +338,7 @@ pub struct PrismaticPiece {
     pub mass_kg: f64,
     /// Mass that stays \[kg\].
     pub fixed_mass_kg: f64,
-    /// Rigid bodies on the joint: those that stay and those that travel.
+    /// Rigid bodies on the joint. Some stay, others travel.
     pub bodies: JointBodies,
     /// Index of the joint's travel in a pose.
     pub entry: usize,

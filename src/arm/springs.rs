@@ -55,7 +55,7 @@ pub enum SpringPlace {
     World,
     /// The body that carries the first element of the arm. It is outboard of any compliance of the base.
     Base,
-    /// An element of the chain by its index, base to tip. Of a joint, it is the side that turns.
+    /// An element of the chain by its index, base to tip. For a joint, it is the side that turns.
     Element(usize),
 }
 

@@ -90,7 +90,7 @@ pub struct JointPiece {
     pub tilt_rad_per_nm: f64,
     /// Further tilting compliance about each of two axes perpendicular to the joint's axis, which stand still in the
     /// housing \[rad/(N m)\]: the first is the cross product of the joint's axis and the coordinate axis that is least
-    /// parallel to it, the second that of the joint's axis and the first.
+    /// parallel to it. The second is the cross product of the joint's axis and the first.
     pub lean_rad_per_nm: [f64; 2],
     /// Point mass on the axis, inboard of the springs \[kg\].
     pub mass_kg: f64,

@@ -368,8 +368,9 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
 /// Lowest eigenvalue of every wanted lane, by the secant method on the product of all pivots times `x = 1/λ`.
 ///
 /// The product of the pivots is `Π (1 - x_i / x)`, so this function is `(x - x_1) Π (1 - x_i / x)`, where the product
-/// `Π` is over all modes except the first. It is a straight line if the other modes are far away. However near they
-/// are, it has no poles. A guess beyond the second mode is moved back.
+/// `Π` is over all modes except the first. The function is a straight line if the other modes are far away. However
+/// near they are, the function has no poles at positive `x`, which are points where it is infinite. A guess beyond the
+/// second mode is moved back.
 #[inline(always)]
 pub(crate) fn roots<V: Lanes, const N: usize>(
     outboard: &Outboard<N>,

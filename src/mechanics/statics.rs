@@ -122,8 +122,9 @@ impl Posed<'_> {
         out
     }
 
-    /// The tip displacement \[m\] and the strain coordinates of all elements, base to tip: those of
-    /// [`statics`](Self::statics), which also has what bearings, guides and roots of links bear.
+    /// The tip displacement \[m\] and the strain coordinates of all elements, base to tip. The method
+    /// [`statics`](Self::statics) finds the same values, and in addition the loads on bearings, guides and roots of
+    /// links.
     pub(crate) fn displaced(&self) -> (Vector3<f64>, Vec<Vec<f64>>) {
         let mut wrench = self.tip_load();
         let transferred = self.transferred();
@@ -205,8 +206,8 @@ struct Strained {
 }
 
 impl ElasticElement {
-    /// The deflection of the element under `wrench`, the load of everything outboard. `transferred` are the torques that linkages
-    /// put on driving joints.
+    /// The deflection of the element under `wrench`, the load of everything outboard. `transferred` are the torques
+    /// that linkages put on driving joints.
     fn strained(&self, transferred: &[Transferred], wrench: &Wrench) -> Strained {
         let mut motion = Twist::zeros();
         let mut forces: Vec<f64> = self.twists.iter().map(|twist| twist.dot(wrench)).collect();

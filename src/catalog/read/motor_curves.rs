@@ -49,8 +49,8 @@ fn actuator_ratio(catalogs: &Catalogs, model: &str) -> f64 {
     catalogs.gears.iter().find(is_own).map_or(1.0, |gear| gear.ratio)
 }
 
-/// The points of a curve converted from the output of an actuator to its motor's shaft, without losses, as the ratings
-/// of `actuators.csv` are.
+/// The points of a curve converted from the output of an actuator to its motor's shaft, without losses. The
+/// ratings of `actuators.csv` are converted in the same way.
 fn at_shaft(curve: Vec<MotorCurvePoint>, ratio: f64) -> Vec<MotorCurvePoint> {
     let converted = |point: MotorCurvePoint| MotorCurvePoint {
         speed_rpm: point.speed_rpm * ratio,

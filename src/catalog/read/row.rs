@@ -136,8 +136,8 @@ impl<'a> Row<'a> {
         }
     }
 
-    /// Reports those of the numbers in `figures` (column and value) that are smaller than the number before them.
-    /// Unknown numbers are skipped. With `strict`, a number that equals the one before is reported too.
+    /// Reports each number in `figures` (column and value) that is smaller than the number before it.
+    /// Unknown numbers are skipped. With `strict`, a number that equals the number before it is reported too.
     pub(crate) fn ascending(&self, figures: &[(&str, Option<f64>)], strict: bool, hint: &str) {
         let known: Vec<_> = figures.iter().filter_map(|(column, x)| Some((*column, (*x)?))).collect();
         for pair in known.windows(2) {
@@ -149,9 +149,9 @@ impl<'a> Row<'a> {
         }
     }
 
-    /// Compares `printed`, a number in the column `column`, with `computed`, the same number computed from others of
-    /// the row, which `from` names. A relative deviation of more than `warn` gives a warning, of more than `refuse` a
-    /// fault.
+    /// Compares `printed`, a number in the column `column`, with `computed`, the same number computed from other
+    /// numbers of the row. `from` names these numbers in the message. A relative deviation of more than `warn` gives a
+    /// warning, and a deviation of more than `refuse` gives a fault.
     pub(crate) fn agrees(
         &self,
         column: &str,
