@@ -64,8 +64,9 @@ pub(super) struct BoxWork {
     /// Upper bound of the tip's deflection \[m\], one entry for each judged case in which contributions to the tip's
     /// displacement may oppose each other.
     pub(super) greatest_tip_m: Vec<f64>,
-    /// For each piece, the relative growth of the tip's least deflection if each stiffness of the piece were the
-    /// geometric mean of its least and its greatest value, instead of its greatest value.
+    /// For each piece, the relative growth of the tip's least deflection with middle stiffnesses of the piece. A middle
+    /// stiffness is the geometric mean of its least and its greatest value; the least deflection has the greatest
+    /// value.
     pub(super) tip_growth: Vec<f64>,
     /// Buffers of the inverse iteration that improves trial shapes.
     pub(super) shape: ShapeWork,

@@ -1,9 +1,9 @@
 //! The choice of the level along which a box is halved.
 //!
-//! The bound of a box takes every part at its lightest and at its stiffest. The score of a level is how much
-//! the bound would worsen if the level's part had middling numbers instead: the geometric mean of the
-//! lightest and the heaviest, and of the stiffest and the softest. The level with the greatest score is
-//! halved.
+//! The bound of a box takes every part at its lightest and at its stiffest. A level is the choice of
+//! one part. The score of a level is how much the bound would worsen if its part had middle numbers instead.
+//! The middle mass is the geometric mean of the least and the greatest mass, and middle stiffnesses are such
+//! means too. The level with the greatest score is halved.
 //!
 //! The bounds of the two halves would be a worse guide, because a box has to be halved several times before
 //! its bound moves at all.
@@ -95,8 +95,9 @@ impl Problem<'_> {
         softened
     }
 
-    /// Computes `work.tip_growth`: for each piece, the fraction by which the least tip deflection would grow if each
-    /// stiffness of the piece were the geometric mean of its least and greatest values instead of its greatest value.
+    /// Computes `work.tip_growth`: for each piece, the fraction by which the least tip deflection would grow with
+    /// middle stiffnesses of the piece. A middle stiffness is the geometric mean of its least and its greatest value;
+    /// the least deflection has the greatest value.
     fn weigh_tip(&self, work: &mut BoxWork) {
         work.tip_growth.clear();
         work.tip_growth.resize(self.parts.len(), 0.0);

@@ -102,8 +102,8 @@ impl Rows<'_> {
         branchings
     }
 
-    /// For the mass and for the stiffness of a piece: the index of the coordinate that stands for it in the key of an
-    /// option, and the best value of this coordinate in the box.
+    /// Two pairs, first for the mass of a piece and then for its stiffness. Each pair is the index of the coordinate
+    /// that stands for the quantity in the key of an option, and the best value of this coordinate in the box.
     fn best_of(&self, piece: usize) -> [(usize, f64); 2] {
         let (light, stiff) = (self.work.light[piece][inertia::MASS], self.work.stiff[piece][0]);
         let (places, stiff) = match &self.work.curves[piece] {

@@ -79,9 +79,9 @@ impl<'c> Joints<'c> {
         room.and_then(|room| room.rooms.get(option)).copied().unwrap_or(LinkRoom::ANY)
     }
 
-    /// The lever that the link at `place` has with this option \[m\]: the distance along the axis of the joint directly
-    /// inboard from the face of the joint's flange to the point where the link attaches. 0 if the bearing of this joint
-    /// is not checked.
+    /// The lever that the link at `place` has with this option \[m\]. The lever is a distance along the axis of the
+    /// joint directly inboard: from the face of the joint's flange to the point where the link attaches. It is 0 if the
+    /// bearing of this joint is not checked.
     fn lever_m(&self, place: usize, option: usize) -> f64 {
         let inboard = place.checked_sub(1).and_then(|inboard| self.levers[inboard].as_ref());
         inboard.and_then(|lever| lever.lever_m.get(option)).copied().unwrap_or_default()
@@ -244,8 +244,8 @@ impl<'c> Problem<'c> {
     }
 
     /// Compiles a link of the chain with the options for which `takes` is true. For the index of an option, `leaves`
-    /// returns the lever of the loads on the bearing of the joint inboard \[m\], and the space that the link leaves for
-    /// the drive of this joint. `None` if no option is admitted.
+    /// returns two values: the lever of the loads on the bearing of the joint inboard \[m\], and the space that the
+    /// link leaves for the drive of this joint. `None` if no option is admitted.
     fn link(
         &mut self,
         piece: &'c SpacePiece,

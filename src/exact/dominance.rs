@@ -1,7 +1,7 @@
 //! Drives that a lighter drive dominates within a box.
 //!
-//! Let a design have drive B at a joint. Let drive A be lighter, at least as stiff up to the torque that the joint
-//! carries, and able to carry the demand on the joint, with a bearing that tilts no more. The demand depends only on
+//! Let a design have drive B at a joint. Let drive A be lighter, and at least as stiff up to the torque that the joint
+//! carries. Let A also meet the demand on the joint, and let its bearing tilt no more. The demand depends only on
 //! the arm outboard, so it is the same for both. Now put A in the place of B:
 //!
 //! - Every force of the study grows with every weight. So no torque, stress or demand inboard grows, and the tip does
@@ -139,7 +139,7 @@ impl Problem<'_> {
     }
 
     /// Whether every gear inboard keeps its tangent stiffness in the modes if the piece becomes lighter by `lost_n`
-    /// \[N\]: the slope of its torsion curve and the slope of its lost motion both stay.
+    /// \[N\]. The stiffness stays if the slope of the gear's torsion curve and the slope of its lost motion both stay.
     fn slopes_stay(&self, piece: usize, lost_n: f64, work: &BoxWork) -> bool {
         self.judged_cases().all(|case| {
             self.poses[case].rows.iter().filter(|row| row.piece > piece).all(|row| {

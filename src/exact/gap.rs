@@ -7,10 +7,10 @@ use super::bound::BoxBound;
 use crate::pareto::objectives::Objectives;
 use rayon::prelude::*;
 
-/// The gap of a search: the least `ε` such that for every open box some design in `found` is worse than the bound of
-/// the box by at most the factor `1 + ε` in each of mass, deflection and mode. For every design that was missed, some
-/// design in `found` is then worse by at most this factor, too. `None` if some box has no bound yet, or if no design
-/// was found.
+/// The gap of a search: the least `ε` such that every open box is near some design in `found`. Near means that the
+/// design is worse than the bound of the box by at most the factor `1 + ε` in each of mass, deflection and mode. For
+/// every design that was missed, some design in `found` is then worse by at most this factor, too. `None` if some box
+/// has no bound yet, or if no design was found.
 pub(super) fn gap(open: &[BoxBound], found: &[Objectives]) -> Option<f64> {
     let worst = open.par_iter().map(|bound| gap_of(bound, found)).reduce(|| 0.0, f64::max);
     worst.is_finite().then_some(worst)

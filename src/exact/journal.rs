@@ -3,12 +3,12 @@
 //! A study is searched in *parts*: first the front of all designs, then the front of each material. The state contains
 //! the results of the finished parts and the progress of the present one.
 //!
-//! A part is searched in *passes* over the whole space, each with less slack than the one before. (Slack: a box of
-//! designs is discarded although it might be better than the designs found by this fraction.) A pass over boxes is
-//! saved between two rounds of parallel tasks, together with the open boxes. A pass over regions (all designs below a
-//! mass, a deflection and a frequency) is saved only at its start, because each open region is a separate problem.
-//! Rounds do not depend on the number of threads, so a search that is continued takes the same steps as one that was
-//! never stopped.
+//! A part is searched in *passes* over the whole space, each with less *slack* than the pass before. The slack is a
+//! fraction: a box of designs is discarded although it may be better than the designs found by this fraction. A pass
+//! over boxes is saved between two rounds of parallel tasks, together with the open boxes. A pass over regions (all
+//! designs below a mass, a deflection and a frequency) is saved only at its start, because each open region is a
+//! separate problem. Rounds do not depend on the number of threads, so a search that is continued takes the same steps
+//! as a search that was never stopped.
 
 use super::bound::{BoxBound, DesignBox};
 use super::boxes::OpenBox;

@@ -1,8 +1,8 @@
 //! The exact lowest eigenvalue of one arm, independent of any trial shape.
 //!
-//! With `A = C^½ M C^½` and the compliance matrix `C`, the inverse of the stiffness matrix `K`, all eigenvalues of
-//! `K φ = λ M φ` lie above `λ` exactly if `1/λ - A` is positive definite (Sylvester's law of inertia). One Cholesky
-//! factorization decides that.
+//! Let `K` be the stiffness matrix, `C` its inverse, `M` the mass matrix and `A = C^½ M C^½`. All eigenvalues of
+//! `K φ = λ M φ` lie above a number `λ` exactly if `1/λ - A` is positive definite (Sylvester's law of inertia). One
+//! Cholesky factorization decides whether it is.
 
 use super::parts::INERTIAS;
 use super::pose::{COORDINATES, Pose};

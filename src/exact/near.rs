@@ -86,8 +86,8 @@ impl Exact<'_> {
     }
 }
 
-/// How many near designs may be stored before the list is cut back to the `most` nearest that were asked for: twice
-/// `most` and a buffer, so that the list is not cut back at every find.
+/// How many near designs may be stored before the list is cut back to the `most` nearest designs, which the user asked
+/// for. It is twice `most` and a buffer, so that the list is not cut back at every find.
 fn kept_at_most(most: usize) -> usize {
     2 * most + BUFFERED_DESIGNS
 }

@@ -84,8 +84,9 @@ pub(super) struct LinkBox {
     pub round: bool,
     /// Least cost of the material \[EUR/m\].
     pub cost_eur_per_m: f64,
-    /// Least and greatest lever \[m\]: the distance along the axis of the joint directly inboard from the face of the
-    /// joint's flange to the point where the link attaches. 0 if the bearing of this joint is not checked.
+    /// Least and greatest lever \[m\]. The lever is a distance along the axis of the joint directly inboard: from the
+    /// face of the joint's flange to the point where the link attaches. It is 0 if the bearing of this joint is not
+    /// checked.
     pub lever_m: [f64; 2],
     /// Least and greatest space that the link leaves for the gear and motor of the joint inboard.
     pub room: [LinkRoom; 2],

@@ -2,13 +2,15 @@
 //!
 //! A search goes over the whole space several times, in passes with less and less slack. In a pass with slack `ε`, a
 //! box of designs is also discarded if a design found before comes within the factor `1 + ε` of the box's bound in all
-//! three objectives. A completed pass therefore proves that for every design some design found is worse by at most `ε`.
+//! three objectives. A completed pass therefore proves this: every design has a design found that is worse than it by
+//! at most `ε`.
 //! The time of a pass grows as a power of the reciprocal of its slack, `t ∝ ε^-g`. The exponent `g` is measured on the
 //! last two completed passes.
 //!
 //! Without a time limit the slacks come from a fixed list and do not depend on the machine. With a time limit they
-//! come from the same list as long as a pass is short compared with the time left, and if the gap that was asked for
-//! can be proved in time. Otherwise the last pass gets the least slack for which there should be time.
+//! come from the same list as long as a pass is short compared with the time left. They also come from the list if the
+//! gap that was asked for can be proved in time. Otherwise the last pass gets the least slack for which there should be
+//! time.
 
 use serde::{Deserialize, Serialize};
 

@@ -60,8 +60,9 @@ pub(super) enum Part<'c> {
     Offset { mass_kg: f64 },
 }
 
-/// Lever of the loads on a joint's output bearing: the distance along the axis from the face of the joint's flange (or
-/// from the centre of the bearing, if the study states the lever) to the point where the link attaches.
+/// Lever of the loads on a joint's output bearing: the distance along the axis from the face of the joint's flange to
+/// the point where the link attaches. If the study states the lever, it is measured from the centre of the bearing
+/// instead.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Lever {
     /// The lever is the same for all options \[m\].

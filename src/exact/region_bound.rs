@@ -21,8 +21,8 @@ const MOST_SHAPES: usize = 3;
 /// Greatest number of dual points that are added once it is clear that the multipliers cannot prove the region empty.
 /// Further points still exclude more options by their reduced costs.
 const MOST_TO_REDUCE: usize = 8;
-/// The search for multipliers stops if the value of the matrix game, which limits what any multipliers can prove,
-/// exceeds the value of the best dual point so far by at most this much (in the scale of the rows).
+/// The search for multipliers stops if the value of the matrix game exceeds the value of the best dual point so far by
+/// at most this much (in the scale of the rows). The value of the matrix game limits what any multipliers can prove.
 const VALUE_TOLERANCE: f64 = 1e-4;
 /// Least weight of a relaxed design in the mixture. A smaller weight is due to rounding.
 const LEAST_MIXTURE_WEIGHT: f64 = 1e-9;

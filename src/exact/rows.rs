@@ -7,15 +7,15 @@
 //! - *mass*: the sum of the masses. It is exact.
 //! - *displacement of the tip* in a case, along a fixed direction: the twists of the gears, each at a torque of its
 //!   own, and the deflections of tubes and bearings. A product of the force `F` and the compliance `c` of a tube or a
-//!   bearing is replaced by `F₀ c + c₀ (F - F₀)`, where `F₀` and `c₀` are the least of the box (McCormick). The error
-//!   is at most the product of the widths of the two intervals.
-//! - *torque of a gear*: the torque at which its curve is evaluated, less the torque that the weights outboard make.
+//!   bearing is replaced by `F₀ c + c₀ (F - F₀)`, where `F₀` and `c₀` are the least values in the box (McCormick's
+//!   envelope). The error is at most the product of the widths of the two intervals.
+//! - *torque of a gear*: the torque at which its curve is evaluated, minus the torque that the weights outboard cause.
 //!   For a member the difference is zero, so this row is exact.
 //! - *mode*: `λ xᵀMx - xᵀKx` for a trial shape `x`. It is not positive for a member whose eigenvalues are at least `λ`.
 //!   The error is about the square of the shape's error.
 //!
 //! For a member below a [`LocalUpperBound`] each row has an upper limit. With multipliers that are not
-//! negative, the weighted sum of the rows then has one too. This is the Lagrangian relaxation of the region;
+//! negative, the weighted sum of the rows then has an upper limit too. This is the Lagrangian relaxation of the region;
 //! [`lagrangian`](super::lagrangian) minimizes the sum.
 
 use super::bound::{BoxBound, DesignBox, START_SHAPES};
@@ -107,8 +107,8 @@ pub(super) struct Mode {
     pub kinetic: [f64; 2],
 }
 
-/// A minimizer of the weighted sum of rows over a box. It need not be a member of the box: the torques at which its
-/// gears are evaluated need not agree with its weights, and its node of a level may be a box of several options.
+/// A minimizer of the weighted sum of rows over a box. It need not be a member of the box. The torques at which its
+/// gears are evaluated need not agree with its weights, and its node of a level may stand for several options.
 pub(super) struct RelaxedDesign {
     /// The node of each level.
     pub design_box: DesignBox,
