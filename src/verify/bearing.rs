@@ -5,12 +5,13 @@
 //! - *static safety*: `P₀ = F_r + 2 (M + R F_r) / d_p + 0.44 F_a` is at most `C₀ / 3` at rest (for high precision) and
 //!   at most `C₀ / 2` in a stop (because of shocks).
 //! - *life*: `10⁶ / (60 n) · (C / (f_w P_c))^(10/3)` is at least the hours that the study asks for, with
-//!   `P_c = X (F_r + 2 (M + R F_r) / d_p) + Y F_a`. The loads are those of the arm at rest: the life does not count
+//!   `P_c = X (F_r + 2 (M + R F_r) / d_p) + Y F_a`. The loads are the loads of the arm at rest: the life does not count
 //!   accelerations.
 //!
-//! `M`, `F_r` and `F_a` are the moment, the radial force and the axial force at the face of the flange, `R` is the
-//! distance from there to the centre of the bearing, and `d_p` is its pitch diameter. `C₀` and `C` are the static and
-//! the dynamic load rating, `n` is the mean speed \[rpm\], and `X`, `Y` and `f_w` are factors of the vendor.
+//! `M`, `F_r` and `F_a` are the moment, the radial force and the axial force at the face of the flange. `R` is the
+//! distance from there to the centre of the bearing, and `d_p` is the pitch diameter of the bearing. `C₀` and `C` are
+//! the static and the dynamic load rating, `n` is the mean speed of the joint \[rpm\], and `X`, `Y` and `f_w` are
+//! factors of the vendor.
 //!
 //! (Harmonic Drive LLC, FHA-C manual, pages 20 to 23; Harmonic Drive AG, engineering data 1021387, pages 23, 43
 //! and 45.)

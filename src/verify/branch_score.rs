@@ -1,6 +1,6 @@
 //! The choice of the level at which a box is divided.
 //!
-//! A box is a set of designs. Its ideal point has a mass, a deflection and a mode, each at least as good as that of any
+//! A box is a set of designs. Its ideal point has a mass, a deflection and a mode, each at least as good as in any
 //! design of the box. A level is the choice of one drive or one tube.
 
 use super::bound::{IdealPoint, Members, compliances};
@@ -42,8 +42,9 @@ impl BranchScore<'_> {
             + 0.5 * libm::log1p(slower)
     }
 
-    /// By how much the ideal point becomes worse if `joint` has an average drive and not the best one: the mass \[kg\],
-    /// the deflection \[m\] and the squared angular frequency `λ` of the lowest mode \[1/s²\]. `node` is the node of
+    /// By how much the ideal point becomes worse if `joint` has an average drive instead of the best drive. The three
+    /// numbers are changes of the mass \[kg\], of the deflection \[m\] and of the squared angular frequency `λ` of the
+    /// lowest mode \[1/s²\]. `node` is the node of
     /// the joint's tree in the box.
     fn of_joint(&self, joint: usize, node: u32) -> [f64; 3] {
         let (range, whole) = (&self.members.drives[joint], self.boxes.joints[joint].range(node));
@@ -75,8 +76,9 @@ impl BranchScore<'_> {
         if strain.is_finite() { strain } else { 0.0 }
     }
 
-    /// By how much the ideal point becomes worse if the link has an average tube and not the best one: the mass \[kg\],
-    /// the deflection \[m\] and the squared angular frequency `λ` of the lowest mode \[1/s²\].
+    /// By how much the ideal point becomes worse if the link has an average tube instead of the best tube. The three
+    /// numbers are changes of the mass \[kg\], of the deflection \[m\] and of the squared angular frequency `λ` of the
+    /// lowest mode \[1/s²\].
     fn of_tube(&self, tube: usize) -> [f64; 3] {
         let range: &TubeRange = self.members.tubes[tube];
         let pose = &self.boxes.skeleton.poses[self.ideal.worst];

@@ -225,7 +225,7 @@ pub struct AskedMotion {
     pub emergency_stops: Option<f64>,
 }
 
-/// The two ways in which Eq 8, the torque of linear acceleration (see docs/sizing.md), can be read.
+/// The two ways in which Eq 8, the torque of linear acceleration (see docs/model.md), can be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LinearTorque {
     /// Inertia of everything outboard about the joint's axis, times the joint's acceleration.

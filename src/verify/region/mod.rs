@@ -1,7 +1,8 @@
 //! Region by region: proves that the front of a very large space lacks no design.
 //!
-//! A design that no design of the front dominates lies below some *local upper bound* of the front ([`upper_bounds`]):
-//! its mass and its deflection are at most, and its lowest mode is at least, the values of the bound. So the verifier
+//! A design that no design of the front dominates lies below some *local upper bound* of the front ([`upper_bounds`]).
+//! *Below* means that its mass and its deflection are at most the values of the bound, and its lowest mode is at least
+//! the value of the bound. So the verifier
 //! examines these bounds one after the other.
 //!
 //! The ideal point of a box takes each part at its lightest and at its stiffest at once, although no part is both.

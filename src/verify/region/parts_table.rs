@@ -21,9 +21,9 @@ pub(super) struct PartsTable {
     pub tubes: Vec<TubeTable>,
 }
 
-/// The numbers of each torsion curve that the drives of a joint have: its twist in every judged case, then its slope in
-/// every judged case, then compliance and stiffness of the output bearing that belongs to it. `None` for a curve that
-/// no drive of the subproblem has.
+/// The numbers of each torsion curve that the drives of a joint have. The numbers are, in this order: the twist in
+/// every judged case, the slope in every judged case, and compliance and stiffness of the output bearing that goes with
+/// the curve. `None` for a curve that no drive of the subproblem has.
 pub(super) type Numbers = Vec<Option<Vec<f64>>>;
 
 /// The drives that a joint may have, each with the index of its torsion curve and bearing.
