@@ -4,8 +4,9 @@
 //! past a break point of this curve. Its tangent stiffness then rises, and the lowest mode with it. A design can be on
 //! a front for that reason alone.
 //!
-//! A part is reported as ballast if a lighter part that is at least as stiff in every way exists for its place, and if
-//! the design with this lighter part weighs less and deflects no more. Only its lowest mode is lower. The reason is
+//! A part is reported as ballast under two conditions. A lighter part that is at least as stiff in every way exists for
+//! its place. And the design with this lighter part weighs less and deflects no more, so that only its lowest mode is
+//! lower. The reason is
 //! that a gear inboard gets into a softer segment of its torsion curve, or that the play of a joint (its lost motion)
 //! is less closed under the smaller torque.
 

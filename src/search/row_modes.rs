@@ -67,9 +67,9 @@ impl<'a, 'c> Question<'a, 'c> {
     }
 
     /// The designs among `held` that one bar, used for all eight, shows to be dominated. The bar of a design of known
-    /// mass and deflection is the lowest mode below which the design is dominated. The bar that is used here is that
-    /// of an imagined design with the least mass and the least deflection of the eight, so the bar of each of the
-    /// eight is at least as high. `tip_m2` has the squares of the deflections \[m²\].
+    /// mass and deflection is the lowest mode below which the design is dominated. The bar that is used here belongs
+    /// to an imagined design with the least mass and the least deflection of the eight. The bar of each of the eight is
+    /// at least as high. `tip_m2` has the squares of the deflections \[m²\].
     #[inline(always)]
     pub(crate) fn below_one_bar<V: Lanes>(&self, keep: &impl Keep, tip_m2: &Eight, held: u8) -> u8 {
         if !self.at.of_one_group() {
