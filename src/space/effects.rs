@@ -1,8 +1,8 @@
 //! The arm of a study and its effects, as *layers*: what the search adds to the arm, step by step from the tip inward.
 //!
-//! An effect changes the joint law of a joint (its angle as a function of torque) or the tube of a link, or it adds
-//! an element to the chain: a spring that tilts, or a mass. The code that applies an effect to an arm file applies it
-//! here too, so that the search, `analyze` and `reconcile` compute the same thing. The code that evaluates designs
+//! An effect may change the joint law of a joint (its angle as a function of torque) or the tube of a link. It may also
+//! add an element to the chain: a spring that tilts, or a mass. The code that applies an effect to an arm file applies
+//! it here too, so that the search, `analyze` and `reconcile` compute the same thing. The code that evaluates designs
 //! knows only these elements, and nothing of effects.
 
 use super::design_space::{DesignSpace, MotorPlace, SpaceJoint, SpacePiece};

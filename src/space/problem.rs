@@ -1,8 +1,9 @@
 //! An arm as a tree of designs.
 //!
-//! The arm is built from the tip to the base. Each joint is sized when everything outboard of it is known (Eqs 7-12).
-//! With every piece that is added, the wrench, the inertia and the displacement of the tip are updated (Eqs 13-16),
-//! so that a partial arm has all the data that the next pieces need.
+//! The arm is built from the tip to the base. Each joint is sized when everything outboard of it is known (Eqs 7-12
+//! of docs/model.md).
+//! Every piece that is added changes the wrench, the inertia and the displacement of the tip (Eqs 13-16). A
+//! partial arm therefore has all the data that the next pieces need.
 
 use super::attributes::OptionAttributes;
 use super::bearing_loads::BearingLoads;
@@ -361,7 +362,8 @@ impl<'c> ArmProblem<'c> {
 
     /// Demand on a joint over the sizing cases. It is made of the largest static torque (Eq 7, plus torque that acts
     /// on the joint in addition to weight and load) and of the largest inertia outboard. The motion turns both into
-    /// torques (Eqs 8-12). The two may come from different cases, so the demand is on the safe side. As in the paper,
+    /// torques (Eqs 8-12). The largest torque and the
+    /// largest inertia may come from different cases, so the demand is on the safe side. As in the paper,
     /// Eq 8 uses the torque of weight and load alone: a counterbalance does not reduce what must be accelerated.
     pub(crate) fn demand(
         &self,

@@ -78,8 +78,9 @@ impl StationState {
         self.inertia_between(slot, joint, joint)
     }
 
-    /// Inertia between the motions of the joint that is to be added next in `slot` and of the joint `moving`, which is
-    /// this joint or one inboard of it \[kg m²\]: the torque about the first per unit of acceleration of the second.
+    /// Inertia between the motions of two joints \[kg m²\]: the torque about the first joint per unit of acceleration
+    /// of the second. The first is the joint that is to be added next in `slot`. The second is the joint `moving`,
+    /// which is the same joint or a joint inboard of it.
     pub(crate) fn inertia_between(&self, slot: usize, joint: &StationJoint, moving: &StationJoint) -> f64 {
         let momentum = self.momentum(slot, moving);
         // everything outboard of a passive joint moves with the rotation of that joint too
