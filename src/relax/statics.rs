@@ -4,9 +4,9 @@
 //!
 //! A piece is loaded by the wrench (force and moment) of everything outboard, `W = W₀ + Σ_j q_j û_j`. Here `û_j` is
 //! the wrench of one unit of the load of slot `j`, and `q_j` is the load of its chosen option. The displacement of
-//! the tip along a direction `d` is a sum over the pieces. With `q` between `q⁻` and `q⁺`, each term is at least
-//! its value at one end (all loads least, or all greatest) plus, for each load, the least slope times the distance from
-//! that end. Each of the two ends gives a row.
+//! the tip along a direction `d` is a sum over the pieces. The loads `q` lie between `q⁻` and `q⁺`. At each
+//! end (all loads least, or all greatest) every term has a value, and each load adds at least its least slope times its
+//! distance from that end. The sum is a lower bound of the term. Each of the two ends gives a row.
 
 use super::parts::{Parts, slot_masses};
 use super::row::Row;
