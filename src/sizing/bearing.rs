@@ -9,12 +9,12 @@
 //! 2. *Static safety*. The safety factor `fs = C₀ / P₀` with `P₀ = F_r + 2 M / d_p + 0.44 F_a` is at least 1.5 in
 //!    normal use, 2 with shocks and 3 for high precision. Here: [`SAFETY_AT_REST`] at rest, [`SAFETY_IN_A_STOP`] in an
 //!    emergency stop.
-//! 3. *Life*. `L₁₀ = 10⁶ / (60 n) · (C / (f_w P_c))^(10/3)` hours with `P_c = X (F_r + 2 M / d_p) + Y F_a`. X and Y
-//!    are 1 and 0.45 while `F_a` is at most 1.5 times `F_r + 2 M / d_p`, else both are 0.67. n is the mean speed of the
-//!    joint over its cycle, so the same formula holds for joints that swing: a swing of ±θ travels 4θ in each
+//! 3. *Life*. `L₁₀ = 10⁶ / (60 n) · (C / (f_w P_c))^(10/3)` hours with `P_c = X (F_r + 2 M / d_p) + Y F_a`. X and Y are
+//!    1 and 0.45 while `F_a` is at most 1.5 times `F_r + 2 M / d_p`, else both are 0.67. n is the mean speed of the
+//!    joint over its cycle, so the same formula holds for joints that swing. A swing of ±θ travels 4θ in each
 //!    oscillation.
 //!
-//! F_r and F_a are the radial and the axial force, d_p is the pitch diameter of the bearing, C₀ and C are its static
+//! F_r and F_a are the radial and the axial force. d_p is the pitch diameter of the bearing. C₀ and C are its static
 //! and its dynamic load rating, and f_w is a load factor of the vendor.
 //!
 //! Each of the three loads grows with every force and moment. So a bearing is described by a set of thresholds, as the

@@ -1,5 +1,6 @@
 //! The demand on one joint: its motion, which the study fixes, and its torques, which follow from the masses outboard
-//! (Eqs 8 and 12, cubic mean over the duty cycle).
+//! (Eqs 8 and 12 of docs/model.md, cubic mean over the duty cycle). *The paper* is the source of these equations, named
+//! in docs/model.md.
 
 use super::bearing::BearingDemand;
 use super::duty::{HeatWeights, MeanTorqueWeights};

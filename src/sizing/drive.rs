@@ -1,4 +1,4 @@
-//! A drive: a gear and a motor, with torques on either side of the gear (Eqs 9-12).
+//! A drive: a gear and a motor, with torques on either side of the gear (Eqs 9-12 of docs/model.md).
 
 use super::demand::{JointMotion, input_speed_rpm};
 use crate::arm::bearing::{Bearing, BearingSource};

@@ -203,8 +203,8 @@ struct Trial<'c> {
 }
 
 impl<'c> DriveTable<'c> {
-    /// Why parts were rejected for `demand`. The list has every gear that fails by itself, every gear that passes but
-    /// has no motor that passes with it, every actuator that fails, and every motor that fails with some gear that
+    /// Why parts were rejected for `demand`. The list has every gear and every actuator that fails by itself. It also
+    /// has every gear that passes but has no motor that passes with it, and every motor that fails with some gear that
     /// passes. Gears come first; gears and motors are each in the order of the catalog.
     pub fn explain(&self, demand: &JointDemand) -> Vec<Rejection> {
         let (mut rejections, trials) = (Vec::new(), self.trials(demand));

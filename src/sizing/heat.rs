@@ -17,9 +17,9 @@
 //! demands this. With s = T + T_lin, x = |T - T_lin| and q = J_in N α, the sum of the squared motor torques of the two
 //! ramps is larger in a lift than in a lowering by
 //!
-//! (s² ∓ x²)(1/η² - η²) / N² + 2 q (s - x)(1/η - η) / N ≥ 0,
+//! (s² ∓ x²)(1/η² - η²) / N² + 2 q (s - x)(1/η - η) / N ≥ 0.
 //!
-//! The sign is - where T_lin is larger than T, else +.
+//! The first sign is - where T_lin is larger than T, else +.
 //!
 //! *Monotonicity.* If the cycle slows down no longer than it speeds up, the mean square grows with T, with T_lin, and
 //! with each number of a [`MotorHeat`]. The reason: speeding up takes the largest torque, and its square rises at least

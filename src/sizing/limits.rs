@@ -199,7 +199,7 @@ pub(super) fn gear_average_speed_rpm(gear: &Gear) -> Rating {
 }
 
 /// Largest speed of a motor at the end of a ramp \[rpm\]: its stated largest speed, or its rated speed if only that
-/// is known, but never beyond the last point of its torque curve.
+/// is known. It is never beyond the last point of the motor's torque curve.
 pub(super) fn motor_max_speed_rpm(motor: &Motor) -> Rating {
     let of_curve = motor_curve::largest_speed_rpm(motor);
     let stated = motor.max_speed_rpm.or(motor.rated_speed_rpm);
@@ -255,10 +255,10 @@ fn gear_stop_nm(gear: &Gear) -> Rating {
     Ok(gear_momentary_nm(gear)?.min(gear_buckling_nm(gear).unwrap_or(unknown)).min(jumps_nm))
 }
 
-/// Torque at the joint in an emergency stop at which an actuator brakes with its peak torque \[N m\]: T_peak - s J_out
-/// α. Here s is the factor of the stop (emergency deceleration over the acceleration α of a ramp), and J_out is the
-/// inertia of the rotor at the output, which the motor must brake too. Infinite for other drives, whose rotor does not
-/// load the gear.
+/// Largest torque at the joint in an emergency stop that an actuator can brake \[N m\]: T_peak - s J_out α. T_peak is
+/// the peak torque of the actuator, s is the factor of the stop (emergency deceleration over the acceleration α of a
+/// ramp), and J_out is the inertia of the rotor at the output, which the motor must brake too. Infinite for other
+/// drives, whose rotor does not load the gear.
 pub(super) fn actuator_stop_nm(drive: &Drive, motion: &JointMotion) -> Rating {
     if drive.gear.kind != GearKind::Actuator {
         return Ok(f64::INFINITY);
@@ -271,8 +271,8 @@ pub(super) fn actuator_stop_of_rotor_nm(drive: &Drive, motion: &JointMotion) -> 
     Ok(motion.stop_factor * drive.rotary_torque_motor_nm(motion)? * drive.gain()?)
 }
 
-/// Number of emergency stops (momentary peaks) that a gear may see in its life: 1e4 / (2 n t / 60), with n the input
-/// speed in rpm and t the duration of a stop in seconds; never more than 1e4. The factor 2 is there because the wave
+/// Number of emergency stops (momentary peaks) that a gear may see in its life: 1e4 / (2 n t / 60), but at most 1e4.
+/// Here n is the input speed in rpm and t is the duration of a stop in seconds. The factor 2 is there because the wave
 /// generator deforms the flexspline twice in each turn. `None` if the gear is no strain-wave gear, for which alone
 /// the rule is made.
 ///

@@ -1,9 +1,9 @@
 //! Drives of prismatic joints: ball screws, and racks with their pinions, as gears.
 //!
 //! A screw of lead p turns the motor by `2π/p` radians per metre of travel. A pinion of radius r turns it by `1/r`,
-//! times the ratio of a gear at the pinion. With this ratio N every equation of a joint holds along a travel, with a
-//! force \[N\] in place of the torque, a speed \[m/s\] in place of the angular speed, and a stiffness \[N/m\]. The
-//! motor's torque is `F / (N η) + J N a` (Eqs 9 to 12). So a screw *is* a [`Gear`] whose ratings are forces.
+//! times the ratio of a gear at the pinion. With this ratio N, every equation of a joint holds along a travel. Torques
+//! are then forces \[N\], angular speeds are speeds \[m/s\], and stiffnesses are in N/m. The motor's torque is `F / (N
+//! η) + J N a` (Eqs 9 to 12 of docs/model.md). So a screw *is* a [`Gear`] whose ratings are forces.
 //!
 //! | of a screw | formula | source |
 //! |---|---|---|

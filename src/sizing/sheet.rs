@@ -1,4 +1,5 @@
-//! The sizing table: one row of numbers for each joint, from the tip to the base.
+//! The sizing table: one row of numbers for each joint, from the tip to the base. Equation numbers refer to
+//! docs/model.md.
 
 use super::bearing_checks::{BlankRatings, RigidBearing, bearing_margin};
 use super::check::{Check, CheckKind, CheckState};

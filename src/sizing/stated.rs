@@ -168,11 +168,10 @@ impl StatedDemand {
 /// torque to continuous torque for each newton metre at the joint, and c is this ratio for each rad/s² of the joint.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct StatedHeat {
-    /// Sum of w T² (w: fraction of the time; T: torque) \[(N m)²\]: first over the phases in which the motor drives the
-    /// load, then over the phases in which the load drives the motor.
+    /// Two sums of w T² (w: fraction of the time; T: torque) \[(N m)²\]. The first is over the phases in which the
+    /// motor drives the load, the second over the phases in which the load drives the motor.
     torque_nm2: [f64; 2],
-    /// Sum of w T α (α: acceleration of the joint) \[N m rad/s²\]: first over the phases in which the motor drives the
-    /// load, then over the phases in which the load drives the motor.
+    /// Two sums of w T α (α: acceleration of the joint) \[N m rad/s²\], over the same two groups of phases.
     mixed_nm_rad_s2: [f64; 2],
     /// Sum of w α² over all phases \[rad²/s⁴\].
     acceleration_rad2_s4: f64,
