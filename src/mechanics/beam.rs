@@ -239,8 +239,8 @@ impl PreparedBeam {
         fields.fixed_rows::<3>(0) - turned
     }
 
-    /// The point of the axis with which a body on the link moves: the displacement fields at this point (see
-    /// [`Self::fields`]), and the vector from the point to the centre of gravity of the body \[m\], in the section
+    /// The point of the axis with which a body on the link moves. The result is the displacement fields at this point
+    /// ([`Self::fields`]), and the vector from the point to the centre of gravity of the body \[m\], in the section
     /// frame.
     pub(crate) fn carrier(&self, body: &RigidBody) -> (Matrix6xX<f64>, Vector3<f64>) {
         let cg_m = self.frame.transpose() * body.cg_m;

@@ -1,5 +1,5 @@
-//! Modes: natural frequencies and shapes (Eqs 16-18), with motor shafts locked, without damping and without the
-//! stiffness due to gravity.
+//! Modes: natural frequencies and shapes (Eqs 16-18 of docs/model.md). Motor shafts are locked. Damping and the
+//! stiffness due to gravity are left out.
 //!
 //! Let `C` be the diagonal compliance matrix of the strain coordinates and `M` their mass matrix. The symmetric
 //! matrix `A = C^½ M C^½` has the eigenvalues `1/ω²`. `M` may be singular, for example with a point mass on a roll

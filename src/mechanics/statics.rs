@@ -1,4 +1,4 @@
-//! Statics: joint torques and displacement of the tip under gravity and load (Eqs 4, 7, 13-15).
+//! Statics: joint torques and displacement of the tip under gravity and load (Eqs 4, 7 and 13-15 of docs/model.md).
 //!
 //! The calculation is linear about the undeformed pose, except for the torsion of joints, which follows their joint
 //! laws. In a serial chain every internal force follows from the loads alone, so one pass from the tip to the base is
