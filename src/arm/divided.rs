@@ -2,9 +2,9 @@
 //!
 //! The strains of a link are smooth along its length (see [`crate::mechanics::beam`]). A body off the axis of a link
 //! twists the link inboard of it and not outboard of it, so the twist rate has a step at the body. Smooth strains
-//! reproduce only a part of such a step: the deflection of the tip is exact, but the frequency of a mode in which the
-//! body swings about the link comes out too high, by up to 6 %. Where the link is divided at the body, the step lies
-//! between two links, and the frequency is right.
+//! reproduce only a part of such a step. The deflection of the tip is exact all the same. But the frequency of a mode
+//! in which the body swings about the link comes out too high, by up to 6 %. Where the link is divided at the body, the
+//! step lies between two links, and the frequency is right.
 
 use super::body::RigidBody;
 use super::springs::{SpringEnd, SpringKind, SpringPlace};

@@ -1,10 +1,10 @@
 //! Prismatic joints: a carriage on a rail, a column, a ram, a screw.
 //!
-//! The joint slides along its axis. Its *drive* (a screw or a rack with its supports) is a spring along the travel.
-//! Its *guide* is three rotational springs: roll about the travel, pitch about the y axis and yaw about the z axis of
-//! a section frame whose x axis is the travel. Forces across the travel do not deflect the guide: the deflection of a
-//! pair of runner blocks under such forces is small compared with the deflection that their tilt causes at the end of
-//! an overhang.
+//! The joint slides along its axis. Its *drive* (a screw or a rack with its supports) is a spring along the travel. Its
+//! *guide* is three rotational springs: roll about the travel, pitch about the y axis and yaw about the z axis of a
+//! section frame whose x axis is the travel. Forces across the travel do not deflect the guide. The deflection of a
+//! pair of runner blocks (the bearings that run on the rail) under such forces is small. The tilt of the blocks causes
+//! a much larger deflection at the end of an overhang.
 //!
 //! The position of the springs depends on what moves. The blocks of a `carriage` travel with it, so the overhang
 //! outboard of them is the same at every travel. The blocks of a `ram` stay where the joint begins, so the overhang

@@ -2,9 +2,9 @@
 //!
 //! | symbol | formula | source |
 //! |---|---|---|
-//! | `I` rectangular | `(b h³ - (b-2t)(h-2t)³)/12` | Eq 5 |
-//! | `A` rectangular | `b h - (b-2t)(h-2t)` | Eq 6 |
-//! | `J` rectangular | Bredt for thin walls; thick ones and bars after Saint-Venant | `torsion.rs` |
+//! | `I` rectangular | `(b h³ - (b-2t)(h-2t)³)/12` | Eq 5 of docs/model.md |
+//! | `A` rectangular | `b h - (b-2t)(h-2t)` | Eq 6 of docs/model.md |
+//! | `J` rectangular | Bredt for thin walls; thick walls and bars after Saint-Venant | `torsion.rs` |
 //! | `J` round | `2 I` | exact for a circular tube |
 //! | shear factor, rectangular | `20(1+nu)/(48+39nu)` | Cowper 1966, thin square tube |
 //! | shear factor, round | `2(1+nu)/(4+3nu)` | Cowper 1966, thin round tube |

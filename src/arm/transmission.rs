@@ -144,7 +144,7 @@ pub(crate) struct Transmission {
     /// Name of the part that carries the motor, or `base`; `None` if the motor sits at the joint.
     motor_at: Option<String>,
     motor_point_m: Vector3<f64>,
-    /// Mass \[kg\] of the motor, with the gear if it sits at the motor, at the place where the motor is mounted; 0 if
+    /// Mass at the place where the motor is mounted \[kg\]: the motor, and the gear if it sits at the motor. It is 0 if
     /// the search chooses the drive, because its motor is not yet known.
     motor_kg: f64,
     /// Whether the gear sits at the motor, before the stages.

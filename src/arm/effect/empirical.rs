@@ -1,7 +1,7 @@
-//! `empirical`: a law without a name, as it was found in readings. At a joint it is a further twist, which is a
-//! polynomial of the torque, a housing that tilts about two axes unequally, or a compliance that changes in the course
-//! of the tests. At the base it is a tilt that differs about x and y. At a channel it is a nonlinearity, a gain for
-//! each direction, or a rotation of the base between two rows.
+//! `empirical`: a law without a name, as it was found in readings. At a joint it is one of three laws: a further twist
+//! that is a polynomial of the torque, a housing that tilts about two axes unequally, or a compliance that changes in
+//! the course of the tests. At the base it is a tilt that differs about x and y. At a channel it is a nonlinearity, a
+//! gain for each direction, or a rotation of the base between two rows.
 
 use super::channel::Channel;
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};

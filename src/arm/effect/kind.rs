@@ -94,9 +94,9 @@ pub struct Parameter {
     /// A typical value. With the scale [`Scale::Linear`] it is the value at `u = 1`.
     pub typical: f64,
     /// Range in which a fit expects the parameter, with equal probability everywhere in it. The ends of the range are
-    /// values of the parameter, except for three scales ([`Scale`]): a stiffness is given as its compliance divided by
-    /// the compliance of the joint, a factor on a stiffness as its reciprocal, and a torque as a fraction of the
-    /// largest torque on the joint.
+    /// values of the parameter, except for three scales ([`Scale`]). For a stiffness they are compliances, divided by
+    /// the compliance of the joint. For a factor on a stiffness they are reciprocals of the factor. For a torque they
+    /// are fractions of the largest torque on the joint.
     pub prior: (f64, f64),
     /// How a fit varies the parameter.
     pub scale: Scale,
