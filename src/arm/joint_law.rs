@@ -214,7 +214,7 @@ impl Curve {
         }
     }
 
-    /// The curve that the joint model `model` uses in place of this one.
+    /// The curve that the joint model `model` uses in place of this curve.
     pub fn reduced(&self, model: JointModel) -> Curve {
         match model {
             JointModel::K2 => self.middle_slope(),

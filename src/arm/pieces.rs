@@ -18,7 +18,8 @@ use nalgebra::Vector3;
 /// Number of links into which a taper is divided.
 const SLICES_OF_TAPER: usize = 12;
 
-/// Number of elements of the arm that one item of the chain in the file becomes. A link with pieces becomes several.
+/// Number of elements of the arm that one item of the chain in the file becomes. A link with pieces becomes
+/// several elements.
 pub(crate) fn elements_of(item: &Node) -> usize {
     match item.value().get("pieces").and_then(|pieces| pieces.as_array()) {
         Some(pieces) => pieces.iter().map(|piece| slices(piece.get("end_section").is_some())).sum(),

@@ -73,7 +73,7 @@ fn spread(mixed: &Mixed, of: impl Fn(&RelaxedDesign) -> f64) -> f64 {
 }
 
 impl Rows<'_> {
-    /// Ways to divide the region, the one with the greatest expected benefit first. `mixed` is the mixture with which
+    /// Ways to divide the region, by descending expected benefit. `mixed` is the mixture with which
     /// the bound ended, and `multipliers` are the factors on the rows (inequalities) of the bound.
     pub(super) fn branchings(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<Branching> {
         let mut branchings = Vec::new();
@@ -229,8 +229,8 @@ impl Problem<'_> {
         }
     }
 
-    /// The two problems into which `branching` divides this one. `kept` has, for each level, the nodes that remain of
-    /// its base tree (the tree over all options of the level). `None` if all options lie on one side.
+    /// The two problems into which `branching` divides this problem. `kept` has, for each level, the nodes that remain
+    /// of its base tree (the tree over all options of the level). `None` if all options lie on one side.
     pub(super) fn branch(&self, kept: &[Vec<u32>], branching: &Branching) -> Option<[Self; 2]> {
         match branching.by {
             BranchOn::Options { level, axis } => {

@@ -364,7 +364,7 @@ struct Offer {
 
 impl Ord for Offer {
     /// The cheaper box counts as greater, because [`BinaryHeap`] pops its greatest entry. Of boxes with equal prices
-    /// the one with the lower node comes first.
+    /// the box with the lower node comes first.
     fn cmp(&self, other: &Self) -> Ordering {
         other.price.total_cmp(&self.price).then(other.node.cmp(&self.node))
     }

@@ -44,8 +44,8 @@ impl LiveProgress {
         self.lock().known
     }
 
-    /// Reports a gap that was proved (relative). A gap that is not smaller than the one reported before is ignored, and
-    /// so is `None`.
+    /// Reports a gap that was proved (relative). A gap that is not smaller than the last reported gap is ignored.
+    /// `None` is ignored too.
     pub(super) fn prove(&self, gap: Option<f64>) {
         let known = &mut self.lock().known;
         known.gap = least(known.gap, gap);

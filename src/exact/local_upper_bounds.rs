@@ -167,7 +167,7 @@ struct Stairs {
 
 impl Stairs {
     /// Adds a design that is at least as heavy as all designs before it. Local upper bounds that are complete now are
-    /// appended to `upper_bounds`. Returns whether no earlier design dominates this one.
+    /// appended to `upper_bounds`. Returns whether no earlier design dominates this design.
     fn add(&mut self, design: &Objectives, upper_bounds: &mut Vec<LocalUpperBound>) -> bool {
         let (tip_m, hz) = (design.tip_deflection_m, design.lowest_mode_hz);
         // Steps before `from` deflect less than the design. Steps before `to` have no higher mode.

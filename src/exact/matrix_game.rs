@@ -64,8 +64,8 @@ pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game 
         if cost > -ROUNDING {
             break;
         }
-        // Of several variables with this cost, the one with the lowest number enters, wherever its column stands in
-        // the tableau.
+        // Of several variables with this cost, the variable with the lowest number enters, wherever its column
+        // stands in the tableau.
         let equals = (0..count).filter(|&j| objective[j] == cost);
         let Some(enter) = equals.min_by_key(|&j| others[j]) else { break };
         let ratio = |i: usize| {

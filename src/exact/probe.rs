@@ -128,9 +128,9 @@ impl Probe<'_, '_> {
         Some(Individual { design_box: best.design_box, objectives: best.objectives, shapes: best.shapes })
     }
 
-    /// Searches the box `design_box` for a better design than `best`: one with a smaller merit, which is the objective
-    /// of the probe. Of two halves, the one with the better bound is opened first, and at most `most_boxes` boxes are
-    /// bounded. Returns the better design, or `best` if none was found.
+    /// Searches the box `design_box` for a better design than `best`. Better means a smaller merit, which is the
+    /// objective of the probe. Of two halves, the half with the better bound is opened first, and at most `most_boxes`
+    /// boxes are bounded. Returns the better design, or `best` if none was found.
     fn descend(
         &self,
         design_box: DesignBox,

@@ -14,7 +14,7 @@ use super::matrix_game::Game;
 use super::problem::Problem;
 use super::rows::{DualPoint, ROUNDING, RelaxedDesign, Rows, WarmStart};
 
-/// Greatest number of dual points (sets of multipliers) for one box, in addition to those that use a single row.
+/// Greatest number of dual points (sets of multipliers) for one box, in addition to the points that use a single row.
 const MOST_POINTS: usize = 24;
 /// Greatest number of rounds in which new trial shapes are added for one box.
 const MOST_SHAPES: usize = 3;
@@ -168,7 +168,7 @@ impl Rows<'_> {
                 *nearest = nearest.max(plane.above(upper));
                 *nearest <= ROUNDING
             });
-            // The new multipliers refute no bound, not even the one for which they were made.
+            // The new multipliers refute no bound, not even the bound for which they were made.
             if open.len() == before {
                 break;
             }

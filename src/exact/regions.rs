@@ -36,8 +36,8 @@ const WORTH_IT: f64 = 0.1;
 /// Width of a grid cell for the thinning of incumbents, as a fraction of the slack.
 const THINNING_CELL: f64 = 0.45;
 
-/// The options that may belong to a design of a region. Its trial shapes and its multipliers (in `warm_start`) are
-/// those of the larger region of which it is a part, until its own are computed.
+/// The options that may belong to a design of a region. Its trial shapes and its multipliers (in `warm_start`)
+/// first come from the larger region of which it is a part. They are replaced when its own are computed.
 #[derive(Clone)]
 pub(super) struct Subproblem<'p> {
     problem: Arc<Problem<'p>>,
@@ -135,7 +135,7 @@ impl<'p> Search<'_, 'p> {
             return vec![second, first];
         }
         // The options that are left belong to the bound that covers the whole group. They do not tell how to divide
-        // the options for the one bound that is left, so the region of this bound is bounded anew.
+        // the options for the single bound that is left, so the region of this bound is bounded anew.
         if !was_single {
             return vec![Task::Region { below, subproblem }];
         }

@@ -55,7 +55,7 @@ impl Panels {
     /// The product of this left factor with a right factor.
     ///
     /// # Panics
-    /// If the right factor does not have as many rows as this one has columns.
+    /// If the right factor does not have as many rows as this left factor has columns.
     pub(crate) fn times(&self, b: DMatrixView<f64>) -> DMatrix<f64> {
         let mut out = DMatrix::zeros(self.rows, b.ncols());
         self.add_times(&mut out, b);

@@ -63,7 +63,7 @@ struct Weighed<'p, 'c> {
 
 impl ArmProblem<'_> {
     /// The ballast of a design; `None` if it has none or if no design has this number. If several parts are ballast,
-    /// it is the one whose replacement gives the lightest design.
+    /// the result is the part whose replacement gives the lightest design.
     pub fn ballast(&self, design: u128) -> Option<Ballast> {
         let weighed = Weighed::new(self, options(self.level_sizes(), design)?)?;
         let found = (0..weighed.options.len()).flat_map(|level| weighed.at(level));

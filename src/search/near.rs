@@ -95,7 +95,7 @@ pub struct NearDesign {
 /// The result of a search for near designs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NearDesigns {
-    /// The near designs, smallest shortfall first. Of designs with an equal shortfall, the one with the smaller
+    /// The near designs, smallest shortfall first. Of designs with an equal shortfall, the design with the smaller
     /// number comes first.
     pub nearest: Vec<NearDesign>,
     /// Number of near designs, which may be larger than the length of `nearest`; `None` if the search stopped

@@ -242,8 +242,8 @@ mod tests {
 
     #[test]
     fn with_the_wave_generator_of_hfuc_58_the_rotary_torque_is_eight_times_that() {
-        // Eq 9 adds the inertia of the gear's input: 0.00273 kg m² (gears.csv, HFUC-58-100), seven times that of the
-        // rotor.
+        // Eq 9 adds the inertia of the gear's input: 0.00273 kg m² (gears.csv, HFUC-58-100), seven times the inertia
+        // of the rotor.
         let (gear, motor) = (hfuc_58_100(), f11_10());
         let drive = Drive {
             gear: &gear,

@@ -164,7 +164,7 @@ impl fmt::Display for Relaxation {
 pub struct Shortfall {
     /// Name of the joint.
     pub joint: String,
-    /// Name of the nearest drive: the one whose smallest margin is the largest.
+    /// Name of the nearest drive: the drive whose smallest margin is the largest.
     pub drive: String,
     /// The check of this drive that has the smallest margin.
     pub check: Check,
@@ -255,7 +255,7 @@ impl<'c> DriveTable<'c> {
     }
 
     /// The smallest margin of the nearest drive, as a factor on torque, for a demand that no drive meets. The nearest
-    /// drive is the one whose smallest margin is the largest. 0 if no drive could be checked.
+    /// drive is the drive whose smallest margin is the largest. 0 if no drive could be checked.
     pub(crate) fn nearest_margin(&self, demand: &JointDemand) -> f64 {
         self.nearest(demand).and_then(|(_, check)| check.torque_margin()).unwrap_or(0.0)
     }
@@ -379,7 +379,7 @@ impl<'c> DriveTable<'c> {
     }
 
     /// The lightest drive that meets `demand` if speed and acceleration are multiplied by `factor`. All pairs of gear
-    /// and motor are tried, not only those of the table: a pair that was excluded as too fast may pass at the lower
+    /// and motor are tried, not only the pairs of the table: a pair that was excluded as too fast may pass at the lower
     /// speed. `None` if no pair passes.
     fn lightest_when_slowed(&self, factor: f64, demand: &JointDemand) -> Option<Drive<'c>> {
         let motion = self.motion().slowed(factor);
@@ -397,8 +397,8 @@ impl<'c> DriveTable<'c> {
     }
 }
 
-/// The pair of gear and motor whose smallest margin is the largest. Of pairs with equal margins, it is the one with the
-/// fewest failed checks, then the first one. `None` if there are no trials.
+/// The pair of gear and motor whose smallest margin is the largest. Of pairs with equal margins, the pair with the
+/// fewest failed checks is taken, then the first pair. `None` if there are no trials.
 fn nearest_trial<'t, 'c: 't>(trials: impl Iterator<Item = &'t Trial<'c>>) -> Option<&'t Trial<'c>> {
     let nearness = |t: &Trial| (t.worst_margin, std::cmp::Reverse(t.failed.len()));
     trials.reduce(|best, t| if nearness(t) > nearness(best) { t } else { best })

@@ -90,7 +90,7 @@ pub struct JointSizingRow {
     /// Mass that this joint and everything outboard of it add to the load of the next joint inboard \[kg\]. It includes
     /// the parts of the drive that sit at this joint, and other parts that are fixed to it, such as a half of a belt.
     pub mass_passed_inward_kg: f64,
-    /// Every check, including those that could not be made.
+    /// Every check, including the checks that could not be made.
     #[serde(skip)]
     pub checks: Vec<Check>,
     /// Messages of the checks that fail. The list can have entries only if the user fixed the drive; a drive that the

@@ -69,9 +69,9 @@ pub fn id_of(mut number: u128) -> String {
     digits.iter().rev().collect()
 }
 
-/// Number of the design with this name; `None` if the name is not that of a design. Names in results of earlier
-/// versions lack the `x` and are read as well. An earlier name that happens to begin with `x` must be read by
-/// [`number_of_earlier`] instead.
+/// Number of the design with this name; `None` if the name is not the name of a design. The name begins with `x`; names
+/// in results of earlier versions lack the `x` and are read as well. An earlier name that happens to begin with `x`
+/// must be read by [`number_of_earlier`] instead.
 pub fn number_of(id: &str) -> Option<u128> {
     number_of_earlier(id.strip_prefix(ID_PREFIX).unwrap_or(id))
 }

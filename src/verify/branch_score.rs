@@ -14,8 +14,8 @@ use super::tubes::{DENSITIES, TubeRange};
 use crate::arm::joint_law::Windup;
 
 /// Scores the levels of a box by how much worse the ideal point becomes if a level has an average part instead of the
-/// best one. The level with the largest score is halved. Any rule gives a valid proof; this one makes boxes shrink
-/// fast.
+/// best part. The level with the largest score is halved. Any rule of choice gives a valid proof; this rule makes boxes
+/// shrink fast.
 pub(super) struct BranchScore<'a> {
     pub boxes: &'a Boxes,
     pub members: &'a Members<'a>,

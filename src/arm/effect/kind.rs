@@ -107,7 +107,7 @@ pub struct Parameter {
     pub default: Option<f64>,
     /// Whether the value is a channel. Files write the word of the channel; here it is the index of the channel.
     pub is_channel: bool,
-    /// Name of another parameter that is a lower limit of this one; `None` if there is none.
+    /// Name of another parameter that is a lower limit of this parameter; `None` if there is none.
     pub not_below: Option<&'static str>,
     /// A property of the arm or its readings to which the expected size of this parameter is proportional, and the
     /// factor of proportionality.

@@ -42,7 +42,7 @@ struct Surrogate {
 }
 
 /// The cheapest member under a weighting, as the numbers of its parts. It need not be a design, because the twist of a
-/// gear may belong to a torque other than the one that the masses cause.
+/// gear may belong to another torque than the masses cause.
 pub(super) struct Member {
     pub numbers: Vec<f64>,
     /// Index of the drive of each joint.
