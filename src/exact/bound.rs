@@ -56,7 +56,8 @@ impl BoxBound {
         Self { hz: LOWEST_BY_SHAPE * self.hz, ..*self }
     }
 
-    /// The bound with all three objectives made worse by the factor `1 + slack`.
+    /// The bound with all three objectives made worse by the factor `1 + slack`. The slack is a fraction that the pass
+    /// of the search sets.
     pub(super) fn slackened(&self, slack: f64) -> Self {
         let factor = 1.0 + slack;
         Self { mass_kg: self.mass_kg * factor, tip_m: self.tip_m * factor, hz: self.hz / factor }
@@ -299,9 +300,9 @@ fn hertz(lambda: f64) -> f64 {
     lambda.sqrt() / std::f64::consts::TAU * (1.0 + ROUNDING)
 }
 
-/// The least and the greatest deflection in one strain coordinate of a tube or a bearing, under a generalized force
-/// between `low` and `high`. The deflection is force times compliance, and the compliance too is an interval over the
-/// box.
+/// The least and the greatest deflection in one strain coordinate (one way to deform) of a tube or a bearing, under a
+/// generalized force between `low` and `high`. The deflection is force times compliance, and the compliance too is an
+/// interval over the box.
 pub(super) fn linear_strain(pose: &Pose, row: &Row, [low, high]: [f64; 2], work: &BoxWork) -> [f64; 2] {
     let (resisted, factor) = pose.pieces[row.piece].resisted(row.coordinate);
     let (stiff, soft) = (work.stiff[row.piece][resisted], work.soft[row.piece][resisted]);

@@ -22,6 +22,7 @@ use std::sync::Arc;
 const BOXES_PER_TASK: usize = 32;
 
 /// A box that waits to be bounded, with the trial shapes and the bound of its parent, the box of which it is a half.
+/// Trial shapes are motions that bound the lowest mode.
 pub(super) struct OpenBox {
     pub design_box: DesignBox,
     pub shapes: Arc<Vec<Shape>>,

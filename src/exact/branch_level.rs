@@ -23,7 +23,8 @@ fn middling(low: f64, high: f64) -> f64 {
 
 impl Problem<'_> {
     /// The level (choice of one tube or drive) whose halving should improve the bound of the box most. `shapes` are the
-    /// trial shapes of the box. `None` if every level has a single option left.
+    /// trial shapes of the box, which are motions that bound the lowest mode. `None` if every level has a single option
+    /// left.
     pub(super) fn widest_level(
         &self,
         design_box: &[u32],

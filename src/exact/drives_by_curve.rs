@@ -84,8 +84,8 @@ impl DrivesByCurve {
 
 /// Eight groups of drives ([`CurveGroup`]) that are not rigid, and the states of their gears in each judged case.
 struct EightGroups {
-    /// Mass \[kg\] of the lightest and of the heaviest drive of each group, and their nodes. Lanes without a group of
-    /// their own repeat the last group.
+    /// Mass \[kg\] of the lightest and of the heaviest drive of each group, and their nodes. Places (of eight)
+    /// without a group of their own repeat the last group.
     mass_kg: [Eight; 2],
     nodes: [[u32; LANES]; 2],
     tilt_rad_per_nm: [Eight; 2],

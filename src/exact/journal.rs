@@ -58,8 +58,8 @@ pub(super) struct Begun {
     open: Option<OpenPass>,
 }
 
-/// The open boxes of a pass. `shapes` has each list of trial shapes once, because several boxes share it. A box refers
-/// to its list by index.
+/// The open boxes of a pass. `shapes` has each list of trial shapes (motions that bound the lowest mode) once, because
+/// several boxes share it. A box refers to its list by index.
 #[derive(Clone, Serialize, Deserialize)]
 struct OpenPass {
     slack: f64,

@@ -10,9 +10,10 @@
 //! function at `y`. If it exceeds the weighted limits of a local upper bound, no member lies below that bound. The
 //! bound is then *refuted*.
 //!
-//! The next multipliers are the solution of a matrix game against the relaxed designs found so far (Kelley's
-//! cutting-plane method). If no multipliers refute the bound, the modes of the mixed arm give new rows. The mixed arm
-//! has the mean stiffnesses and inertias of the relaxed designs, weighted by the solution of the game.
+//! The next multipliers are the solution of a *matrix game*: the weights of the rows that make the least weighted sum
+//! over the relaxed designs found so far as large as possible (Kelley's cutting-plane method). If no multipliers refute
+//! the bound, the modes of the mixed arm give new rows. The mixed arm has the mean stiffnesses and inertias of the
+//! relaxed designs, weighted by the solution of the game.
 
 use super::bound::START_SHAPES;
 use super::dual_price::{DualPrice, JointPrice, TubePrice};

@@ -1,6 +1,7 @@
 //! The progress of a search while it runs, for other threads to read.
 //!
-//! The reported gap never rises. A bound that was proved once stays proved, because incumbents only get better.
+//! The reported gap never rises. A bound that was proved once stays proved, because the designs found so
+//! far only get better.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};

@@ -1,5 +1,6 @@
-//! A matrix game, solved by the simplex method. The solution is the weights of the columns under which the least
-//! weighted sum of a row is as large as possible.
+//! A matrix game, solved by the simplex method. The game is given by a matrix. Its solution is the weights of the
+//! columns under which the least weighted sum of a row is as large as possible. The weights are not negative and sum to
+//! one.
 
 use crate::mechanics::lanes::{LANES, LaneWork, Lanes, in_lanes, subtract_multiple};
 use std::ops::Range;

@@ -1,5 +1,6 @@
 //! One case of a study as rows of numbers: for each strain coordinate, the generalized force that each weight causes
-//! and the displacement of the tip.
+//! and the displacement of the tip. A strain coordinate is one way in which a piece deforms, such as the torsion of a
+//! joint.
 
 use super::bearing_rows::BearingRows;
 use super::interval::interval;

@@ -51,7 +51,7 @@ impl Merit {
     }
 }
 
-/// The best design that one probe has found so far, with its trial shapes.
+/// The best design that one probe has found so far, with its trial shapes (motions that bound the lowest mode).
 struct Best {
     merit: f64,
     design_box: DesignBox,

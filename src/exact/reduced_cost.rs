@@ -105,7 +105,7 @@ struct EightPrices {
 }
 
 impl EightPrices {
-    /// Packs up to eight dual points into the lanes of a vector. In unused lanes any price is allowed.
+    /// Packs up to eight dual points into the eight places (lanes) of a vector. In unused lanes any price is allowed.
     fn new(afforded: &[PricedLimit]) -> Self {
         let lanes = |of: &dyn Fn(&DualPrice) -> f64| -> Eight {
             std::array::from_fn(|lane| afforded.get(lane).map_or(0.0, |(price, _)| of(price)))

@@ -4,7 +4,8 @@
 //! A region is the set of designs below a local upper bound: with less than its mass, less than its deflection and a
 //! higher mode. The proof is a weighted sum of inequalities ([`rows`](super::rows)) that no design satisfies. The
 //! weights are the multipliers. A relaxed design is the cheapest choice of parts in such a sum, and a mixture is a
-//! weighted mean of several relaxed designs.
+//! weighted mean of several relaxed designs. The multipliers are found as the solution of a *matrix game*: the weights
+//! that make the least sum over the known relaxed designs as large as possible.
 
 use super::bound::{BoxBound, DesignBox};
 use super::box_work::BoxWork;
@@ -16,10 +17,10 @@ use super::rows::{DualPoint, ROUNDING, RelaxedDesign, Rows, WarmStart};
 
 /// Greatest number of dual points (sets of multipliers) for one box, in addition to the points that use a single row.
 const MOST_POINTS: usize = 24;
-/// Greatest number of rounds in which new trial shapes are added for one box.
+/// Greatest number of rounds in which new trial shapes (motions that bound the lowest mode) are added for one box.
 const MOST_SHAPES: usize = 3;
 /// Greatest number of dual points that are added once it is clear that the multipliers cannot prove the region empty.
-/// Further points still exclude more options by their reduced costs.
+/// Further points still exclude more options by their reduced costs: the increase of the weighted sum with the option.
 const MOST_TO_REDUCE: usize = 8;
 /// The search for multipliers stops if the value of the matrix game exceeds the value of the best dual point so far by
 /// at most this much (in the scale of the rows). The value of the matrix game limits what any multipliers can prove.
@@ -34,7 +35,8 @@ pub(super) struct Survivors {
     pub options: Vec<Vec<u32>>,
     /// Ways to divide the region, the most promising first.
     pub branchings: Vec<Branching>,
-    /// Relaxed designs of the mixture. If one of them is a single design, it is evaluated as a possible incumbent.
+    /// Relaxed designs of the mixture. If one of them is a single design, it is evaluated: it may join the
+    /// designs found so far.
     pub candidates: Vec<DesignBox>,
 }
 

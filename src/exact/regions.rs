@@ -33,11 +33,13 @@ use std::sync::Arc;
 /// The bound of a region is computed again with the remaining options if at least this fraction of the region's designs
 /// was excluded.
 const WORTH_IT: f64 = 0.1;
-/// Width of a grid cell for the thinning of incumbents, as a fraction of the slack.
+/// Width of a grid cell for the thinning of incumbents, as a fraction of the slack. The slack is the fraction by which
+/// a design may be better than the incumbents and still be missed in this pass.
 const THINNING_CELL: f64 = 0.45;
 
-/// The options that may belong to a design of a region. Its trial shapes and its multipliers (in `warm_start`)
-/// first come from the larger region of which it is a part. They are replaced when its own are computed.
+/// The options that may belong to a design of a region. Its trial shapes (motions that bound the lowest mode) and its
+/// multipliers (in `warm_start`) first come from the larger region of which it is a part. They are replaced when its
+/// own are computed.
 #[derive(Clone)]
 pub(super) struct Subproblem<'p> {
     problem: Arc<Problem<'p>>,

@@ -30,9 +30,9 @@ use super::problem::{Part, Problem};
 use super::shape::Shape;
 use super::tip_row::TipRow;
 
-/// Relative margin by which incumbents are made worse before a region is bounded by them. It is larger than the
-/// relative amount by which an incumbent must be better to dominate, and than the difference below which objectives
-/// count as equal.
+/// Relative margin by which incumbents (designs found already) are made worse before a region is bounded by them. It is
+/// larger than the relative amount by which an incumbent must be better to dominate, and than the difference below
+/// which objectives count as equal.
 pub(super) const DOMINANCE_MARGIN: f64 = 2.0 * BETTER_BY;
 /// Margin for the rounding of sums whose terms are about 1.
 pub(super) const ROUNDING: f64 = 1e-9;

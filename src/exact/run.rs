@@ -1,4 +1,6 @@
-//! The exact search: probes, passes with less and less slack, and the listing of the front.
+//! The exact search: probes, passes with less and less slack, and the listing of the front. A probe quickly finds a
+//! good design. A pass searches the whole space. The slack of a pass is the fraction by which a design may be better
+//! than the designs found already (the *incumbents*) and still be missed.
 
 use super::bound::BoxBound;
 use super::bound::DesignBox;

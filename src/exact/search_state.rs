@@ -17,7 +17,7 @@ const BUFFER: usize = 4096;
 #[derive(Default)]
 pub(super) struct SearchState {
     pub incumbents: Incumbents,
-    /// Numbers of the designs that were evaluated as possible incumbents.
+    /// Numbers of the designs that were evaluated and may have joined the designs found.
     pub tried: HashSet<u128>,
     /// Designs found that meet every constraint; dominated ones among them are removed from time to time.
     kept: Vec<Candidate>,

@@ -1,6 +1,7 @@
 //! Trial shapes, which give an upper bound of the lowest mode of every arm in a box.
 //!
-//! For any motion `x` of an arm, `λ₁ ≤ xᵀKx / xᵀMx` (Rayleigh). In strain coordinates `K` is diagonal, so `xᵀKx` is a
+//! For any motion `x` of an arm, `λ₁ ≤ xᵀKx / xᵀMx` (Rayleigh). In strain coordinates (the ways in
+//! which each piece deforms) `K` is diagonal, so `xᵀKx` is a
 //! sum over the stiffnesses of the parts. The inertia of the arm does not depend on its stiffness, so `xᵀMx` is a sum
 //! over the masses and line inertias, and no coefficient is negative. It is therefore enough to store two lists of
 //! coefficients for each shape. With every stiffness at its greatest and every inertia at its least, the quotient
