@@ -1,6 +1,7 @@
 //! Condensed links: a link reduced to the six motions of its end.
 //!
-//! Only six combinations `g` of the strain coordinates `q` of a link move its end. The other shapes vibrate inside
+//! A link deforms in its strain coordinates `q`, which are polynomials of curvature, shear, twist and stretch. Only six
+//! combinations `g` of them move its end. The other shapes vibrate inside
 //! the link, at frequencies far above the lowest frequency of the arm. Let `E` be the motion of the end per unit of
 //! each `q`, and `C` the diagonal compliance matrix. The compliance of the end is then `F = E C Eᵀ = L Lᵀ`. The
 //! coordinates `g` are chosen such that the end moves by `L g` and that their stiffness matrix is the unit matrix.

@@ -90,7 +90,7 @@ fn resting_tip_m<'a>(
 }
 
 impl Posed<'_> {
-    /// The deflections of all elements with these strain coordinates.
+    /// The deflections of all elements with these strain coordinates, given as one list for each element.
     fn hung(&self, strains: Vec<Vec<f64>>) -> Deflections {
         let strains: Vec<f64> = strains.into_iter().flatten().collect();
         Deflections::of(self.with_passive(&DVector::from_vec(strains)).as_slice().to_vec())

@@ -4,7 +4,8 @@
 //! everything outboard: the inertia of a rigid body, plus what its flexibility adds. An element with unit stiffness
 //! and end motion `t` changes it from `W` on its outboard side to `W_in` on its inboard side. For a joint, `t` is the
 //! twist vector of its axis times the square root of its compliance; for a link see [`condensed`](super::condensed).
-//! The indices r and g stand for the root and the end coordinates.
+//! The indices r and g stand for the motion of the root and for the end coordinates, which are the six motions of the
+//! link's end.
 //!
 //! ```text
 //! W_in = W_rr + λ P (1 - λ S)⁻¹ Pᵀ,   P = (M_rg + W t),   S = M_gg + tᵀ W t

@@ -1,8 +1,8 @@
 //! The lowest natural frequency of eight chains at once.
 //!
 //! The eight chains share everything outboard of one piece. The pass is the same as in [`lowest`](super::lowest): it
-//! computes the apparent inertia from the tip to the base, with one pivot for each strain coordinate. One pass serves
-//! all eight chains, each at its own `λ`. The shared part is read from memory once.
+//! computes the apparent inertia from the tip to the base, with one pivot for each strain coordinate (each elastic
+//! degree of freedom). One pass serves all eight chains, each at its own `λ`. The shared part is read from memory once.
 
 // loops over row and column indices read better here than iterators
 #![allow(clippy::needless_range_loop)]
@@ -46,7 +46,7 @@ pub(crate) struct LaneLink<const N: usize> {
     end: LaneMatrix<N>,
 }
 
-/// Result of one pass in each lane, each at its own `λ`.
+/// Result of one pass in each lane, each at its own `λ`. A lane is the place of one of the eight chains.
 #[derive(Clone, Copy)]
 pub(crate) struct LanePass<V> {
     /// Bit mask: lanes in which no pivot is negative, which means that no eigenvalue is below `λ`.

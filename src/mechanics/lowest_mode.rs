@@ -54,8 +54,8 @@ impl<'a> MassProduct<'a> {
         Self { stages, linked: posed.linked_coordinates() }
     }
 
-    /// The mass matrix times `rates`: the momentum of each strain coordinate, base to tip, at these rates of the
-    /// coordinates.
+    /// The mass matrix times `rates`: the momentum of each strain coordinate (elastic degree of freedom), base to tip,
+    /// at these rates of the coordinates.
     fn momenta(&self, rates: &DVector<f64>) -> DVector<f64> {
         let rates = LinkedCoordinates::turned_along(&self.linked, rates);
         let mut momenta = DVector::zeros(rates.len());

@@ -30,7 +30,7 @@ pub struct Statics {
     /// The part of this displacement that each element causes \[m\], with the name of the element, base to tip. The
     /// parts add up to the whole.
     pub shares_m: Vec<(String, Vector3<f64>)>,
-    /// Value of each strain coordinate, as one list for each element, base to tip.
+    /// Value of each strain coordinate (elastic degree of freedom), as one list for each element, base to tip.
     pub deformations: Vec<Vec<f64>>,
     /// Force and moment at the root of each link.
     pub link_roots: Vec<LinkRoot>,
