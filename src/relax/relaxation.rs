@@ -10,7 +10,8 @@ use crate::space::problem::ArmProblem;
 
 /// Greatest number of rounds of solving and dropping options.
 const MOST_ROUNDS: usize = 4;
-/// Greatest number of solutions of the program in a round. After each solution, trial shapes or options are added.
+/// Greatest number of solutions of the program in a round. After each solution, trial shapes (each
+/// gives an inequality on the lowest mode) or options are added.
 const STEPS: usize = 40;
 /// Relative amount by which a required objective is relaxed, as a margin for rounding.
 const ROUNDING: f64 = 1e-9;
@@ -87,7 +88,8 @@ struct Search<'a> {
     directions: Vec<(usize, nalgebra::Vector3<f64>)>,
     models: &'a [ShapeModel],
     parts: Parts,
-    /// Trial shapes: the index of the model (judged case), and the values of the strain coordinates.
+    /// Trial shapes: the index of the model (judged case), and the values of the arm's strain coordinates (torsions of
+    /// joints and deformations of links).
     shapes: Vec<(usize, nalgebra::DVector<f64>)>,
     best_kg: f64,
     /// The best bound after the first round of solving \[kg\], before it was used to drop options.
