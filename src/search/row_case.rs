@@ -15,7 +15,7 @@ pub(crate) struct Hinge {
     pub number: usize,
     /// Inner slot that has this coordinate.
     pub slot: usize,
-    /// Number of the end coordinate (0 to 5) of a given tube; `None` for a joint.
+    /// Number of the end coordinate (motion of the tube's end, 0 to 5) of a given tube; `None` for a joint.
     pub end: Option<usize>,
 }
 

@@ -1,7 +1,7 @@
 //! Chunks: the numbers of eight options of the row's link, next to each other in memory.
 //!
-//! A row is the set of designs that differ in the options of one link alone, the row's link. The files
-//! [`row`](super::row) and [`row_case`](super::row_case) explain hinges, inner joints and Dunkerley's sum.
+//! A row is the set of designs that differ in the options of one link alone, the row's link. A hinge
+//! is one elastic coordinate inboard of this link ([`row`](super::row)).
 
 use super::row_case::{Hinge, RowCase};
 use crate::mechanics::lanes::{Eight, LANES};

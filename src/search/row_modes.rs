@@ -47,7 +47,7 @@ struct Ask<V> {
 }
 
 impl RowChunk<'_, '_> {
-    /// Number of the group (material) of the design in a lane; `None` if its links are of several materials.
+    /// Number of the group (material) of the design in a lane (0 to 7); `None` if its links are of several materials.
     #[inline(always)]
     pub(crate) fn group(&self, lane: usize) -> Option<usize> {
         let material = self.row.chunks.get(self.chunk).and_then(|chunk| chunk.materials[lane]);
