@@ -172,7 +172,7 @@ pub(crate) struct StationLink {
     /// Displacement of the tip per unit of each end coordinate: one column for each.
     pub tip: Matrix3x6<f64>,
     /// Inertia of the link itself for a unit of each end coordinate (motion of the link's end). It is a term of
-    /// Dunkerley's sum \[s²\], because the stiffness of each end coordinate is 1.
+    /// Dunkerley's sum (of `1/λ` over all modes) \[s²\], because the stiffness of each end coordinate is 1.
     pub end_inertia: Vector6<f64>,
     /// Block to which each end coordinate belongs: 0 within the x-z plane, 1 across it.
     pub block: [usize; 6],
