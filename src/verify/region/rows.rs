@@ -67,7 +67,8 @@ pub(super) struct Rows<'a> {
     pub rows: Vec<Row>,
     /// Index of the first row of a torque interval.
     pub first_interval: usize,
-    /// Index of the first row of a mode. `modes` has the case and the trial shape of each row of a mode.
+    /// Index of the first row of a mode. `modes` has the case and the trial shape (the motion
+    /// that bounds the mode) of each row of a mode.
     pub first_mode: usize,
     pub modes: Vec<(usize, Vec<f64>)>,
     /// For each joint, the twists, slopes and bearing numbers of its torsion curves. `None` for a curve that no
@@ -81,7 +82,7 @@ pub(super) struct Rows<'a> {
     /// For each row on a tip displacement: the index of the row, its judged case, and the direction along which the
     /// displacement is taken.
     pub tips: Vec<(usize, usize, Vector3<f64>)>,
-    /// For each judged case and each strain coordinate, whether the coordinate may be rigid in some member of the
+    /// For each judged case and each elastic coordinate, whether the coordinate may be rigid in some member of the
     /// subproblem.
     rigid: Vec<Vec<bool>>,
 }

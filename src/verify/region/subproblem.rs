@@ -12,7 +12,8 @@ use super::super::span::Span;
 use super::super::tubes::TubeRange;
 use super::parts_table::PartsTable;
 
-/// A trial shape whose row has at most this weight is not passed on to the halves of a subproblem.
+/// A trial shape (motion that bounds the lowest mode) whose row has at most this weight is not passed on to the halves
+/// of a subproblem.
 const NO_SAY: f64 = 0.01;
 
 /// Limits the torque on a joint in a judged case to an interval. Such limits come from branching.
@@ -38,7 +39,7 @@ pub(super) struct Subproblem {
     pub shapes: Vec<Shape>,
 }
 
-/// A trial shape (motion that bounds the lowest mode) in a judged case, with the weight of its row.
+/// A trial shape in a judged case, with the weight of its row.
 #[derive(Clone)]
 pub(super) struct Shape {
     pub case: usize,

@@ -16,7 +16,7 @@ use std::ops::Range;
 
 /// Largest number of weightings that are tried for a subproblem.
 const MOST_SURROGATES: usize = 24;
-/// Largest number of times that trial shapes are added to the rows.
+/// Largest number of times that rows of new trial shapes (motions that bound the lowest mode) are added.
 const MOST_SHAPES: usize = 3;
 /// Number of further weightings after it is clear that no weighting refutes the subproblem. They are worth the time
 /// because better weights exclude more options.
