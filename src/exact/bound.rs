@@ -104,8 +104,8 @@ impl<'c> Problem<'c> {
         }
     }
 
-    /// The first trial shapes, made for the box of all designs: for each judged case, one for each acceleration in
-    /// [`START_SHAPES`]. `None` if no design meets the constraints.
+    /// The first trial shapes, made for the box of all designs: for each judged case (a case that counts for deflection
+    /// and lowest mode), one for each acceleration in [`START_SHAPES`]. `None` if no design meets the constraints.
     pub(super) fn first_shapes(&self, work: &mut BoxWork) -> Option<Vec<Shape>> {
         self.fill(&mut self.root(), work)?;
         self.least_tip_m(work)?;

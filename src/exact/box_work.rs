@@ -54,7 +54,7 @@ pub(super) struct BoxWork {
     /// Break points of the torsion curves that each joint may have.
     pub(super) breaks: Vec<BreakPoints>,
     /// Least and greatest magnitude of the torque on each joint in each judged case \[N m\]: first index the case,
-    /// second the piece.
+    /// second the piece. A judged case counts for deflection and lowest mode.
     pub(super) torques: Vec<Vec<[f64; 2]>>,
     /// The judged case in which the least tip deflection of the box is greatest, and the direction in which the tip
     /// moves in this case.

@@ -89,8 +89,9 @@ impl<'c> Joints<'c> {
 }
 
 impl JointNeeds {
-    /// The data of `joint` that a compiled pose needs. `slot` has its drives. `reach_m` is the distance of the tip
-    /// from the joint's axis \[m\]; the angular acceleration follows from it and the tip's acceleration.
+    /// The data of `joint` that a compiled pose needs. `slot` is its place in the arm, with its drives. `reach_m` is
+    /// the distance of the tip from the joint's axis \[m\]; the angular acceleration follows from it and the tip's
+    /// acceleration.
     fn of(space: &DesignSpace, joint: &SpaceJoint, reach_m: f64, slot: &Slot) -> Self {
         let motion = joint.motion(&space.motion, reach_m);
         let of_gear = Self { acceleration_rad_s2: motion.acceleration_rad_s2, ..Self::default() };
@@ -324,9 +325,10 @@ impl<'c> Problem<'c> {
         Rays::new(motion, static_nm, inertia_kgm2)
     }
 
-    /// Adds the inertia matrices of every judged case to the problem. Which coordinates deflect elastically is taken
-    /// from the ideal arm of the box of all designs. This arm has every stiffness at its greatest and every inertia at
-    /// its least. No matrices are added if no design meets the constraints.
+    /// Adds the inertia matrices of every judged case (a case that counts for deflection and lowest mode) to the
+    /// problem. Which coordinates deflect elastically is taken from the ideal arm of the box of all designs. This arm
+    /// has every stiffness at its greatest and every inertia at its least. No matrices are added if no design meets the
+    /// constraints.
     pub(super) fn with_inertias(mut self) -> Self {
         let mut work = BoxWork::default();
         let filled = self.fill(&mut self.root(), &mut work);

@@ -82,7 +82,8 @@ impl DrivesByCurve {
     }
 }
 
-/// Eight groups of drives ([`CurveGroup`]) that are not rigid, and the states of their gears in each judged case.
+/// Eight groups of drives ([`CurveGroup`]) that are not rigid, and the states of their gears in each judged case. A
+/// judged case counts for deflection and lowest mode.
 struct EightGroups {
     /// Mass \[kg\] of the lightest and of the heaviest drive of each group, and their nodes. Places (of eight)
     /// without a group of their own repeat the last group.

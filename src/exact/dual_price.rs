@@ -21,7 +21,8 @@ const MOST_LOOKS: usize = 200;
 /// Relative margin for the rounding of a torque.
 const ROUNDING: f64 = 1e-12;
 
-/// The gear of a joint in a judged case, as the rows of a bound treat it.
+/// The gear of a joint in a judged case, as the rows of a bound treat it. A judged case counts for deflection and
+/// lowest mode.
 pub(super) struct Gear {
     pub piece: usize,
     /// Index of the judged case.

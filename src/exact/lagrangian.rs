@@ -113,8 +113,8 @@ impl Rows<'_> {
         self.modes.len() > before
     }
 
-    /// Stiffnesses and inertias of the mixed arm in a judged case. They are means over the relaxed designs `members`
-    /// with the weights `mix`.
+    /// Stiffnesses and inertias of the mixed arm in a judged case (a case that counts for deflection and lowest mode).
+    /// They are means over the relaxed designs `members` with the weights `mix`.
     fn mixed_arm(&self, members: &[RelaxedDesign], mix: &[f64], judged: usize) -> Arm {
         let pieces = self.problem.parts.len();
         let mut arm = (vec![[0.0; STIFFNESSES]; pieces], vec![[0.0; INERTIAS]; pieces]);

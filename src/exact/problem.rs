@@ -24,7 +24,8 @@ pub(super) struct Problem<'c> {
     /// Number of options of each level.
     pub level_sizes: Vec<u32>,
     pub poses: Arc<Vec<Pose>>,
-    /// Inertia matrix of each judged case, as a function of the line inertias of the pieces.
+    /// Inertia matrix of each judged case (a case that counts for deflection and lowest mode), as a function of the
+    /// line inertias of the pieces.
     pub inertias: Arc<Vec<CaseInertia>>,
     /// Ratio of peak stress to static stress in sizing cases, in which the arm also accelerates.
     pub peak_factor: f64,

@@ -99,8 +99,8 @@ struct EightPrices {
     compliance: [Eight; STIFFNESSES],
     /// Amount by which each unit of a stiffness lowers the weighted sum of the rows at each dual point.
     stiffness: [Eight; STIFFNESSES],
-    /// For each judged case: the price of a joint per unit of twist, its price per unit of torque, and the amount by
-    /// which each unit of slope lowers the weighted sum.
+    /// For each judged case (a case that counts for deflection and lowest mode): the price of a joint per unit of
+    /// twist, its price per unit of torque, and the amount by which each unit of slope lowers the weighted sum.
     joint: Vec<[Eight; 3]>,
 }
 

@@ -43,7 +43,8 @@ pub(super) struct WarmStart {
     /// Multipliers of the mass row, of the tip rows and of the mode rows. Every box computes its own multipliers for
     /// torque rows.
     pub multipliers: Vec<f64>,
-    /// Trial shapes (motions that bound the lowest mode): for each judged case, one for each starting acceleration.
+    /// Trial shapes (motions that bound the lowest mode): for each judged case (a case that counts for deflection and
+    /// lowest mode), one for each starting acceleration.
     pub shapes: Vec<Shape>,
     /// The feasible drives of each level; `None` for a level of links.
     drives: Vec<Option<FeasibleDrives>>,

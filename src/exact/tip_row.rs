@@ -6,7 +6,8 @@ use super::parts::STIFFNESSES;
 use super::problem::{Part, Problem};
 
 /// The displacement of the tip in a judged case along a fixed direction, as a linear function of the numbers of the
-/// parts. It is the direction of the tip's least displacement over the box.
+/// parts. It is the direction of the tip's least displacement over the box. A judged case counts for deflection and
+/// lowest mode.
 pub(super) struct TipRow {
     /// Index of the case.
     pub case: usize,
