@@ -37,8 +37,8 @@ pub(super) struct Members<'w> {
 pub(super) struct IdealPoint {
     pub mass_kg: f64,
     pub tip_m: f64,
-    /// Index among the poses of the judged case that bounds the deflection, and the direction of the tip's displacement
-    /// in this case.
+    /// Index among the poses of the judged case (a case that counts for deflection and lowest mode) that bounds the
+    /// deflection, and the direction of the tip's displacement in this case.
     pub worst: usize,
     pub direction: Vector3<f64>,
 }
@@ -101,9 +101,9 @@ impl Skeleton {
         ]
     }
 
-    /// Lower and upper bound, over the members, of the largest loads on a joint's bearing in the sizing cases. The
-    /// moments are taken at the face of the joint's flange, or at the centre of the bearing if the study states the
-    /// lever. Zero if the bearing is not checked.
+    /// Lower and upper bound, over the members, of the largest loads on a joint's bearing in the sizing cases (in which
+    /// drives and stresses are checked). The moments are taken at the face of the joint's flange, or at the centre of
+    /// the bearing if the study states the lever. Zero if the bearing is not checked.
     fn bearing_demands(&self, joint: usize, duty: &Duty, members: &Members) -> [BearingDemand; 2] {
         let mut largest = Largest::default();
         for (pose, bearings) in self.poses.iter().zip(&self.bearings) {

@@ -178,7 +178,8 @@ impl Rows<'_> {
         works.map(|(which, (work, compliance))| (number(which), work, compliance)).collect()
     }
 
-    /// Ways to divide a subproblem at the torques of a judged case, each with its score. The score is positive if the
+    /// Ways to divide a subproblem at the torques of a judged case, each with its score. A judged case counts for
+    /// deflection and lowest mode. The score is positive if the
     /// gears of the mixture twist less, or are stiffer, than they are under the torques that the mixture's own masses
     /// cause. `between` are the numbers of the mixture.
     fn by_torques(&self, case: usize, between: &[f64], left: &Reduced) -> Vec<(f64, Branching)> {

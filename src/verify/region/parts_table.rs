@@ -22,8 +22,9 @@ pub(super) struct PartsTable {
 }
 
 /// The numbers of each torsion curve that the drives of a joint have. The numbers are, in this order: the twist in
-/// every judged case, the slope in every judged case, and compliance and stiffness of the output bearing that goes with
-/// the curve. `None` for a curve that no drive of the subproblem has.
+/// every judged case (a case that counts for deflection and lowest mode), the slope in every judged case, and
+/// compliance and stiffness of the output bearing that goes with the curve. `None` for a curve that no drive of the
+/// subproblem has.
 pub(super) type Numbers = Vec<Option<Vec<f64>>>;
 
 /// The drives that a joint may have, each with the index of its torsion curve and bearing.

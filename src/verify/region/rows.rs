@@ -11,6 +11,8 @@
 //! | in a judged case, for a shape `x`: `λ xᵀMx - xᵀKx`, `λ` of the upper bound | 0 |
 //! | a torque that has an interval, and its negative | the end of the interval |
 //!
+//! A judged case counts for deflection and lowest mode.
+//!
 //! *Tip displacement.* With force `F`, a sum over the loads, and compliance `c` of a tube, `(F - F₀)(c - c₀) >= 0`
 //! gives `F c >= F₀ c + c₀ (F - F₀)`. Under a torque `T`, in the sense that moves the tip along `e`, a gear twists
 //! by at least `φ(T₀) + c₀ (T - T₀)`. Here `φ(T₀)` is the twist of the gear itself, and `c₀` is the least twist per

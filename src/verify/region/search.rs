@@ -159,8 +159,9 @@ impl RegionSearch<'_> {
     }
 
     /// Adds a trial shape (a motion that bounds the lowest mode) to `subproblem` in each judged case in which it has
-    /// none. The shape is the lowest mode of the ideal arm (every stiffness greatest, every inertia least). `None` if
-    /// this arm has a frequency of at most `hz` in some case, so that no member has a higher lowest mode.
+    /// none. A judged case counts for deflection and lowest mode. The shape is the lowest mode of the ideal arm (every
+    /// stiffness greatest, every inertia least). `None` if this arm has a frequency of at most `hz` in some case, so
+    /// that no member has a higher lowest mode.
     fn stiffest_shapes(&self, subproblem: &mut Subproblem, members: &Members, hz: f64) -> Option<()> {
         let eigenvalue = eigenvalue_of(hz);
         if !eigenvalue.is_finite() {

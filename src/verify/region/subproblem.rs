@@ -16,7 +16,8 @@ use super::parts_table::PartsTable;
 /// of a subproblem.
 const NO_SAY: f64 = 0.01;
 
-/// Limits the torque on a joint in a judged case to an interval. Such limits come from branching.
+/// Limits the torque on a joint in a judged case to an interval. Such limits come from branching. A judged case counts
+/// for deflection and lowest mode.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TorqueInterval {
     pub case: usize,
