@@ -33,7 +33,8 @@ pub(crate) struct EightArms {
     pub largest_s2: Eight,
     /// The eight arms in each case.
     pub cases: Vec<CaseArms>,
-    /// Tip deflection of the complete arms \[m\], the largest over the judged cases.
+    /// Tip deflection of the complete arms \[m\], the largest over the judged cases, which count for deflection and
+    /// lowest mode.
     pub tip_deflection_m: Eight,
     /// Lowest mode of the complete arms \[Hz\].
     pub lowest_mode_hz: Eight,

@@ -56,8 +56,8 @@ struct Weighed<'p, 'c> {
     options: Vec<u32>,
     arm: Partial,
     objectives: Objectives,
-    /// Torque on every joint of the design \[N m\]; first index the slot, second the case. It is 0 for slots that are
-    /// not joints.
+    /// Torque on every joint of the design \[N m\]; first index the slot, second the case. A slot is a
+    /// piece of the arm, tip first. The torque is 0 for slots that are not joints.
     torques_nm: Vec<Vec<f64>>,
 }
 

@@ -57,8 +57,8 @@ pub(crate) struct Row {
     pub rooms: Vec<RowRoom>,
 }
 
-/// The form of the torsion curves that the drives of a joint have in the judged cases. The simpler forms save work in
-/// the sweep.
+/// The form of the torsion curves that the drives of a joint have in the judged cases, which count for deflection and
+/// lowest mode. The simpler forms save work in the sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Twisting {
     /// No load turns the joint. The angle stays zero, and modes use the first slope of the curve.

@@ -21,7 +21,8 @@ use nalgebra::Matrix6;
 pub(crate) struct RowBearing {
     /// Index of the joint among the inner slots (the slots from the row level to the base).
     pub k: usize,
-    /// The bearing in each sizing case. Each entry has the index of the case and the bearing's loads in it.
+    /// The bearing in each sizing case (a case in which drives and stresses are checked). Each entry has the index of
+    /// the case and the bearing's loads in it.
     cases: Vec<(usize, BearingCase)>,
     /// The lever: the distance along the joint's axis from the face of its flange to the point at which the link
     /// attaches. The moment on the bearing includes the radial force times this lever.

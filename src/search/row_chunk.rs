@@ -120,7 +120,7 @@ impl Chunk {
 
 impl CaseChunk {
     /// Computes the numbers of the eight link options of a chunk in one case. `at(lane)` is the number of the option in
-    /// a lane, and `first` the slot of the link.
+    /// a lane, and `first` the slot (place in the arm) of the link.
     fn new(
         station: &Station,
         case: &RowCase,

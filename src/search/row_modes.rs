@@ -110,8 +110,9 @@ impl<'a, 'c> Question<'a, 'c> {
         asked & !above
     }
 
-    /// The lowest eigenvalue of each arm over all judged cases \[1/s²\], and a bit mask of the arms for which the
-    /// iteration did not converge. `held` is a bit mask of the arms for which it is computed.
+    /// The lowest eigenvalue of each arm over all judged cases (which count for deflection and lowest mode) \[1/s²\],
+    /// and a bit mask of the arms for which the iteration did not converge. `held` is a bit mask of the arms for which
+    /// it is computed.
     #[inline(always)]
     pub(crate) fn lowest<V: Lanes>(&self, held: u8) -> (V, u8) {
         let (mut lowest, mut unsure) = (V::splat(f64::INFINITY), 0);
