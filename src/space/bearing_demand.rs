@@ -71,7 +71,8 @@ fn take(largest: &mut [f64; 3], load: [f64; 3]) {
 
 impl ArmProblem<'_> {
     /// Loads on the output bearing of the joint in `slot`: the largest over the cases with the indices `cases`. The arm
-    /// outboard of the joint has the states `states`, one for each case, and the options `options`, one for each slot.
+    /// outboard of the joint has the states `states`, one for each case, and the options `options`, one for each slot
+    /// (piece of the arm, tip first).
     /// The loads are zero if the joint has no bearing.
     pub(crate) fn bearing_demand(
         &self,
@@ -107,9 +108,9 @@ impl ArmProblem<'_> {
         }
     }
 
-    /// Stores in the state of each sizing case the wrench with which the joint in `slot` loads the bearings inboard of
-    /// it while it accelerates. The function is called just before the joint is added to the arm, when the state has
-    /// everything outboard of the joint.
+    /// Stores in the state of each sizing case (in which drives and stresses are checked) the wrench with which the
+    /// joint in `slot` loads the bearings inboard of it while it accelerates. The function is called just before the
+    /// joint is added to the arm, when the state has everything outboard of the joint.
     pub(crate) fn keep_ramp(&self, slot: usize, states: &mut [StationState]) {
         let loads = self.bearing_loads();
         let Some(k) = loads.movers.iter().position(|mover| mover.slot == slot).filter(|_| loads.any()) else {

@@ -163,7 +163,7 @@ impl<'c> ArmProblem<'c> {
         Some(to_the_microgram(extras_kg.sum()))
     }
 
-    /// The judged cases of the study, as load cases of the full model.
+    /// The judged cases of the study (which count for deflection and lowest mode), as load cases of the full model.
     pub fn load_cases(&self) -> Vec<LoadCase> {
         let space = self.space();
         space.judged_cases.iter().map(|&i| space.load_case(&space.cases[i])).collect()

@@ -20,7 +20,7 @@ use crate::mechanics::across;
 use crate::mechanics::beam::section_frame;
 use nalgebra::{Rotation3, Vector3};
 
-/// A layer: what the search adds to an arm in one step. Each layer becomes one slot.
+/// A layer: what the search adds to an arm in one step. Each layer becomes one slot of the arm ([`slot`](super::slot)).
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Layer<'s> {
     /// A rotary joint, link or prismatic joint of the chain.

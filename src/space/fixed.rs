@@ -74,8 +74,8 @@ impl ArmProblem<'_> {
         })
     }
 
-    /// Demand on the given drive of the joint in `slot`, at the output of its gear. `outboard` is the arm outboard of
-    /// the joint.
+    /// Demand on the given drive of the joint in `slot` (the number of its place in the arm), at the output of its
+    /// gear. `outboard` is the arm outboard of the joint.
     pub fn fixed_demand(&self, outboard: &Partial, slot: usize, fixed: &FixedDrive) -> JointDemand {
         self.fixed_demand_in(&self.space().sizing_cases, outboard, slot, fixed)
     }

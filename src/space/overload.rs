@@ -8,9 +8,10 @@ use crate::sizing::checks::{binding, checks};
 
 impl ArmProblem<'_> {
     /// The first piece from the tip that is overloaded in one of `cases`, for an arm with these `options`, one for each
-    /// slot. Drives that the study gives by name count too, as far as their ratings in `catalogs` are known. `None` if
-    /// no piece is overloaded. Otherwise the number of the piece (base to tip) and the check that its drive fails. The
-    /// check is `None` for a link whose stress is too high, and for a drive of which no check can be made.
+    /// slot (piece of the arm, tip first). Drives that the study gives by name count too, as far as their ratings in
+    /// `catalogs` are known. `None` if no piece is overloaded. Otherwise the number of the piece (base to tip) and the
+    /// check that its drive fails. The check is `None` for a link whose stress is too high, and for a drive of which no
+    /// check can be made.
     pub(crate) fn overload(
         &self,
         options: &[u32],

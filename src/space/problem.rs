@@ -35,7 +35,7 @@ use nalgebra::Vector3;
 /// [parts](ArmProblem::parts) and the [arm](ArmProblem::arm) of one design. [`DesignSpace`] has an example.
 pub struct ArmProblem<'c> {
     space: &'c DesignSpace,
-    /// The slots of the arm: what is added in each step, tip first.
+    /// The slots of the arm, which are the pieces that the search adds, one in each step, tip first.
     slots: Vec<Slot<'c>>,
     /// Slot of each piece, base to tip. The effects of a piece may have further slots.
     piece_slots: Vec<usize>,
@@ -196,7 +196,8 @@ impl<'c> ArmProblem<'c> {
         self.piece_slots.iter().map(|&slot| complete.options[slot])
     }
 
-    /// Demand on the joint in `slot` over the sizing cases. `partial` is the arm outboard of the joint.
+    /// Demand on the joint in `slot` over the sizing cases, in which drives and stresses are checked. `partial` is the
+    /// arm outboard of the joint.
     pub fn demand_at(&self, partial: &Partial, slot: usize) -> JointDemand {
         self.demand(partial, slot, self.slots[slot].motion())
     }
@@ -455,7 +456,8 @@ impl<'c> ArmProblem<'c> {
         self.space.constraints.stress_safety_factor_min.is_none_or(|least| to.stress_ratio * least <= 1.0)
     }
 
-    /// The judged cases: the station of each, and the state of a complete arm in it.
+    /// The judged cases, which count for deflection and lowest mode: the station of each, and the state of a complete
+    /// arm in it.
     fn judged<'s>(
         &'s self,
         complete: &'s Partial,

@@ -27,7 +27,8 @@ pub(crate) struct Reaction {
     pub in_stop_nm: f64,
 }
 
-/// A joint that moves by itself: its slot, and its acceleration in a ramp \[rad/s²\] (\[m/s²\] for a prismatic joint).
+/// A joint that moves by itself: its slot (place in the arm, counted from the tip), and its acceleration in a ramp
+/// \[rad/s²\] (\[m/s²\] for a prismatic joint).
 struct Mover {
     slot: usize,
     acceleration: f64,

@@ -1,4 +1,4 @@
-//! The state of a partial arm in one case, and how every slot that is added inboard changes it.
+//! The state of a partial arm in one case, and how every slot (piece of the arm) that is added inboard changes it.
 //!
 //! The torque on a driving joint includes the torques of its passive joints. A radian of the driving joint turns each
 //! passive joint by its factor `f`. By virtual work the torque on the driving joint is therefore `t_d·w + Σ f t_p·w_p`,

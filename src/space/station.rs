@@ -17,7 +17,7 @@ use crate::mechanics::lowest::BlockLink;
 use crate::mechanics::{Twist, Wrench, angular, body_inertia, force_wrench, linear, stack};
 use nalgebra::{Matrix3, Matrix3x6, Matrix6, Rotation3, SMatrix, SVector, Vector3, Vector6};
 
-/// One case (a pose with its load), prepared for the slots of an arm.
+/// One case (a pose with its load), prepared for the slots (pieces) of an arm.
 pub(crate) struct Station {
     /// The data of each slot in this pose, tip first.
     pub slots: Vec<StationSlot>,
