@@ -37,7 +37,8 @@ pub struct MassBound {
 pub struct Relaxation<'a> {
     problem: &'a ArmProblem<'a>,
     cases: Vec<CaseLoads>,
-    /// The inertias and stiffnesses of the arm from which trial shapes are made, one model for each judged case.
+    /// The inertias and stiffnesses of the arm from which trial shapes are made, one model for each judged case. A
+    /// judged case counts for deflection and lowest mode.
     models: Vec<ShapeModel>,
 }
 
@@ -156,7 +157,7 @@ impl Search<'_> {
     }
 
     /// Greatest tangent stiffness of each remaining option of a joint \[N m/rad\]; first index the judged case, second
-    /// the slot, third the option.
+    /// the slot (piece of the arm), third the option.
     fn stiffness(&self) -> Vec<Vec<Vec<f64>>> {
         self.models.iter().map(|m| self.cases[m.case].stiffest(self.problem, &self.parts)).collect()
     }
