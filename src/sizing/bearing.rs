@@ -50,8 +50,9 @@ pub struct BearingLoad {
     pub axial_n: f64,
 }
 
-/// The loads on the output bearing of a joint in a study. Each number is the largest over the sizing cases and over the
-/// ramps or stops of single joints. The numbers of one load may come from different cases, which is on the safe side.
+/// The loads on the output bearing of a joint in a study. Each number is the largest over the sizing cases (in which
+/// drives and stresses are checked) and over the ramps or stops of single joints. The numbers of one load may come from
+/// different cases, which is on the safe side.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BearingDemand {
     /// Loads from gravity, payload and tip force alone, with all joints at rest.

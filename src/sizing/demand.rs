@@ -181,7 +181,7 @@ impl JointMotion {
 /// The torques on one joint, on the output side of the gear. None of them is negative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointDemand {
-    /// Largest static torque over the sizing cases, Eq 7 \[N m\].
+    /// Largest static torque over the sizing cases (in which drives and stresses are checked), Eq 7 \[N m\].
     pub static_torque_nm: f64,
     /// Torque of linear acceleration, Eq 8 \[N m\].
     pub linear_torque_nm: f64,
