@@ -5,7 +5,7 @@
 //! hundreds of designs one by one. The algorithm makes further designs from these. A child
 //! takes some parts from a parent of similar mass, or options close to its first parent's, and is kept if no design
 //! seen before dominates it. Of designs that differ by little, one is kept for each cell of a grid
-//! ([`thinned`](super::grid::thinned)), so that they do not crowd out the others.
+//! ([`thinned`]), so that they do not crowd out the others.
 //!
 //! The result proves nothing. Its designs are evaluated and listed like all others.
 

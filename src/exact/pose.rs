@@ -64,7 +64,7 @@ pub(super) struct Pose {
     /// Whether no two contributions to the tip's displacement can oppose each other.
     pub contributions_align: bool,
     /// Density of the water around the arm \[kg/m³\], 0 in air. The net weight of a tube per length is
-    /// `g (mass - water · outer area)`.
+    /// `g (mass per length - water · outer area)`.
     pub water_kg_m3: f64,
     pub pieces: Vec<PosedPiece>,
     /// Inertia of the payload about the world's origin.

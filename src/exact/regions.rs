@@ -1,11 +1,11 @@
 //! The search region by region.
 //!
-//! Incumbents are the designs found so far. A region is the part of the objective space below a [`LocalUpperBound`] of
-//! the incumbents. Far fewer options can belong to a design of a region than the space has. A dual point is a set of
-//! weights for the inequalities that bound a region ([`rows`](super::rows)); the price of a part is what it adds to
-//! their weighted sum. A dual point excludes every option whose price exceeds what the local upper bound allows
-//! ([`reduced_cost`](super::reduced_cost)). With fewer options the bounds are sharper, and more options can be
-//! excluded.
+//! Incumbents are the designs found so far. A region is the part of the objective space below a
+//! [`LocalUpperBound`](super::local_upper_bounds::LocalUpperBound) of the incumbents. Far fewer options can belong to a
+//! design of a region than the space has. A dual point is a set of weights for the inequalities that bound a region
+//! ([`rows`](super::rows)); the price of a part is what it adds to their weighted sum. A dual point excludes every
+//! option whose price exceeds what the local upper bound allows ([`reduced_cost`](super::reduced_cost)). With fewer
+//! options the bounds are sharper, and more options can be excluded.
 //!
 //! A local upper bound is *refuted* if no design is below it. Local upper bounds are refuted several at a time, by one
 //! bound that covers all of them. A set of bounds that is not

@@ -9,7 +9,7 @@ use crate::search::sweep::{Candidate, SLACK};
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 
-/// Number of candidates above which the dominated ones are removed from time to time: whenever the number reaches a
+/// Number of candidates above which dominated candidates are removed from time to time: whenever the number reaches a
 /// power of two.
 const BUFFER: usize = 4096;
 

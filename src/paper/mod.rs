@@ -3,7 +3,7 @@
 //!
 //! | study | what it answers |
 //! |---|---|
-//! | `paper-table1` | each number that the paper derives from its Table 1, next to the number of this program: the interpretation of the equation that gives the paper's number, the value of the exact model, and the reason for a difference; also the error that remains with the remedies of the paper's conclusions |
+//! | `paper-table1` | each number that the paper derives from its Table 1, next to the number of this program: the interpretation of the equation that gives the paper's number, the value of the general mechanics, and the reason for a difference; also the error that remains with the remedies of the paper's conclusions |
 //! | `fig2-metals` | deflection against weight per length of three metals |
 //! | `fig3-wall-or-width` | whether a kilogram is better spent on the wall or on the outer dimensions |
 //! | `fig4-composites` | composites compared with the best metal |

@@ -3,7 +3,7 @@
 //! The study fixes speed, acceleration and duty cycle of a joint, so most checks of a drive compare one torque with
 //! one number. [`DriveLimits`] has these numbers. Three checks need more than one torque: the output bearing (see
 //! [`BearingLimits`]), motor heat, which compares a mean square with 1, and sizes ([`DriveWidths`]). A search
-//! compares these numbers and nothing else. The printed checks ([`checks`](super::checks)) use the same thresholds.
+//! compares these numbers and nothing else. The printed checks ([`checks`](mod@super::checks)) use the same thresholds.
 
 use super::bearing::BearingLimits;
 use super::check::CheckKind;
