@@ -88,7 +88,8 @@ pub(crate) fn factors_sentence<'a>(tubes: impl Iterator<Item = (&'a str, &'a str
     })
 }
 
-/// Reads a link: a single one, or one for each slice of its pieces. Returns `None` after recording a fault.
+/// Reads a link of the file. The result is one link, or one link for each slice of its pieces. Returns `None` after
+/// recording a fault.
 pub(crate) fn read_links(
     object: &Object,
     materials: &[NamedMaterial],

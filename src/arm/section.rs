@@ -121,7 +121,7 @@ const STATED_PA: f64 = 1e15;
 
 impl StatedSection {
     /// The fictitious material with which the section has its stated stiffnesses and mass. Its density is 1 kg/m³.
-    /// Shear stiffness is not among the stated ones, so it is taken as practically infinite.
+    /// Shear stiffness is not stated, so it is taken as practically infinite.
     pub fn material(&self) -> LinkMaterial {
         // Modulus and density also determine the rotary inertia per length about the axis, ρ (Iy + Iz) = m' (EIy + EIz)
         // / EA, where m' is the mass per length. For a mass that is spread evenly over the rectangle b h it is m' (b² +

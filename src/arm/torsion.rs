@@ -136,7 +136,7 @@ mod tests {
     }
 
     /// Compares with Prandtl's stress function by finite differences: within 8 % for thick walls, and within the
-    /// known error of Bredt's formula for thin ones.
+    /// known error of Bredt's formula for thin walls.
     #[test]
     fn thick_walls_are_within_8_percent_of_saint_venant() {
         for aspect in [1, 2, 4] {

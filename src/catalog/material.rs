@@ -12,7 +12,7 @@ pub enum MaterialClass {
     Composite,
     /// Metal-matrix composites.
     MetalMatrix,
-    /// Polymers, including printed and filled ones.
+    /// Polymers, including printed and filled polymers.
     Polymer,
     /// Wood and wood products.
     Wood,

@@ -12,7 +12,7 @@
 //! - on the options of a level, where the mixed designs differ or a product is underestimated;
 //! - on a joint torque. A force is uncertain because of all the weights outboard and not because of one level, so
 //!   halving the interval of the torque helps where halving a level does not. It also separates the two states of a
-//!   gear that the mixture blends: a soft gear at a small torque and a stiff one at a large torque.
+//!   gear that the mixture blends: a soft gear at a small torque and a stiff gear at a large torque.
 
 use super::parts::{STIFFNESSES, inertia};
 use super::pose::Row;

@@ -31,7 +31,7 @@ struct Piece {
 
 impl Cover {
     /// Makes a cover of at least `boxes` boxes. `found` are the objectives of the designs found, from which the gap of
-    /// each box follows. There are fewer boxes if the remaining ones cannot be halved or the search is stopped.
+    /// each box follows. There are fewer boxes if the remaining boxes cannot be halved or the search is stopped.
     pub(super) fn new(budget: &Budget, problem: &Problem, found: &[Objectives], boxes: usize) -> Self {
         let Some(shapes) = problem.first_shapes(&mut BoxWork::default()) else { return Self(Vec::new()) };
         let root =

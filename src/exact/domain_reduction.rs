@@ -25,7 +25,7 @@ const OBJECTIVE_MARGIN: f64 = 1e-6;
 const MOST_BRANCHED: usize = 50;
 const SMALL_SPACE: f64 = 1e6;
 
-/// A compiled design space that tells which parts can belong to a design as good as a known one.
+/// A compiled design space that tells which parts can belong to a design as good as a known design.
 pub struct DomainReduction<'p> {
     problem: Problem<'p>,
 }

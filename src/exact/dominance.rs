@@ -75,8 +75,8 @@ impl DominatingDrive<'_> {
 impl Problem<'_> {
     /// Whether every load of the arm, and every displacement that a load causes, grows with every weight. Then a
     /// lighter arm of the same stiffness is no worse. With friction this is false, because the twist that friction
-    /// holds back grows with the weights too. With first-fit drives it is false too, because a lighter arm would get
-    /// lighter and softer drives.
+    /// holds back grows with the weights too. With first-fit drives (the lightest that meet the demand) it is false
+    /// too, because a lighter arm would get lighter and softer drives.
     pub(super) fn grows_with_weight(&self) -> bool {
         let fits_first = self.parts.iter().any(|part| matches!(part, Part::FirstFit { .. }));
         let friction = self.joint_plays.iter().flatten().any(JointPlay::has_friction);

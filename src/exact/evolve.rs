@@ -25,7 +25,7 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Greatest number of generations. Later ones hardly find better designs.
+/// Greatest number of generations. Later generations hardly find better designs.
 const GENERATIONS: u64 = 20;
 /// Fraction of a time limit after which no further generation begins. The rest of the time is for the passes of the
 /// search, because a pass proves a gap and a generation proves nothing.
@@ -38,7 +38,7 @@ const CELL_WIDTH: f64 = 0.02;
 /// Greatest distance between the two parents of a child, in places of the list of designs by mass.
 const MATING_DISTANCE: u64 = 12;
 
-/// A design with trial shapes that bound its modes. The shapes were computed for this design or for a similar one.
+/// A design with trial shapes that bound its modes. The shapes were computed for this design or for a similar design.
 pub(super) struct Individual {
     pub design_box: DesignBox,
     pub objectives: Objectives,

@@ -56,7 +56,7 @@ impl Problem<'_> {
     }
 
     /// Reduces the drives of a joint to the drives that may carry the least demand, and writes the intervals over them
-    /// to `work`. `node` is the node of the joint's tree; it is replaced by a smaller one if that contains all these
+    /// to `work`. `node` is the node of the joint's tree; it is replaced by a smaller node if that contains all these
     /// drives. `None` if no drive may carry the demand.
     fn fill_drives(
         &self,
@@ -114,7 +114,7 @@ impl Problem<'_> {
     }
 
     /// Reduces the options of a link to the options that may carry the least stress, and writes the intervals over them
-    /// to `work`. `node` is the node of the link's tree; it is replaced by a smaller one if that contains all these
+    /// to `work`. `node` is the node of the link's tree; it is replaced by a smaller node if that contains all these
     /// options. `None` if no option may carry the stress.
     fn fill_links(
         &self,

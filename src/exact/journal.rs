@@ -1,7 +1,7 @@
 //! The states that an exact search saves on the way, so that another process can continue it.
 //!
 //! A study is searched in *parts*: first the front of all designs, then the front of each material. The state contains
-//! the results of the finished parts and the progress of the present one.
+//! the results of the finished parts and the progress of the present part.
 //!
 //! A part is searched in *passes* over the whole space, each with less *slack* than the pass before. The slack is a
 //! fraction: a box of designs is discarded although it may be better than the designs found by this fraction. A pass

@@ -63,7 +63,7 @@ impl LiveProgress {
         self.lock().due = Some(Instant::now() + after);
     }
 
-    /// Reports the new progress `news`. The reported gap is replaced only by a smaller one.
+    /// Reports the new progress `news`. The reported gap is replaced only by a smaller gap.
     pub(super) fn tell(&self, news: Known) {
         let known = &mut self.lock().known;
         *known = Known { gap: least(known.gap, news.gap), ..news };
@@ -74,7 +74,7 @@ impl LiveProgress {
     }
 }
 
-/// The smaller of two gaps. `None` means that a gap is unknown; then the other one is returned.
+/// The smaller of two gaps. `None` means that a gap is unknown; then the other gap is returned.
 pub(super) fn least(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     a.into_iter().chain(b).reduce(f64::min)
 }

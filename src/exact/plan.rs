@@ -38,7 +38,7 @@ const LAST_PASS_SHARE: f64 = 0.75;
 /// of the list.
 const SHORT_PASS_SHARE: f64 = 0.05;
 /// Greatest factor by which one pass divides the slack. A larger step would be predicted from times measured at a much
-/// larger slack. An additional pass in between takes only a small part of the time of the next one.
+/// larger slack. An additional pass in between takes only a small part of the time of the next pass.
 const LONGEST_STEP: f64 = 3.0;
 /// If no finer pass is predicted to fit in the time left, a pass with the slack times this factor is still tried,
 /// because the prediction may be wrong.
@@ -53,7 +53,7 @@ pub(super) struct Pass {
 
 /// The slacks of the passes of a search.
 pub(super) struct Plan {
-    /// Slacks in descending order. The last one is the gap that was asked for.
+    /// Slacks in descending order. The last slack is the gap that was asked for.
     slacks: Vec<f64>,
     /// Greatest number of slacks of the list that are skipped at once.
     most_passed_over: usize,
@@ -99,8 +99,8 @@ impl Plan {
     }
 }
 
-/// The slack of the next pass on the way from the slack `from` to the finer one `slack`. The way is divided into as few
-/// equal steps of the logarithm as possible, none longer than [`LONGEST_STEP`].
+/// The slack of the next pass on the way from the slack `from` to the finer slack `slack`. The way is divided into as
+/// few equal steps of the logarithm as possible, none longer than [`LONGEST_STEP`].
 fn step_to(slack: f64, from: f64) -> f64 {
     let finer = from / slack;
     if finer * SHORTEST_STEP < 1.0 {

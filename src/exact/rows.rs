@@ -305,12 +305,12 @@ impl<'a> Rows<'a> {
         self.modes.push(Mode { judged, start, shape, kinetic });
     }
 
-    /// The multipliers with which the search for better ones starts. `above` are the multipliers of the parent box.
-    /// Rows that the parent box did not have get equal multipliers.
+    /// The multipliers with which the search for better multipliers starts. `above` are the multipliers of the parent
+    /// box. Rows that the parent box did not have get equal multipliers.
     pub(super) fn starting_multipliers(&self, above: &[f64]) -> Vec<f64> {
         let mut multipliers = vec![0.0; self.scale.len()];
         let others: Vec<usize> = (0..=self.tips.len()).chain(self.first_mode..self.scale.len()).collect();
-        // New rows have no multiplier from the parent. Equal ones are as good a guess as any.
+        // New rows have no multiplier from the parent. Equal multipliers are as good a guess as any.
         let even = 1.0 / others.len() as f64;
         for (k, row) in others.into_iter().enumerate() {
             multipliers[row] = above.get(k).copied().unwrap_or(even);

@@ -173,8 +173,8 @@ impl<'p> Exact<'p> {
         Self { shard, ..self }
     }
 
-    /// Goes on where an earlier process ended, and saves states for a later one. All these processes must make the same
-    /// calls of [`run`](Self::run) and [`run_of_material`](Self::run_of_material), in the same order.
+    /// Goes on where an earlier process ended, and saves states for a later process. All these processes must make the
+    /// same calls of [`run`](Self::run) and [`run_of_material`](Self::run_of_material), in the same order.
     ///
     /// # Errors
     /// Returns a message if the bytes are not a saved state of an exact search.

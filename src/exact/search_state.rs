@@ -19,7 +19,7 @@ pub(super) struct SearchState {
     pub incumbents: Incumbents,
     /// Numbers of the designs that were evaluated and may have joined the designs found.
     pub tried: HashSet<u128>,
-    /// Designs found that meet every constraint; dominated ones among them are removed from time to time.
+    /// Designs found that meet every constraint. Dominated designs among them are removed from time to time.
     kept: Vec<Candidate>,
     /// Designs for which rounding leaves open whether a part carries its demand. The full model judges them.
     undecided: Vec<Candidate>,

@@ -190,8 +190,8 @@ pub(super) fn products<const N: usize>(a: &[[f64; N]], b: &[[f64; N]]) -> f64 {
 }
 
 /// Writes `M x` to `work.forces`: the inertia force on every coordinate, divided by the squared angular frequency, when
-/// the arm moves by `x` and its base by `base`. One pass goes outward and computes the motion, a second one goes inward
-/// and sums the forces. No matrix is formed.
+/// the arm moves by `x` and its base by `base`. One pass goes outward and computes the motion, a second pass goes
+/// inward and sums the forces. No matrix is formed.
 pub(super) fn inertia_forces(
     pose: &Pose,
     inertia: &[[f64; INERTIAS]],

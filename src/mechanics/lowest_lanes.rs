@@ -29,7 +29,8 @@ enum Shared<const N: usize> {
 
 /// The inboard pieces of eight chains, in which the chains differ.
 pub(crate) trait Inner<V: Lanes, const N: usize> {
-    /// Adds the inboard pieces to a pass, from the tip inward. If any of them is compliant, the last one must be.
+    /// Adds the inboard pieces to a pass, from the tip inward. If any of these pieces is compliant, the last piece must
+    /// be compliant.
     fn add_to(&self, walk: &mut Walk<V, N>);
 }
 

@@ -10,7 +10,7 @@ use crate::space::slot::Slot;
 
 impl Parts {
     /// Drops the drives that cannot meet the least demand that any remaining options outboard put on their joint. If a
-    /// joint takes the lightest drive that meets its demand, drives heavier than the lightest one that meets the
+    /// joint takes the lightest drive that meets its demand, drives heavier than the lightest drive that meets the
     /// greatest demand are dropped too. Returns whether any drive was dropped.
     pub(super) fn drop_drives(&mut self, problem: &ArmProblem, cases: &[CaseLoads]) -> bool {
         let mut dropped = false;

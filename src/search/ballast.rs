@@ -128,7 +128,7 @@ impl<'p, 'c> Weighed<'p, 'c> {
         let mut options = self.options.clone();
         options[level] = option;
         let lighter = self.problem.walk(&options, |_, _| {}).ok()?;
-        // less weight outboard may let first fit choose another drive inboard; then the part alone is not the reason
+        // less weight outboard may change the lightest drive that fits inboard; then the part alone is not the reason
         let others_stay =
             (0..lighter.options.len()).all(|s| s == slot || lighter.options[s] == self.arm.options[s]);
         let o = self.problem.objectives(&lighter)?;
@@ -184,7 +184,7 @@ impl<'p, 'c> Weighed<'p, 'c> {
         }
     }
 
-    /// Whether the lighter design would have as high a lowest mode as the present one if no joint inboard had become
+    /// Whether the lighter design would have as high a lowest mode as the present design if no joint inboard had become
     /// softer. Then these joints are the reason for the lower mode.
     fn joints_are_why(&self, lighter: &Partial, slot: usize) -> bool {
         let mut held = lighter.clone();

@@ -280,7 +280,7 @@ fn loaded(station: &Station) -> [bool; 6] {
     loaded
 }
 
-/// Number of inner slots from the row level to the last one that is compliant in this block; 0 if none is. `first` is
+/// Number of inner slots from the row level to the last slot that is compliant in this block; 0 if none is. `first` is
 /// the slot of the row level, and `links_are_compliant` tells whether some option of the row's link is compliant.
 fn last_compliant<const N: usize>(block: &Block<N>, first: usize, links_are_compliant: bool) -> usize {
     let is_compliant = |slot: &BlockSlot<N>| match slot {

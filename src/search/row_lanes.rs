@@ -275,7 +275,7 @@ impl RowChunk<'_, '_> {
         own.max(V::splat(self.from.stress_ratio))
     }
 
-    /// Index of the drive that each of the eight arms gets at inner slot `k`: the chosen drive, or the lightest one
+    /// Index of the drive that each of the eight arms gets at inner slot `k`: the chosen drive, or the lightest drive
     /// that meets the demand. An arm for which no drive meets the demand is removed from `held`.
     #[inline(always)]
     fn pick<V: Lanes>(

@@ -39,7 +39,7 @@ pub(crate) struct Question<'a, 'c> {
 struct Ask<V> {
     /// Bit mask, one bit per arm: the arms for which the question is asked.
     open: u8,
-    /// Upper limit of the eigenvalues that are sought \[1/s²\]. Larger ones need not be computed.
+    /// Upper limit of the eigenvalues that are sought \[1/s²\]. Larger eigenvalues need not be computed.
     below: V,
     /// Eigenvalue at which the iteration starts; `None` if the question is only whether an eigenvalue is below
     /// `below`.

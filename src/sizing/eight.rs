@@ -261,7 +261,7 @@ impl DriveTable<'_> {
     /// For each lane (arm) in the mask `wanted`, the index of the lightest drive that meets its demand, and the bit
     /// mask of the lanes that have such a drive.
     ///
-    /// The ladder lists the drives that can be the lightest one for some demand, lightest first. The search for the
+    /// The ladder lists the drives that can be the lightest for some demand, lightest first. The search for the
     /// first step of the ladder that may meet a demand begins at `step`. The step that it finds is
     /// stored in `step`. Successive demands are similar, so the next search is short.
     #[inline(always)]

@@ -123,8 +123,8 @@ impl DriveLimits {
             & (self.heat.share_squared(demand) <= 1.0)
     }
 
-    /// For each limit the weaker of the values of this drive and of `other`: the larger one, but for heat and widths
-    /// the smaller one. If one of the two drives meets a demand, the demand is within these limits.
+    /// For each limit the weaker of the values of this drive and of `other`: the larger value, but for heat and widths
+    /// the smaller value. If one of the two drives meets a demand, the demand is within these limits.
     pub(crate) fn max(&self, other: &Self) -> Self {
         Self {
             static_torque_nm: self.static_torque_nm.max(other.static_torque_nm),
@@ -137,8 +137,8 @@ impl DriveLimits {
         }
     }
 
-    /// For each limit the stricter of the values of this drive and of `other`: the smaller one, but for heat and widths
-    /// the larger one. Both drives meet every demand that is within these limits.
+    /// For each limit the stricter of the values of this drive and of `other`: the smaller value, but for heat and
+    /// widths the larger value. Both drives meet every demand that is within these limits.
     pub(crate) fn min(&self, other: &Self) -> Self {
         Self {
             static_torque_nm: self.static_torque_nm.min(other.static_torque_nm),

@@ -17,8 +17,7 @@
 //! of C. The stiffness is taken with the nut farthest from the supports of the shaft.
 //!
 //! I and A are the second moment and the area of the section at the root of the thread. E = 206 GPa and ρ = 7850 kg/m³
-//! are the values of steel. The mass of the
-//! shaft turns with the motor and does not travel.
+//! are the values of steel. The mass of the shaft turns with the motor and does not travel.
 
 use super::bearing::RATED_TURNS;
 use crate::catalog::gear::{Gear, GearKind, LifeLaw};

@@ -61,7 +61,7 @@ impl DriveFilter {
         }
     }
 
-    /// This filter, but with the gear and the motor of `drive` as the only ones that it allows.
+    /// This filter, but with the gear and the motor of `drive` as the only parts that it allows.
     pub(crate) fn only(&self, drive: &Drive) -> Self {
         let of_actuator = drive.gear.kind == GearKind::Actuator;
         let one = |id: &str, is_one: bool| Some(if is_one { vec![id.to_string()] } else { Vec::new() });
@@ -123,7 +123,7 @@ pub struct DriveTable<'c> {
     pairs: Vec<Pair>,
     masses_kg: Vec<f64>,
     limits: Vec<DriveLimits>,
-    /// Indices of the drives that can be the lightest one for some demand, lightest first. A drive is left out if a
+    /// Indices of the drives that can be the lightest for some demand, lightest first. A drive is left out if a
     /// lighter one has no stricter limit.
     ladder: Vec<u32>,
     ladder_limits: Vec<DriveLimits>,
@@ -138,7 +138,7 @@ pub struct DriveTable<'c> {
 /// limits do not meet a demand.
 const STEPS_OF_FLIGHT: usize = 8;
 
-/// The ladder: the drives that can be the lightest one for some demand, lightest first.
+/// The ladder: the drives that can be the lightest for some demand, lightest first.
 #[derive(Clone, Copy)]
 pub(super) struct Ladder<'t> {
     pub indices: &'t [u32],
@@ -371,7 +371,7 @@ impl<'c> DriveTable<'c> {
         (0..self.len()).find(|&i| parts(&self.drive(i)) == (gear_id, motor_id))
     }
 
-    /// Indices of the drives that can be the lightest one for some demand, lightest first. A drive is left out if a
+    /// Indices of the drives that can be the lightest for some demand, lightest first. A drive is left out if a
     /// lighter one has no stricter limit.
     pub fn first_fit_candidates(&self) -> &[u32] {
         &self.ladder
@@ -385,7 +385,7 @@ impl<'c> DriveTable<'c> {
         Some(self.ladder[step] as usize)
     }
 
-    /// The drives that can be the lightest one for some demand, with their limits.
+    /// The drives that can be the lightest for some demand, with their limits.
     pub(super) fn ladder(&self) -> Ladder<'_> {
         Ladder {
             indices: &self.ladder,

@@ -1,9 +1,8 @@
 //! An arm as a tree of designs.
 //!
-//! The arm is built from the tip to the base. Each joint is sized when everything outboard of it is known (Eqs 7-12
-//! of docs/model.md).
-//! Every piece that is added changes the wrench, the inertia and the displacement of the tip (Eqs 13-16). A
-//! partial arm therefore has all the data that the next pieces need.
+//! The arm is built from the tip to the base. Each joint is sized when everything outboard of it is known (Eqs 7-12 of
+//! docs/model.md). Every piece that is added changes the wrench, the inertia and the displacement of the tip (Eqs
+//! 13-16). A partial arm therefore has all the data that the next pieces need.
 
 use super::attributes::OptionAttributes;
 use super::bearing_loads::BearingLoads;
@@ -224,7 +223,8 @@ impl<'c> ArmProblem<'c> {
     }
 
     /// The arm with these `options`, one for each slot. For a sized joint the option is the index of its drive, and
-    /// this drive is taken even where first fit would take another one. `None` if the arm breaks a limit.
+    /// this drive is taken even where first fit (the lightest drive that meets the
+    /// demand) would take another drive. `None` if the arm breaks a limit.
     pub(crate) fn assemble(&self, options: &[u32]) -> Option<Partial> {
         let mut partial = self.empty();
         let mut adds = |(slot, &option): (usize, &u32)| match &self.slots[slot] {

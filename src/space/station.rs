@@ -207,7 +207,7 @@ pub(crate) enum Modal {
     Spatial(Box<Block<6>>),
 }
 
-/// The slots, restricted to `N` of the six motions. These `N` motions do not couple with the remaining ones.
+/// The slots, restricted to `N` of the six motions. These `N` motions do not couple with the remaining motions.
 pub(crate) struct Block<const N: usize> {
     /// Inertia matrix of the payload.
     pub payload: SMatrix<f64, N, N>,

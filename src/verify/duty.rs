@@ -23,9 +23,11 @@ pub(super) struct Duty {
     pub acceleration_rad_s2: f64,
     /// Required life of the gear \[h\].
     pub life_h: f64,
-    /// Torque of linear acceleration for each kg m² of inertia \[rad/s²\], and for each N m of static torque. One of
-    /// the two is zero. Eq 8 can be read in either way, and the study states which way it takes.
+    /// Torque of linear acceleration for each kg m² of inertia \[rad/s²\]. It is zero if the study computes this torque
+    /// from the static torque: Eq 8 can be read in either way.
     linear_per_inertia: f64,
+    /// Torque of linear acceleration for each N m of static torque. It is zero if the study computes this torque from
+    /// the inertia.
     linear_per_static: f64,
     /// Torque of linear acceleration in an emergency stop, divided by the torque of linear acceleration in a ramp.
     pub stop_factor: f64,

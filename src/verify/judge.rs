@@ -22,7 +22,7 @@ use std::sync::Arc;
 /// The part that a design has at one piece of the chain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Pick {
-    /// The part that the question gives, or the drive that the first-fit rule determines: the lightest one that meets
+    /// The part that the question gives, or the drive that the first-fit rule determines: the lightest drive that meets
     /// the demand.
     Given,
     /// A drive of the catalogs, given by the indices of its gear and motor.

@@ -340,7 +340,7 @@ pub(super) enum Coordinate {
     /// Tilt of a joint's bearing about one of two axes at right angles to the joint's axis.
     Tilt(usize, usize),
     /// Displacement of everything outboard of a joint along one of two axes at right angles to the joint's axis, or
-    /// along the joint's axis (index 2). The arm does not deform in this way: the motion is a virtual one, from which
+    /// along the joint's axis (index 2). The arm does not deform in this way: the motion is virtual, and from it
     /// forces follow.
     Shift(usize, usize),
     /// Deformation of a tube in one shape.

@@ -313,7 +313,7 @@ impl Subproblem {
     }
 }
 
-/// Divides `options` into two lists: the options whose `value` is at most `at`, and the remaining ones. If one list
+/// Divides `options` into two lists: the options whose `value` is at most `at`, and the remaining options. If one list
 /// would be empty, the options are sorted by their value and divided into equal halves. `None` if there is only one
 /// option.
 fn halved(options: &[u32], value: impl Fn(&u32) -> f64, at: Option<f64>) -> Option<[Vec<u32>; 2]> {

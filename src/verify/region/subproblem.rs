@@ -64,7 +64,8 @@ impl Subproblem {
         })
     }
 
-    /// Number of designs that the options make. A joint with the first-fit rule is counted as having one option.
+    /// Number of designs that the options make. A joint with the first-fit rule (it gets the lightest drive that meets
+    /// the demand) is counted as having one option.
     pub(super) fn designs(&self, table: &PartsTable) -> f64 {
         let joints = self.joints.iter().zip(&table.joints);
         let joints = joints.map(|(kept, joint)| if joint.drives.level.is_some() { kept.len() } else { 1 });
