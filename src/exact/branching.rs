@@ -180,10 +180,10 @@ impl Rows<'_> {
         branchings
     }
 
-    /// Tip displacement by which the McCormick bound (a linear function below the product of two numbers in intervals)
-    /// underestimates force times compliance in one strain coordinate (one way to deform) of a piece \[m\]. It is the
-    /// excess `more` of the force over its least value, times the excess of the compliance over its least value. Both
-    /// are means over the mixture.
+    /// Tip displacement by which the McCormick bound underestimates force times compliance, in one strain coordinate
+    /// (one way to deform) of a piece \[m\]. The McCormick bound is a linear function below the product of two numbers
+    /// in intervals. The result is the excess `more` of the force over its least value, times the excess of the
+    /// compliance over its least value. Both are means over the mixture.
     fn product(&self, mixed: &Mixed, judged: usize, row: &Row, more: f64) -> f64 {
         let tip_per_unit = self.work.tip_directions[judged].dot(&row.tip_m);
         (tip_per_unit * more * self.softer(mixed, judged, row)).abs()

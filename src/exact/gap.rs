@@ -16,9 +16,9 @@ pub(super) fn gap(open: &[BoxBound], found: &[Objectives]) -> Option<f64> {
     worst.is_finite().then_some(worst)
 }
 
-/// The gap that one open box leaves (relative): the least `ε` such that some design in `found` is worse than `bound`
-/// by at most the factor `1 + ε` in each objective. It is infinite if the box has no bound yet, or if no design was
-/// found.
+/// The gap that one open box leaves (relative). It is the least `ε` for which some design in `found` is worse than
+/// `bound` by at most the factor `1 + ε` in each objective. It is infinite if the box has no bound yet, or if no design
+/// was found.
 pub(super) fn gap_of(bound: &BoxBound, found: &[Objectives]) -> f64 {
     let factor = |o: &Objectives| {
         (o.mass_kg / bound.mass_kg).max(o.tip_deflection_m / bound.tip_m).max(bound.hz / o.lowest_mode_hz)

@@ -5,15 +5,15 @@
 //! member satisfies: on the mass, on the displacement of the tip, on a mode or on a torque.
 //!
 //! For multipliers `y ≥ 0`, the weighted sum of the rows ([`rows`](super::rows)) is a sum of one number for each part,
-//! the price of the part. The least sum over all members of the box is therefore the sum of the least prices, which are
-//! found level by level; the parts that have them make a *relaxed design*. This least sum is the value of the dual
-//! function at `y`. If it exceeds the weighted limits of a local upper bound, no member lies below that bound. The
+//! the price of the part. The least sum over all members of the box is therefore the sum of the least prices. They are
+//! found level by level. The parts with the least prices make a *relaxed design*. This least sum is the value of the
+//! dual function at `y`. If it exceeds the weighted limits of a local upper bound, no member lies below that bound. The
 //! bound is then *refuted*.
 //!
-//! The next multipliers are the solution of a *matrix game*: the weights of the rows that make the least weighted sum
-//! over the relaxed designs found so far as large as possible (Kelley's cutting-plane method). If no multipliers refute
-//! the bound, the modes of the mixed arm give new rows. The mixed arm has the mean stiffnesses and inertias of the
-//! relaxed designs, weighted by the solution of the game.
+//! The next multipliers are the solution of a *matrix game* (Kelley's cutting-plane method). They are the weights of
+//! the rows that make the least weighted sum, over the relaxed designs found so far, as large as possible. If no
+//! multipliers refute the bound, the modes of the mixed arm give new rows. The mixed arm has the mean stiffnesses and
+//! inertias of the relaxed designs, weighted by the solution of the game.
 
 use super::bound::START_SHAPES;
 use super::dual_price::{DualPrice, JointPrice, TubePrice};

@@ -1,8 +1,8 @@
 //! Local upper bounds of the incumbents. They describe the region in which further designs of the front may lie.
 //!
 //! Incumbents are the designs found so far. The search region is the set of all triples of mass, deflection and mode
-//! that no incumbent dominates. It is the union of the regions below local upper bounds: a design that is not dominated
-//! is lighter, deflects less and has a higher mode than some local upper bound.
+//! that no incumbent dominates. It is the union of the regions below local upper bounds. A design below a local upper
+//! bound is lighter, deflects less and has a higher mode than the bound.
 //!
 //! One sweep over the incumbents by rising mass finds all local upper bounds. Deflection and mode of the incumbents so
 //! far form a staircase, with a bound between any two neighbouring steps. When a heavier incumbent cuts off such a

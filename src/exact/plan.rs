@@ -1,11 +1,10 @@
 //! The slack of the next pass.
 //!
 //! A search goes over the whole space several times, in passes with less and less slack. In a pass with slack `ε`, a
-//! box of designs is also discarded if a design found before comes within the factor `1 + ε` of the box's bound in all
-//! three objectives. A completed pass therefore proves this: every design has a design found that is worse than it by
-//! at most `ε`.
-//! The time of a pass grows as a power of the reciprocal of its slack, `t ∝ ε^-g`. The exponent `g` is measured on the
-//! last two completed passes.
+//! box of designs is also discarded if it promises little: some design found before comes within the factor `1 + ε` of
+//! the box's bound in all three objectives. A completed pass therefore proves this: every design has a design found
+//! that is worse than it by at most `ε`. The time of a pass grows as a power of the reciprocal of its slack, `t ∝
+//! ε^-g`. The exponent `g` is measured on the last two completed passes.
 //!
 //! Without a time limit the slacks come from a fixed list and do not depend on the machine. With a time limit they
 //! come from the same list as long as a pass is short compared with the time left. They also come from the list if the

@@ -99,8 +99,8 @@ struct EightPrices {
     compliance: [Eight; STIFFNESSES],
     /// Amount by which each unit of a stiffness lowers the weighted sum of the rows at each dual point.
     stiffness: [Eight; STIFFNESSES],
-    /// For each judged case (a case that counts for deflection and lowest mode): the price of a joint per unit of
-    /// twist, its price per unit of torque, and the amount by which each unit of slope lowers the weighted sum.
+    /// Three numbers for each judged case, which counts for deflection and lowest mode: the price of a joint per unit
+    /// of twist, its price per unit of torque, and the amount by which each unit of slope lowers the weighted sum.
     joint: Vec<[Eight; 3]>,
 }
 
@@ -129,7 +129,7 @@ impl EightPrices {
     }
 }
 
-/// Computes whether every drive of a box is excluded: whether, at some dual point (set of multipliers), the least
+/// Computes whether every drive of a box is excluded. This is so if, at some dual point (set of multipliers), the least
 /// price of a drive in the box is above the allowed price. A price that is not a number excludes nothing.
 struct DrivesCost<'a> {
     drives: &'a DriveBox,
@@ -174,8 +174,8 @@ impl LaneWork for DrivesCost<'_> {
     }
 }
 
-/// Computes whether every tube of a box is excluded: whether, at some dual point (set of multipliers), the least price
-/// of a tube in the box is above the allowed price. A price that is not a number excludes nothing.
+/// Computes whether every tube of a box is excluded. This is so if, at some dual point (set of multipliers), the least
+/// price of a tube in the box is above the allowed price. A price that is not a number excludes nothing.
 struct LinksCost<'a> {
     links: &'a LinkBox,
     prices: &'a [EightPrices],

@@ -15,9 +15,9 @@
 //! | stretch | 3 | `(2i+1)/(E A L)` | displacement `L ∫P_i` |
 //!
 //! A sum of these shapes can represent the exact deflection under an end force, an end moment and a uniform load (Eqs
-//! 1-4 of docs/model.md and their Timoshenko counterparts), so statics are exact. Natural frequencies converge from
-//! above. The inertia matrix does not depend on the stiffness, so frequencies rise with every stiffness and fall with
-//! every mass. The exact search relies on this.
+//! 1-4 of docs/model.md and their Timoshenko counterparts). Statics are therefore exact. Natural frequencies converge
+//! from above. The inertia matrix does not depend on the stiffness, so frequencies rise with every stiffness and fall
+//! with every mass. The exact search relies on this.
 
 use super::{Wrench, body_inertia, force_wrench, stack};
 use crate::arm::LinkModel;

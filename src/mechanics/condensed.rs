@@ -14,10 +14,10 @@
 //!
 //! over the motion of the root and `g`.
 //!
-//! *Validity.* The neglected term is of the order `(λ/λ_inner)³`, where `λ_inner` is the lowest eigenvalue of the
-//! inner shapes. It is at most 1e-6 of the link's inertia if `λ_inner` is a hundred times `λ`, which means that the
-//! inner modes have ten times the frequency of the arm's lowest mode. The search uses this form. Every number that it
-//! reports is computed by the full model.
+//! *Validity.* The neglected term is of the order `(λ/λ_inner)³`, where `λ_inner` is the lowest eigenvalue of the inner
+//! shapes. It is at most 1e-6 of the link's inertia if `λ_inner` is a hundred times `λ`. The inner modes then have ten
+//! times the frequency of the arm's lowest mode. The search uses this form. Every number that it reports is computed by
+//! the full model.
 
 use super::beam::PreparedBeam;
 use nalgebra::{DMatrix, Matrix3, Matrix6, SMatrix, Vector3, Vector6};

@@ -247,8 +247,8 @@ impl RowBearing {
 }
 
 impl Source {
-    /// The five components of this load in eight designs. The term `begun` comes from the arm outboard of the row; the
-    /// terms of the row's link and of the inner drives, which have the masses `masses_kg`, are added to it.
+    /// The five components of this load in eight designs. The term `begun` comes from the arm outboard of the row. The
+    /// terms of the row's link and of the inner drives are added to it. The masses of the inner drives are `masses_kg`.
     #[inline(always)]
     fn load<V: Lanes>(&self, chunk: usize, begun: &Components, masses_kg: &[Eight]) -> [V; 5] {
         let mut out = [V::zero(); 5];

@@ -134,7 +134,7 @@ impl<'a, 'c> Question<'a, 'c> {
 
     /// The arms in which a single joint is so compliant that the lowest eigenvalue must be below the bar `below`
     /// \[1/s²\]. The reason: the reciprocal of the lowest eigenvalue is the largest eigenvalue of flexibility times
-    /// mass (in its symmetric form), and no diagonal entry of a symmetric matrix exceeds its largest eigenvalue.
+    /// mass (in its symmetric form). No diagonal entry of a symmetric matrix exceeds its largest eigenvalue.
     #[inline(always)]
     fn sluggish<V: Lanes>(&self, below: V) -> u8 {
         V::splat(1.0).less(V::load(&self.arms.largest_s2) * below)

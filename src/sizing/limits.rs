@@ -256,9 +256,9 @@ fn gear_stop_nm(gear: &Gear) -> Rating {
 }
 
 /// Largest torque at the joint in an emergency stop that an actuator can brake \[N m\]: T_peak - s J_out α. T_peak is
-/// the peak torque of the actuator, s is the factor of the stop (emergency deceleration over the acceleration α of a
-/// ramp), and J_out is the inertia of the rotor at the output, which the motor must brake too. Infinite for other
-/// drives, whose rotor does not load the gear.
+/// the peak torque of the actuator. The factor s of the stop is the emergency deceleration over the acceleration α of a
+/// ramp. J_out is the inertia of the rotor at the output, which the motor must brake too. Infinite for other drives,
+/// whose rotor does not load the gear.
 pub(super) fn actuator_stop_nm(drive: &Drive, motion: &JointMotion) -> Rating {
     if drive.gear.kind != GearKind::Actuator {
         return Ok(f64::INFINITY);

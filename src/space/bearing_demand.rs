@@ -108,9 +108,9 @@ impl ArmProblem<'_> {
         }
     }
 
-    /// Stores in the state of each sizing case (in which drives and stresses are checked) the wrench with which the
-    /// joint in `slot` loads the bearings inboard of it while it accelerates. The function is called just before the
-    /// joint is added to the arm, when the state has everything outboard of the joint.
+    /// Stores the wrench with which the joint in `slot` loads the bearings inboard of it while it accelerates. The
+    /// wrench is stored in the state of each sizing case, in which drives and stresses are checked. The function is
+    /// called just before the joint is added to the arm, when the state has everything outboard of the joint.
     pub(crate) fn keep_ramp(&self, slot: usize, states: &mut [StationState]) {
         let loads = self.bearing_loads();
         let Some(k) = loads.movers.iter().position(|mover| mover.slot == slot).filter(|_| loads.any()) else {

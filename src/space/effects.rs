@@ -201,8 +201,8 @@ impl DesignSpace {
     ///
     /// All three springs of a joint (the torsion of its drive and two tilts of its bearing) turn about the same point,
     /// so their order does not change the mechanics. If the bearing of a joint is stated, its springs are added before
-    /// the torsion of the joint, because they can then be computed once and not once for each drive. If the bearing
-    /// comes with the gear, its springs are added after the gear is chosen.
+    /// the torsion of the joint. They are then computed once and not once for each drive. If the bearing comes with the
+    /// gear, its springs are added after the gear is chosen.
     pub(crate) fn layers(&self) -> Vec<(usize, Layer<'_>)> {
         let mut out = Vec::with_capacity(self.pieces.len());
         for (index, piece) in self.pieces.iter().enumerate().rev() {

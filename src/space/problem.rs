@@ -222,9 +222,9 @@ impl<'c> ArmProblem<'c> {
         Ok(partial)
     }
 
-    /// The arm with these `options`, one for each slot. For a sized joint the option is the index of its drive, and
-    /// this drive is taken even where first fit (the lightest drive that meets the
-    /// demand) would take another drive. `None` if the arm breaks a limit.
+    /// The arm with these `options`, one for each slot. For a sized joint the option is the index of its drive. This
+    /// drive is taken even where first fit (the lightest drive that meets the demand) would take another drive. `None`
+    /// if the arm breaks a limit.
     pub(crate) fn assemble(&self, options: &[u32]) -> Option<Partial> {
         let mut partial = self.empty();
         let mut adds = |(slot, &option): (usize, &u32)| match &self.slots[slot] {

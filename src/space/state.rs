@@ -1,10 +1,10 @@
 //! The state of a partial arm in one case, and how every slot (piece of the arm) that is added inboard changes it.
 //!
 //! The torque on a driving joint includes the torques of its passive joints. A radian of the driving joint turns each
-//! passive joint by its factor `f`. By virtual work the torque on the driving joint is therefore `t_d·w + Σ f t_p·w_p`,
-//! with the twists (kinematic vectors) `t` and the outboard wrenches `w` of the driving joint (d) and of the passive
-//! joints (p). The inertia about the driving joint is found in the same way, with the motion `t_d + Σ f t_p` of
-//! everything outboard of all these joints.
+//! passive joint by its factor `f`. By virtual work the torque on the driving joint is therefore `t_d·w + Σ f t_p·w_p`.
+//! Here `t` are twists (velocities and angular velocities per unit of a joint's rotation) and `w` are outboard wrenches
+//! (forces and moments), of the driving joint (d) and of the passive joints (p). The inertia about the driving joint is
+//! found in the same way, with the motion `t_d + Σ f t_p` of everything outboard of all these joints.
 
 use super::station::{StationJoint, StationLink, Turned};
 use crate::arm::joint_law::JointLaw;

@@ -34,8 +34,8 @@ pub(super) struct BearingLoad {
     pub axial_n: f64,
 }
 
-/// The largest loads that a study puts on the bearing of one joint over the sizing cases (in which drives and stresses
-/// are checked): at rest, while a joint ramps, and while a joint makes an emergency stop.
+/// The largest loads on the bearing of one joint: at rest, while a joint ramps, and while a joint makes an emergency
+/// stop. They are the largest over the sizing cases, in which drives and stresses are checked.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct BearingDemand {
     pub at_rest: BearingLoad,

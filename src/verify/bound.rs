@@ -37,8 +37,8 @@ pub(super) struct Members<'w> {
 pub(super) struct IdealPoint {
     pub mass_kg: f64,
     pub tip_m: f64,
-    /// Index among the poses of the judged case (a case that counts for deflection and lowest mode) that bounds the
-    /// deflection, and the direction of the tip's displacement in this case.
+    /// Index, among the poses, of the judged case that bounds the deflection, and the direction of the tip's
+    /// displacement in this case. A judged case counts for deflection and lowest mode.
     pub worst: usize,
     pub direction: Vector3<f64>,
 }

@@ -147,8 +147,8 @@ impl Duty {
 
 /// Largest speed of a joint \[rad/s\]. It is the maximum that the study states for the joint, or else the speed of the
 /// tip divided by the lever `reach_m`. The lever is taken as at least `min_lever_m`, because a short lever would give a
-/// roll joint an absurd speed. If the study states a duty of the joint in numbers, the speed of the tip is not used,
-/// and the result is at least the largest speed of this duty.
+/// roll joint an absurd speed. If the study states a duty of the joint in numbers, the speed of the tip is not used.
+/// The result is then at least the largest speed of this duty.
 fn speed_rad_s(motion: &AskedMotion, reach_m: f64, joint: &AskedJoint) -> f64 {
     let fastest_rpm = joint.duty.iter().map(|phase| phase.speed_rpm).fold(0.0, f64::max);
     match (joint.max_speed_rad_s, joint.duty.is_empty()) {

@@ -8,8 +8,8 @@
 //! When no weights refute the subproblem, a mixture (a weighted mean) of the designs that are cheapest under some
 //! weights satisfies all rows, although no single design need do so. The search branches where this mixture differs
 //! most from a design. This may be a level whose mixed options differ in what they add to the rows. It may also be the
-//! torque on a joint, if the gears of the mixture twist less, or are stiffer, than they would under the torque that the
-//! mixture's own weights cause.
+//! torque on a joint: the gears of the mixture may twist less, or be stiffer, than under the torque that the mixture's
+//! own weights cause.
 
 use super::super::bound::{Members, compliances};
 use super::super::pose::Pose;
