@@ -96,7 +96,7 @@ pub(super) enum PosedPiece {
 /// A tube in a pose.
 pub(super) struct PosedTube {
     pub length_m: f64,
-    /// Place of the inboard end.
+    /// Position of the inboard end \[m\].
     pub root_m: Vector3<f64>,
     /// Axes of the section frame as columns, x along the tube.
     pub frame: Matrix3<f64>,

@@ -26,7 +26,7 @@ pub(crate) struct Archive {
     /// Number of leading mantissa bits that determine the cell of a number.
     bits: u32,
     columns: usize,
-    /// Best frequency of each cell, as the bits of an `f32`: positive floats are ordered like their bits.
+    /// Best frequency of each cell \[Hz\], as the bits of an `f32`. Positive floats are ordered like their bits.
     best_hz: Vec<AtomicU32>,
 }
 
