@@ -1,8 +1,8 @@
 //! Bodies: rigid parts on a link or a joint, with mass, centre of gravity and inertia as CAD programs give them.
 //!
-//! The centre of gravity is measured from the start of the element, and the inertia is taken about it. Both are
-//! written in the carried frame, as the vector of a link is. The mass of bodies is added to everything else that an
-//! element weighs.
+//! The centre of gravity is measured from the start of the element, and the inertia is taken about it. Both are written
+//! in the carried frame, which turns with the joints inboard. The vector of a link is written in it too. The mass of
+//! bodies is added to everything else that an element weighs.
 
 use super::keys::{JOINT_BODY, LINK_BODY};
 use super::prismatic_keys::PRISMATIC_BODY;

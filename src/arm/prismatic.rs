@@ -22,7 +22,7 @@ use serde_json::{Map, Value, json};
 pub struct Prismatic {
     /// Name, unique in the arm.
     pub name: String,
-    /// Direction of the travel in the carried frame.
+    /// Direction of the travel in the carried frame, which turns with the joints inboard.
     pub axis: Unit<Vector3<f64>>,
     /// Stiffness of the drive along the travel \[N/m\]; `None` means rigid.
     pub stiffness_n_per_m: Option<f64>,

@@ -79,7 +79,7 @@ impl Piece {
 pub struct JointPiece {
     /// Name of the joint.
     pub name: String,
-    /// Axis in the carried frame.
+    /// Axis in the carried frame, which turns with the joints inboard.
     pub axis: Unit<Vector3<f64>>,
     /// Angle of torsion about the axis as a function of torque.
     pub law: JointLaw,

@@ -63,7 +63,7 @@ pub enum AskedPiece {
 pub struct AskedJoint {
     /// Name of the joint.
     pub name: String,
-    /// Axis of the joint in the carried frame.
+    /// Axis of the joint in the carried frame, which turns with the joints inboard.
     pub axis: Unit<Vector3<f64>>,
     /// Where the output bearing of the joint comes from.
     pub bearing: BearingSource,
