@@ -1,8 +1,8 @@
 //! Bodies: rigid parts on a link or a joint, with mass, centre of gravity and inertia as CAD programs give them.
 //!
-//! The centre of gravity is measured from the start of the element, and the inertia is taken about it. Both are
-//! written in the carried frame, as the vector of a link is. The mass of bodies is added to everything else that an
-//! element weighs.
+//! The centre of gravity is measured from the start of the element, and the inertia is taken about it. Both are written
+//! in the carried frame, which turns with the joints inboard. The vector of a link is written in it too. The mass of
+//! bodies is added to everything else that an element weighs.
 
 use super::keys::{JOINT_BODY, LINK_BODY};
 use super::prismatic_keys::PRISMATIC_BODY;
@@ -65,7 +65,7 @@ impl JointBodies {
         total_kg(&self.fixed) + total_kg(&self.rotating)
     }
 
-    /// All bodies of the joint: first those inboard of the springs, then those outboard.
+    /// All bodies of the joint: first the bodies inboard of the springs, then the bodies outboard of them.
     pub fn iter(&self) -> impl Iterator<Item = &RigidBody> {
         self.fixed.iter().chain(&self.rotating)
     }
@@ -109,8 +109,8 @@ pub(crate) fn read_prismatic_bodies(object: &Object) -> Option<JointBodies> {
     read_bodies_that(object, &PRISMATIC_BODY, "travels")
 }
 
-/// Reads the key `bodies` of a joint, whose keys are those of `shape`. Bodies in which the key named by `moves` is true
-/// are outboard of the springs. Returns `None` after recording a fault.
+/// Reads the key `bodies` of a joint. The keys of each body are the keys of `shape`. Bodies in which the key named by
+/// `moves` is true are outboard of the springs. Returns `None` after recording a fault.
 fn read_bodies_that(object: &Object, shape: &Shape, moves: &str) -> Option<JointBodies> {
     let mut out = JointBodies::default();
     for (body, is_outboard) in read(object, shape, moves)? {

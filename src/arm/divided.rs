@@ -1,10 +1,10 @@
 //! Structures whose links are divided at the bodies on them.
 //!
-//! The strains of a link are smooth along its length (see [`crate::mechanics::beam`]). A body beside the axis of a link
-//! twists the link inboard of it and not outboard of it, so the twist rate has a step at the body. Smooth strains hold
-//! a part of such a step only: the deflection of the tip is exact, but the frequency of a mode in which the body swings
-//! about the link comes out too high, by up to 6 %. Where the link is divided at the body, the step lies between two
-//! links, and the frequency is right.
+//! The strains of a link are smooth along its length (see [`crate::mechanics::beam`]). A body off the axis of a link
+//! twists the link inboard of it and not outboard of it, so the twist rate has a step at the body. Smooth strains
+//! reproduce only a part of such a step. The deflection of the tip is exact all the same. But the frequency of a mode
+//! in which the body swings about the link comes out too high, by up to 6 %. Where the link is divided at the body, the
+//! step lies between two links, and the frequency is right.
 
 use super::body::RigidBody;
 use super::springs::{SpringEnd, SpringKind, SpringPlace};
@@ -47,7 +47,8 @@ impl Structure {
     }
 }
 
-/// Where a point beside a link is along it, from 0 at its root to 1 at its end; 0 for a link without length.
+/// Position of the foot of the perpendicular from a point to the line of a link: 0 at the root of the link, 1 at its
+/// end. It is 0 for a link without length.
 fn along(link: &LinkPiece, point_m: &Vector3<f64>) -> f64 {
     let length2_m2 = link.vector_m.norm_squared();
     if length2_m2 > 0.0 { link.vector_m.dot(point_m) / length2_m2 } else { 0.0 }

@@ -55,7 +55,7 @@ fn joint_of(element: &Element) -> Option<(&str, Motion)> {
 }
 
 /// The joint among `joints` whose output bearing or guide has the name `name` in every result: `NAME.bearing` of a
-/// joint that turns, `NAME.guide` of a prismatic joint. `None` if it is no such name.
+/// joint that turns, `NAME.guide` of a prismatic joint. `None` if `name` is not the name of a bearing or a guide.
 pub(crate) fn part_of<'n>(
     name: &str,
     mut joints: impl Iterator<Item = (&'n str, Motion)>,

@@ -2,11 +2,12 @@
 //!
 //! The catalog row of a gear is a component set or a housed gear, and the row of a frameless motor is a rotor and a
 //! stator. The remaining parts of a joint have no catalog row. [`Extras::usual`] estimates them from published
-//! fractions of the mass of a joint (eyoubot, "Lightweight harmonic drive robot actuator": motor 30 to 40 %, reducer
-//! 25 to 35 %, housing 15 to 25 %, brake 5 to 15 %, encoders 3 to 5 %). The middle of each range is divided by the 65
-//! % of motor and reducer. The estimated mass of the brake (0.10, 0.15 and 0.28 kg for the sizes 20, 25 and 32) agrees
-//! with the difference between Harmonic Drive's SHA actuators of these sizes with and without a brake. The flange is a
-//! disc of aluminium. Flange and cables are representative masses without a source.
+//! fractions of the mass of a joint: motor 30 to 40 %, reducer 25 to 35 %, housing 15 to 25 %, brake 5 to 15 %,
+//! encoders 3 to 5 % (eyoubot, "Lightweight harmonic drive robot actuator"). The middle of each range is divided by 65
+//! %, which is the sum of the middles for motor (35 %) and reducer (30 %). The estimated mass of the brake (0.10, 0.15
+//! and 0.28 kg for the sizes 20, 25 and 32) agrees with the difference between Harmonic Drive's SHA actuators of these
+//! sizes with and without a brake. The flange is a disc of aluminium. Flange and cables are representative masses
+//! without a source.
 
 use super::keys::EXTRAS;
 use crate::catalog::gear::{Gear, GearKind, GearMass};
@@ -109,7 +110,7 @@ impl Extras {
         .rounded()
     }
 
-    /// These masses rounded to the gram, so that the masses that are printed are those that are computed with.
+    /// These masses rounded to the gram, so that calculations use exactly the masses that are printed.
     fn rounded(self) -> Self {
         let gram = |kg: f64| (kg * 1e3).round() / 1e3;
         Self {

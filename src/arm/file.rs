@@ -350,9 +350,9 @@ pub(crate) fn read_joint_mass(object: &Object, catalogs: &Catalogs) -> Option<f6
     Some(gear + motor)
 }
 
-/// Mass of the parts that sit at a motor away from its joint \[kg\]: the key `motor_mass_kg` if it is given, else from
-/// the catalog the motor, plus the gear if the gear sits at the motor. It is zero if the motor sits at its joint.
-/// Returns `None` after recording a fault.
+/// Mass of the parts that sit at a motor away from its joint \[kg\]. It is the value of the key `motor_mass_kg`.
+/// Without this key it is the catalog's mass of the motor, plus the mass of the gear if the gear sits at the motor. It
+/// is zero if the motor sits at its joint. Returns `None` after recording a fault.
 pub(crate) fn motor_side_kg(object: &Object, catalogs: &Catalogs) -> Option<f64> {
     if !object.has("motor_at") {
         return Some(0.0);

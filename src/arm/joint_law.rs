@@ -72,9 +72,9 @@ impl Windup {
         }
     }
 
-    /// Whether the tangent stiffness of this curve is at least that of `other` at every torque up to `most_nm` \[N m\].
-    /// Both stiffnesses change only at break points, so they are compared at zero torque and just above each break
-    /// point.
+    /// Whether the tangent stiffness of this curve is at least the tangent stiffness of `other` at every torque up to
+    /// `most_nm` \[N m\]. Both stiffnesses change only at break points, so they are compared at zero torque and just
+    /// above each break point.
     pub fn never_softer(&self, other: &Self, most_nm: f64) -> bool {
         let starts = [0.0, self.t1_nm, self.t2_nm, other.t1_nm, other.t2_nm];
         starts.into_iter().all(|t| t > most_nm || self.slope_beyond(t) >= other.slope_beyond(t))
@@ -214,7 +214,7 @@ impl Curve {
         }
     }
 
-    /// The curve that the joint model `model` uses in place of this one.
+    /// The curve that the joint model `model` uses in place of this curve.
     pub fn reduced(&self, model: JointModel) -> Curve {
         match model {
             JointModel::K2 => self.middle_slope(),

@@ -1,4 +1,4 @@
-//! Joint torques: a torque on a joint in addition to weight and load, such as that of a counterbalance.
+//! Joint torques: a torque on a joint in addition to weight and load, such as the torque of a counterbalance.
 
 /// A torque on a joint as a function of its angle q: `offset + sin_nm sin q + cos_nm cos q`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -345,8 +345,8 @@ pub(crate) const COUNTERWEIGHTS: Kind = Kind::List(&Kind::Object(&COUNTERWEIGHT)
 /// A list of counterweights of a study.
 pub(crate) const OPEN_COUNTERWEIGHTS: Kind = Kind::List(&Kind::Object(&OPEN_COUNTERWEIGHT));
 
-/// The kinds of the numbers of springs and counterweights: any number, a number that is not negative, and a positive
-/// one.
+/// The kinds of the numbers of springs and counterweights: any number, a number that is not negative, and a
+/// positive number.
 struct BalanceNumbers {
     any: Kind,
     non_negative: Kind,

@@ -1,8 +1,8 @@
-//! Linkages: which joints turn another joint, beyond what its own drive does, and how far.
+//! Linkages: which joints turn another joint in addition to its own drive, and how far.
 //!
 //! In a linkage, driving joints turn a passive joint. A driven joint is turned by other joints if its motor sits
 //! inboard of them: while the motor stands still, they turn the driven joint through its stages
-//! ([`transmission`](super::transmission)). A joint may turn with a second one that turns with a third. The factors
+//! ([`transmission`](super::transmission)). A joint may turn with a second joint, which turns with a third. The factors
 //! along each such path from one joint to another are multiplied, and the products of all paths are added.
 
 use super::structure::{JointAngle, JointPiece, Structure};

@@ -69,9 +69,9 @@ use nalgebra::{Unit, Vector3};
 /// Which deformations of links a calculation takes into account.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum LinkModel {
-    /// None: links are rigid. Tubes keep their full mass and inertia.
+    /// No deformation: links are rigid. Tubes keep their full mass and inertia.
     Rigid,
-    /// Euler-Bernoulli bending in both planes only (Eqs 1-6).
+    /// Euler-Bernoulli bending in both planes only (Eqs 1-6 of docs/model.md).
     Bending,
     /// Bending, shear, torsion, axial stretch and rotary inertia.
     #[default]

@@ -18,7 +18,8 @@ use nalgebra::Vector3;
 /// Number of links into which a taper is divided.
 const SLICES_OF_TAPER: usize = 12;
 
-/// Number of elements of the arm that one item of the chain in the file becomes. A link with pieces becomes several.
+/// Number of elements of the arm that one item of the chain in the file becomes. A link with pieces becomes
+/// several elements.
 pub(crate) fn elements_of(item: &Node) -> usize {
     match item.value().get("pieces").and_then(|pieces| pieces.as_array()) {
         Some(pieces) => pieces.iter().map(|piece| slices(piece.get("end_section").is_some())).sum(),
@@ -87,7 +88,8 @@ pub(crate) fn factors_sentence<'a>(tubes: impl Iterator<Item = (&'a str, &'a str
     })
 }
 
-/// Reads a link: a single one, or one for each slice of its pieces. Returns `None` after recording a fault.
+/// Reads a link of the file. The result is one link, or one link for each slice of its pieces. Returns `None` after
+/// recording a fault.
 pub(crate) fn read_links(
     object: &Object,
     materials: &[NamedMaterial],

@@ -1,10 +1,10 @@
 //! Prismatic joints: a carriage on a rail, a column, a ram, a screw.
 //!
-//! The joint slides along its axis. Its *drive* (a screw or a rack with its supports) is a spring along the travel.
-//! Its *guide* is three rotational springs: roll about the travel, pitch about the y axis and yaw about the z axis of
-//! a section frame whose x axis is the travel. Forces across the travel do not deflect the guide: the deflection of a
-//! pair of runner blocks under such forces is small compared with the deflection that their tilt causes at the end of
-//! an overhang.
+//! The joint slides along its axis. Its *drive* (a screw or a rack with its supports) is a spring along the travel. Its
+//! *guide* is three rotational springs: roll about the travel, pitch about the y axis and yaw about the z axis of a
+//! section frame whose x axis is the travel. Forces across the travel do not deflect the guide. The deflection of a
+//! pair of runner blocks (the bearings that run on the rail) under such forces is small. The tilt of the blocks causes
+//! a much larger deflection at the end of an overhang.
 //!
 //! The position of the springs depends on what moves. The blocks of a `carriage` travel with it, so the overhang
 //! outboard of them is the same at every travel. The blocks of a `ram` stay where the joint begins, so the overhang
@@ -22,7 +22,7 @@ use serde_json::{Map, Value, json};
 pub struct Prismatic {
     /// Name, unique in the arm.
     pub name: String,
-    /// Direction of the travel in the carried frame.
+    /// Direction of the travel in the carried frame, which turns with the joints inboard.
     pub axis: Unit<Vector3<f64>>,
     /// Stiffness of the drive along the travel \[N/m\]; `None` means rigid.
     pub stiffness_n_per_m: Option<f64>,
@@ -106,8 +106,8 @@ pub struct Guide {
     pub limits: GuideLimits,
 }
 
-/// The largest loads that a guide holds, each acting alone: the ratings of the maker over the safety factor that it
-/// asks for. `None` means unknown.
+/// The largest loads that a guide holds, each acting alone. They are the ratings of the maker divided by the safety
+/// factor for which the maker asks. `None` means unknown.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GuideLimits {
     /// Force across the travel, along the y or the z axis of the guide \[N\].
@@ -347,7 +347,7 @@ pub struct PrismaticPiece {
     pub mass_kg: f64,
     /// Mass that stays \[kg\].
     pub fixed_mass_kg: f64,
-    /// Rigid bodies on the joint: those that stay and those that travel.
+    /// Rigid bodies on the joint. Some stay, others travel.
     pub bodies: JointBodies,
     /// Index of the joint's travel in a pose.
     pub entry: usize,

@@ -2,9 +2,9 @@
 //!
 //! | symbol | formula | source |
 //! |---|---|---|
-//! | `I` rectangular | `(b h³ - (b-2t)(h-2t)³)/12` | Eq 5 |
-//! | `A` rectangular | `b h - (b-2t)(h-2t)` | Eq 6 |
-//! | `J` rectangular | Bredt for thin walls; thick ones and bars after Saint-Venant | `torsion.rs` |
+//! | `I` rectangular | `(b h³ - (b-2t)(h-2t)³)/12` | Eq 5 of docs/model.md |
+//! | `A` rectangular | `b h - (b-2t)(h-2t)` | Eq 6 of docs/model.md |
+//! | `J` rectangular | Bredt for thin walls; thick walls and bars after Saint-Venant | `torsion.rs` |
 //! | `J` round | `2 I` | exact for a circular tube |
 //! | shear factor, rectangular | `20(1+nu)/(48+39nu)` | Cowper 1966, thin square tube |
 //! | shear factor, round | `2(1+nu)/(4+3nu)` | Cowper 1966, thin round tube |
@@ -121,7 +121,7 @@ const STATED_PA: f64 = 1e15;
 
 impl StatedSection {
     /// The fictitious material with which the section has its stated stiffnesses and mass. Its density is 1 kg/m³.
-    /// Shear stiffness is not among the stated ones, so it is taken as practically infinite.
+    /// Shear stiffness is not stated, so it is taken as practically infinite.
     pub fn material(&self) -> LinkMaterial {
         // Modulus and density also determine the rotary inertia per length about the axis, ρ (Iy + Iz) = m' (EIy + EIz)
         // / EA, where m' is the mass per length. For a mass that is spread evenly over the rectangle b h it is m' (b² +

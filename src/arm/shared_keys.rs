@@ -66,7 +66,7 @@ pub(crate) const OUTPUT_BEARING: Key = optional(
 pub(crate) const BODIES_OF_JOINT: Key =
     optional("bodies", JOINT_BODIES, "-", "[]", "Rigid parts with centre and inertia.");
 
-/// How the joints of a linkage turn a passive one.
+/// How the driving joints of a linkage turn its passive joint.
 pub(crate) const COUPLED: Key = optional(
     "coupled",
     COUPLING,

@@ -2,8 +2,8 @@
 //!
 //! A spring between two points at a distance `L` pulls them together with `F = F₀ + k (L - L₀)`. A negative force
 //! pushes them apart, as a gas spring does. A torsion spring turns a joint back by the torque `k (q - q₀)`. Both are
-//! computed in the undeflected pose: the change of a spring's force by the deflection of the arm is neglected, and so
-//! is the stiffness that a spring adds in vibrations.
+//! computed in the undeflected pose. The change of a spring's force by the deflection of the arm is neglected. The
+//! stiffness that a spring adds in vibrations is neglected too.
 
 use nalgebra::{Rotation3, Vector3};
 use serde_json::{Value, json};
@@ -55,7 +55,7 @@ pub enum SpringPlace {
     World,
     /// The body that carries the first element of the arm. It is outboard of any compliance of the base.
     Base,
-    /// An element of the chain by its index, base to tip. Of a joint, it is the side that turns.
+    /// An element of the chain by its index, base to tip. For a joint, it is the side that turns.
     Element(usize),
 }
 

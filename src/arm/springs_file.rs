@@ -159,7 +159,8 @@ fn names(elements: &[Named]) -> String {
 }
 
 /// Reads the key `counterweights`; an empty list without the key. Each counterweight is a point mass, returned with the
-/// index of the element that carries it. Of a joint, it is the side that turns. Returns `None` after recording a fault.
+/// index of the element that carries it. For a joint, it is the side that turns. Returns `None` after recording a
+/// fault.
 pub(crate) fn read_counterweights(
     object: &Object,
     elements: &[Named],

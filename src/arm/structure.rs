@@ -79,7 +79,7 @@ impl Piece {
 pub struct JointPiece {
     /// Name of the joint.
     pub name: String,
-    /// Axis in the carried frame.
+    /// Axis in the carried frame, which turns with the joints inboard.
     pub axis: Unit<Vector3<f64>>,
     /// Angle of torsion about the axis as a function of torque.
     pub law: JointLaw,
@@ -88,9 +88,9 @@ pub struct JointPiece {
     /// Tilting compliance about both axes perpendicular to the joint's axis \[rad/(N m)\]: the nominal bearing, in
     /// series with what effects add.
     pub tilt_rad_per_nm: f64,
-    /// Further tilting compliance about each of two axes perpendicular to the joint's axis, which stand still in the
-    /// housing \[rad/(N m)\]: the first is the cross product of the joint's axis and the coordinate axis that is least
-    /// parallel to it, the second that of the joint's axis and the first.
+    /// Further tilting compliance about each of two axes \[rad/(N m)\]. Both axes are perpendicular to the joint's axis
+    /// and stand still in the housing. The first axis is the cross product of the joint's axis and the coordinate axis
+    /// that is least parallel to it. The second axis is the cross product of the joint's axis and the first axis.
     pub lean_rad_per_nm: [f64; 2],
     /// Point mass on the axis, inboard of the springs \[kg\].
     pub mass_kg: f64,

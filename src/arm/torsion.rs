@@ -42,8 +42,8 @@ pub(super) fn tube(b: f64, h: f64, t: f64) -> Torsion {
     let (bar, bar_shear_m) = (bar_constant(b, h), bar_shear_m(b, h));
     let scale = (bar - bredt(b, h, closed)) / open(b, h, closed);
     let constant_m4 = thin.constant_m4 + share * scale * open(b, h, t);
-    // at the outside of the wall the shear stress is Bredt's plus that of the open section, which is proportional to
-    // the wall
+    // at the outside of the wall the shear stress is Bredt's stress plus the stress of the open section; the latter is
+    // proportional to the wall thickness
     let bend = (bar_shear_m - bredt_shear_m(b, h, closed)) / closed;
     let shear_m = bredt_shear_m(b, h, t) + share * bend * t;
     Torsion { constant_m4, shear_per_m3: shear_m / constant_m4 }
@@ -136,7 +136,7 @@ mod tests {
     }
 
     /// Compares with Prandtl's stress function by finite differences: within 8 % for thick walls, and within the
-    /// known error of Bredt's formula for thin ones.
+    /// known error of Bredt's formula for thin walls.
     #[test]
     fn thick_walls_are_within_8_percent_of_saint_venant() {
         for aspect in [1, 2, 4] {

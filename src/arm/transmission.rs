@@ -9,8 +9,9 @@
 //! each of these joints. While the motor stands still, it keeps the pulley still and the link turns under it. Seen from
 //! the link, the pulley turns back by the angle of the joint. The driven joint turns by this angle over the product R
 //! of the ratios from this pulley on: `q = e - Σ qᵢ / Rᵢ`, with the twist `e` of gear and stages. By virtual work the
-//! torque on the drive of joint i is then that of joint i and `-1/Rᵢ` times that of the driven joint. The part on which
-//! the motor sits takes the rest. Motion and torque both enter the mechanics as a [`Linkage`](super::linkage::Linkage).
+//! torque on the drive of joint i is the torque on joint i plus `-1/Rᵢ` times the torque on the driven joint. The part
+//! on which the motor sits takes the rest. Motion and torque both enter the mechanics as a
+//! [`Linkage`](super::linkage::Linkage).
 //!
 //! *Masses.* The motor, with the gear if it sits at the motor, is a point mass on the part on which the motor sits. A
 //! stage between two axes has half of its mass on each. If several stages sit at the motor, the last of them has half
@@ -143,7 +144,7 @@ pub(crate) struct Transmission {
     /// Name of the part that carries the motor, or `base`; `None` if the motor sits at the joint.
     motor_at: Option<String>,
     motor_point_m: Vector3<f64>,
-    /// Mass \[kg\] of the motor, with the gear if it sits at the motor, at the place where the motor is mounted; 0 if
+    /// Mass at the place where the motor is mounted \[kg\]: the motor, and the gear if it sits at the motor. It is 0 if
     /// the search chooses the drive, because its motor is not yet known.
     motor_kg: f64,
     /// Whether the gear sits at the motor, before the stages.
@@ -293,8 +294,8 @@ pub(crate) struct Seen {
 /// How an element of a chain moves, as far as a transmission needs to know.
 #[derive(Debug, Clone)]
 pub(crate) enum SeenMotion {
-    /// A joint that turns. The vector is its axis in the frame with all joint angles zero. The names are those of the
-    /// drivers of a passive joint; a driven joint has none.
+    /// A joint that turns. The vector is its axis in the frame with all joint angles zero. The names
+    /// belong to the joints that turn a passive joint; the list is empty for a joint with a drive.
     Turns(Vector3<f64>, Vec<String>),
     /// A prismatic joint.
     Slides,

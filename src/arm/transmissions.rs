@@ -1,4 +1,4 @@
-//! Places all transmissions of a chain, of arm files and of studies, and finds every fault of them.
+//! Places all transmissions of a chain, and finds all faults in them. Arm files and studies both use this module.
 
 use super::Element;
 use super::transmission::Carrier;

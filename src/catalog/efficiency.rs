@@ -1,9 +1,9 @@
 //! Efficiency of gears away from the rated point, for gears whose curves are in the catalog.
 //!
-//! There are two kinds of curve. For single gears, it is the efficiency at rated torque against the input speed.
-//! For whole series, it is the factor `K_e` on that efficiency against the ratio of torque to rated torque. Both
-//! hold for grease lubrication at about 20 °C. The efficiency of a sealed housed unit is a few percentage points
-//! lower.
+//! There are two kinds of curve. For a single gear, the curve is the efficiency at rated torque against the input
+//! speed. For a whole series, it is a factor `K_e` on the efficiency at rated torque, against the ratio of torque to
+//! rated torque. Both hold for grease lubrication at about 20 °C. The efficiency of a sealed housed unit is a few
+//! percentage points lower.
 
 use super::gear::{Gear, GearKind};
 use super::{Catalogs, Provenance};
@@ -58,7 +58,8 @@ pub struct EfficiencyPoint {
 
 impl EfficiencyPoint {
     /// Whether the point belongs to a curve of this gear. A series may be printed with the ending `-2A` of the
-    /// component set, or as several series. `also_sold_as` has other names of the gear's series.
+    /// component set. Several series may be printed together, as in `CSF/CSG`. `also_sold_as` has other names of the
+    /// gear's series.
     fn is_of(&self, gear: &Gear, also_sold_as: &[&str]) -> bool {
         let named = |name: &str| name == gear.series || also_sold_as.contains(&name);
         let series = self.series.trim_end_matches("-2A").split('/').any(named);
@@ -88,11 +89,12 @@ impl Catalogs {
 
     /// Efficiency of a gear at an input speed \[rpm\] and a fraction of its rated torque. It is computed from
     /// curves of similar gears, so it is representative and not a rating of the vendor. `None` without a rated
-    /// efficiency, and for gears that are no strain-wave gears.
+    /// efficiency, and for every gear that is not a strain-wave gear.
     ///
-    /// The curve against speed is the gear's own, or else that of HFUC-25-100, and is scaled to the gear's
-    /// efficiency at 2000 rpm. The factor for the torque is the gear's own, or else that of the HFUC-25-100 (series
-    /// CSF and CSG). Beyond their ends the curves are constant. The influence of temperature is left out.
+    /// The curve against speed is the gear's own curve, or the curve of HFUC-25-100 if the gear has none. It is scaled
+    /// to the gear's efficiency at 2000 rpm. The factor for the torque is the gear's own factor, or the factor of
+    /// HFUC-25-100 (series CSF and CSG) if the gear has none. Beyond their ends the curves are constant. The influence
+    /// of temperature is left out.
     pub fn representative_efficiency(
         &self,
         gear: &Gear,
@@ -123,7 +125,7 @@ impl Catalogs {
     }
 }
 
-/// The gear whose curves are used for gears without their own.
+/// The gear whose curves are used for gears that have no curves.
 const REPRESENTATIVE_GEAR: &str = "HFUC-25-100";
 /// Input speed at which the rated efficiency is stated \[rpm\].
 const RATED_RPM: f64 = 2000.0;

@@ -1,5 +1,5 @@
-//! Gears of any kind: strain-wave (harmonic drive), planetary, cycloidal, belt, spur, and the stand-ins for a gear
-//! in a direct drive or an integrated actuator.
+//! Gears of any kind: strain-wave (harmonic drive), planetary, cycloidal, belt and spur. A direct drive and an
+//! integrated actuator also have an entry here, so that every drive consists of a gear and a motor.
 
 use super::Provenance;
 use super::envelope::Envelope;
@@ -9,7 +9,9 @@ use std::fmt;
 /// Kinds of gears, as in the column `kind`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GearKind {
-    /// Strain-wave gear (harmonic drive). A blank cell means this kind.
+    /// Strain-wave gear (harmonic drive). Its input is the *wave generator*, an elliptical disc in a ball bearing. It
+    /// deforms the *flexspline*, a thin toothed cup, whose teeth then mesh with a rigid ring, the *circular spline*. A
+    /// blank cell means this kind.
     StrainWave,
     /// Planetary gear.
     Planetary,
@@ -21,7 +23,7 @@ pub enum GearKind {
     Spur,
     /// Direct drive: there is no gear, and the motor turns the joint.
     Direct,
-    /// The gear inside an actuator of `actuators.csv`. Its ratings are those of the whole actuator.
+    /// The gear inside an actuator of `actuators.csv`. Its ratings hold for the whole actuator.
     Actuator,
     /// Ball screw of a prismatic joint: its ratings are forces, its ratio is in rad/m.
     Screw,
@@ -80,7 +82,7 @@ impl GearKind {
 
     /// The exponent of torque in the life equation of gears of this kind, for a row whose cell is blank. It is 3 for
     /// the ball bearing of a wave generator (Harmonic Drive LLC, CSF/CSG catalog), and 10/3 for the roller bearings of
-    /// other gears (ISO 281; that makers of cycloidal gears use it is from memory).
+    /// other gears (ISO 281). Makers of cycloidal gears use 10/3 too; this statement is from memory.
     pub fn usual_life_exponent(self) -> f64 {
         if self == GearKind::StrainWave { 3.0 } else { 10.0 / 3.0 }
     }
@@ -92,8 +94,9 @@ impl fmt::Display for GearKind {
     }
 }
 
-/// The life equation of a gear: L10 = rated life (T_rated / T_mean)^exponent (rated speed / n_mean). Where a row leaves
-/// a cell blank, the value of its [`GearKind`] is taken; the number is `None` if the kind has none either.
+/// The life equation of a gear. L10 is the life that 90 % of the gears reach: L10 = rated life (T_rated /
+/// T_mean)^exponent (rated speed / n_mean). Where a row leaves a cell blank, the value of its [`GearKind`] is taken.
+/// The number is `None` if the kind has no value either.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LifeLaw {
     /// L10 life at rated torque and at [`Self::rated_speed_rpm`] \[h\].
@@ -181,13 +184,16 @@ pub struct Gear {
     pub k2_nm_per_rad: Option<f64>,
     /// Torsion curve: stiffness beyond T2 \[N m/rad\].
     pub k3_nm_per_rad: Option<f64>,
-    /// Hysteresis loss, as the vendor states it \[arcmin\].
+    /// Hysteresis loss, as the vendor states it \[arcmin\]: the difference between the two output angles at zero
+    /// torque, after a torque of one sign and after a torque of the other.
     pub hysteresis_loss_arcmin: Option<f64>,
     /// Backlash: play without torque \[arcmin\].
     pub backlash_arcmin: Option<f64>,
-    /// Lost motion at a few percent of the rated torque \[arcmin\].
+    /// Lost motion \[arcmin\]: the rotation of the output between a few percent of the rated torque in one direction
+    /// and in the other.
     pub lost_motion_arcmin: Option<f64>,
-    /// Transmission accuracy, as the vendor states it \[arcmin\].
+    /// Transmission accuracy, as the vendor states it \[arcmin\]: the difference between the actual output angle and
+    /// the input angle divided by the ratio.
     pub transmission_accuracy_arcmin: Option<f64>,
     /// Tilting stiffness of the output bearing (housed unit) \[N m/rad\].
     pub tilting_stiffness_nm_per_rad: Option<f64>,
@@ -197,7 +203,7 @@ pub struct Gear {
     pub bearing: BearingRatings,
     /// Torque at which the flexspline buckles \[N m\].
     pub buckling_torque_nm: Option<f64>,
-    /// Torque at which the teeth jump \[N m\].
+    /// Torque at which teeth slip past each other \[N m\].
     pub ratcheting_torque_nm: Option<f64>,
     /// Outer size of the housed unit.
     pub envelope: Envelope,
@@ -265,8 +271,8 @@ impl Gear {
         }
     }
 
-    /// Whether this gear and `motor` can make a drive. An actuator goes with its own motor only, and this motor with no
-    /// other gear.
+    /// Whether this gear and `motor` can make a drive. An actuator goes with its own motor only, and its motor
+    /// goes with no other gear.
     pub fn goes_with(&self, motor: &Motor) -> bool {
         match (self.kind, motor.kind) {
             (GearKind::Actuator, MotorKind::OfActuator) => self.id == motor.id,
@@ -275,8 +281,8 @@ impl Gear {
         }
     }
 
-    /// Names of the columns with numbers of the torsion curve that the catalog lacks. If the slopes are equal, or
-    /// only K1 is given, the curve has one segment and needs no break points.
+    /// Names of the columns with numbers of the torsion curve that the catalog does not give but the curve needs. If
+    /// the slopes are equal, or only K1 is given, the curve has one segment and needs no break points.
     pub fn missing_of_torsion(&self) -> Vec<&'static str> {
         let [k1, k2, k3] = [self.k1_nm_per_rad, self.k2_nm_per_rad, self.k3_nm_per_rad];
         if self.single_slope_nm_per_rad().is_some() {

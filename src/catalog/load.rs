@@ -122,7 +122,7 @@ fn stray_file(folder: &Path, name: &str) -> Option<Fault> {
 }
 
 /// The catalogs that consist of the rows of all `sources`. A row of a later source replaces a row of the same name.
-/// Fails with all faults of all sources.
+/// The error has all faults of all sources.
 fn from_sources(sources: &[Source], warnings: Vec<Fault>) -> Result<Catalogs, Faults> {
     let log = Log::default();
     log.warnings.borrow_mut().extend(warnings);

@@ -12,7 +12,7 @@ pub enum MaterialClass {
     Composite,
     /// Metal-matrix composites.
     MetalMatrix,
-    /// Polymers, including printed and filled ones.
+    /// Polymers, including printed and filled polymers.
     Polymer,
     /// Wood and wood products.
     Wood,
@@ -33,7 +33,7 @@ impl MaterialClass {
     }
 
     /// A warning about time-dependent behaviour under constant load, which the model leaves out. `None` for classes
-    /// that show none at room temperature.
+    /// without such behaviour at room temperature.
     pub fn caution(self) -> Option<&'static str> {
         match self {
             MaterialClass::Metal | MaterialClass::Composite | MaterialClass::MetalMatrix => None,
@@ -64,7 +64,7 @@ pub struct Material {
     pub class: MaterialClass,
     /// Young's modulus along the link \[Pa\].
     pub youngs_modulus_pa: f64,
-    /// Shear modulus \[Pa\]; for unidirectional composites it is G12.
+    /// Shear modulus \[Pa\]; for unidirectional composites it is G12, the shear modulus along and across the fibres.
     pub shear_modulus_pa: Option<f64>,
     /// Density \[kg/m³\].
     pub density_kg_m3: f64,
@@ -80,7 +80,8 @@ pub struct Material {
     pub cost_eur_per_kg: Option<f64>,
     /// Behaviour in sea water and in air, in words.
     pub corrosion_note: String,
-    /// Whether all fibres run along the link. The torsion and shear properties are then those of the lamina.
+    /// Whether all fibres run along the link. The torsion and shear properties are then the properties of a single
+    /// layer of fibres.
     pub unidirectional: bool,
     /// Source of the row.
     pub provenance: Provenance,

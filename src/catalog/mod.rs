@@ -41,7 +41,7 @@ pub enum Confidence {
     ThirdParty,
     /// The numbers were recalled without a document.
     FromMemory,
-    /// The numbers are typical of the class, not those of this part.
+    /// The numbers are typical of a class of parts. They are not the numbers of this part.
     Representative,
 }
 
@@ -125,9 +125,9 @@ pub struct Provenance {
 /// All catalogs.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Catalogs {
-    /// Gears of every kind, including those inside actuators.
+    /// Gears of every kind, including the gears inside actuators.
     pub gears: Vec<Gear>,
-    /// Motors, including those inside actuators.
+    /// Motors, including the motors inside actuators.
     pub motors: Vec<Motor>,
     /// Link materials.
     pub materials: Vec<Material>,
@@ -141,7 +141,7 @@ pub struct Catalogs {
     pub printed: BTreeMap<(String, usize), PrintedRow>,
     /// One entry for each file that was read.
     pub loaded: Vec<Loaded>,
-    /// Warnings that are no reason to refuse a file: unusual numbers, or ratings that decrease with size.
+    /// Warnings about unusual numbers, or about ratings that decrease with size. A file with warnings is accepted.
     pub warnings: Vec<Fault>,
 }
 

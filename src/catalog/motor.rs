@@ -26,7 +26,8 @@ pub enum MotorKind {
 }
 
 impl MotorKind {
-    /// Whether the outer size of such a motor is the side of a square flange. That of other motors is a diameter.
+    /// Whether the outer size of such a motor is the side of a square flange. The outer size of other motors is a
+    /// diameter.
     pub fn has_square_flange(self) -> bool {
         matches!(self, MotorKind::AcServo | MotorKind::Stepper)
     }
@@ -85,7 +86,7 @@ impl MotorKind {
         Some(Self::ALL[place % Self::ALL.len()])
     }
 
-    /// The kinds that a filter word means: those of the family `electric` or `hydraulic`, or one kind. `None` for
+    /// The kinds that a filter word means: all kinds of the family `electric` or `hydraulic`, or one kind. `None` for
     /// another word.
     pub fn of_class(word: &str) -> Option<Vec<Self>> {
         match word.to_lowercase().as_str() {
@@ -150,7 +151,7 @@ pub struct Motor {
     pub curve: Vec<MotorCurvePoint>,
     /// Rated power \[W\].
     pub rated_power_w: Option<f64>,
-    /// Outer size; for a frameless motor, that of rotor and stator.
+    /// Outer size; for a frameless motor, the outer size of rotor and stator.
     pub envelope: Envelope,
     /// Source of the row.
     pub provenance: Provenance,

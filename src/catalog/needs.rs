@@ -32,8 +32,8 @@ fn blank(figures: &[(Option<f64>, &'static str, &'static str)]) -> Vec<Lack> {
 
 impl Gear {
     /// The numbers that the row of the gear leaves blank and that must be known before the gear can be chosen for a
-    /// joint. `mass` says which mass is needed, of the component set or of the housed unit. Empty if every check of the
-    /// gear can be made.
+    /// joint. `mass` says which mass is needed: the mass of the component set or of the housed unit. Empty if every
+    /// check of the gear can be made.
     ///
     /// ```
     /// use armwright::catalog::{Catalogs, GearMass};
@@ -81,8 +81,8 @@ impl Gear {
 
 impl Motor {
     /// The numbers that the row of the motor leaves blank and that must be known before the motor can be chosen for a
-    /// joint. Empty if every check of the motor can be made. For the motor of an actuator the columns are those of
-    /// `actuators.csv`.
+    /// joint. Empty if every check of the motor can be made. For the motor of an actuator, the names are columns
+    /// of `actuators.csv`.
     pub fn lacks(&self) -> Vec<Lack> {
         let of_actuator = self.kind == super::motor::MotorKind::OfActuator;
         let (inertia, of_inertia) = match of_actuator {

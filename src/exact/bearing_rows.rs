@@ -1,11 +1,13 @@
 //! Loads on the output bearing of a joint, as intervals over the members of a box.
 //!
-//! A bearing transmits the wrench of everything outboard: the wrench of gravity and load, and the wrench of the ramp
-//! or the stop of one joint while the other joints are at rest ([`bearing_loads`](crate::space::bearing_loads)). Every
-//! component of such a wrench is linear in the weights and the inertias of the parts, so its range over a box is an
-//! interval. A load (moment, radial or axial force) is the length of a vector of components. The least load takes each
-//! component at its least magnitude, the greatest load takes each component at its greatest. For a box of one design
-//! both loads equal the load of this design.
+//! A box is a set of designs; its members are these designs. A piece is a joint with its drive, or a link.
+//!
+//! A bearing transmits the wrench of everything outboard. This is the wrench of gravity and load, and the wrench that
+//! arises while one joint accelerates (its ramp) or stops and the other joints are at rest
+//! ([`bearing_loads`](crate::space::bearing_loads)). Every component of such a wrench is linear in the weights and the
+//! inertias of the parts, so its range over a box is an interval. A load (moment, radial or axial force) is the length
+//! of a vector of components. The least load takes each component at its least magnitude, the greatest load takes each
+//! component at its greatest. For a box of one design both loads equal the load of this design.
 
 use super::parts::INERTIAS;
 use crate::mechanics::{Twist, Wrench, linear, rotation_twist, stack};
@@ -55,7 +57,7 @@ struct Sum {
 }
 
 /// The numbers of a box from which the loads follow: `weights_n` is the least and greatest weight of each piece in the
-/// case \[N\]; `light` and `heavy` are the least and greatest line inertias of each piece.
+/// case \[N\]; `light` and `heavy` are the least and greatest line inertias (inertias per metre) of each piece.
 pub(super) struct Numbers<'a> {
     pub weights_n: &'a [[f64; 2]],
     pub light: &'a [[f64; INERTIAS]],
@@ -107,8 +109,8 @@ impl Frame {
         })
     }
 
-    /// The components of the wrench `fixed + Σ wrench · number`. `wrenches` has the index of each number (a weight or
-    /// an inertia) and the wrench per unit of it.
+    /// The components of the wrench `fixed + Σ wrench · number`, each as a linear function of the numbers. `wrenches`
+    /// has the index of each number (a weight or an inertia) and the wrench per unit of it.
     fn sums(&self, fixed: &Wrench, wrenches: impl Iterator<Item = (usize, Wrench)>) -> Components {
         let mut sums: Components = self.components(fixed).map(|fixed| Sum { fixed, terms: Vec::new() });
         for (number, wrench) in wrenches {

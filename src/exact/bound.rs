@@ -1,5 +1,7 @@
 //! The bound of a box: for each objective, the best value that any of its members could have.
 //!
+//! A box is a set of designs; its members are these designs. An incumbent is a design that was found already.
+//!
 //! - *mass*: the sum of the least masses.
 //! - *tip deflection*: torques, forces and compliances are intervals, so each component of the tip's displacement lies
 //!   in an interval too. The bound is the length of the shortest displacement within these intervals.
@@ -54,7 +56,8 @@ impl BoxBound {
         Self { hz: LOWEST_BY_SHAPE * self.hz, ..*self }
     }
 
-    /// The bound with all three objectives made worse by the factor `1 + slack`.
+    /// The bound with all three objectives made worse by the factor `1 + slack`. The slack is a fraction that the pass
+    /// of the search sets.
     pub(super) fn slackened(&self, slack: f64) -> Self {
         let factor = 1.0 + slack;
         Self { mass_kg: self.mass_kg * factor, tip_m: self.tip_m * factor, hz: self.hz / factor }
@@ -69,7 +72,7 @@ impl From<BoxBound> for Objectives {
 
 /// The result of bounding a box.
 pub(super) enum Verdict {
-    /// No member meets the constraints, or an incumbent dominates the bound.
+    /// No member meets the constraints, or an incumbent dominates the bound and therefore every member.
     Pruned,
     /// The box has this bound, and a member of it may be on the front.
     Open(BoxBound),
@@ -101,8 +104,8 @@ impl<'c> Problem<'c> {
         }
     }
 
-    /// The first trial shapes, made for the box of all designs: for each judged case, one for each acceleration in
-    /// [`START_SHAPES`]. `None` if no design meets the constraints.
+    /// The first trial shapes, made for the box of all designs: for each judged case (a case that counts for deflection
+    /// and lowest mode), one for each acceleration in [`START_SHAPES`]. `None` if no design meets the constraints.
     pub(super) fn first_shapes(&self, work: &mut BoxWork) -> Option<Vec<Shape>> {
         self.fill(&mut self.root(), work)?;
         self.least_tip_m(work)?;
@@ -223,7 +226,7 @@ impl<'c> Problem<'c> {
 
     /// The least tip deflection over the members of the box \[m\], in the judged case in which it is greatest. The
     /// function also writes the forces, torques, slopes and tip directions of the box to `work`. `None` if no member
-    /// keeps the forces within the force bounds of the problem.
+    /// keeps the forces within the intervals to which branching has restricted them (the force bounds of the problem).
     pub(super) fn least_tip_m(&self, work: &mut BoxWork) -> Option<f64> {
         let mut worst = 0.0f64;
         work.worst_tip = None;
@@ -297,9 +300,9 @@ fn hertz(lambda: f64) -> f64 {
     lambda.sqrt() / std::f64::consts::TAU * (1.0 + ROUNDING)
 }
 
-/// The least and the greatest deflection in one strain coordinate of a tube or a bearing, under a generalized force
-/// between `low` and `high`. The deflection is force times compliance, and the compliance too is an interval over the
-/// box.
+/// The least and the greatest deflection in one strain coordinate (one way to deform) of a tube or a bearing, under a
+/// generalized force between `low` and `high`. The deflection is force times compliance, and the compliance too is an
+/// interval over the box.
 pub(super) fn linear_strain(pose: &Pose, row: &Row, [low, high]: [f64; 2], work: &BoxWork) -> [f64; 2] {
     let (resisted, factor) = pose.pieces[row.piece].resisted(row.coordinate);
     let (stiff, soft) = (work.stiff[row.piece][resisted], work.soft[row.piece][resisted]);

@@ -1,4 +1,6 @@
 //! The numbers of one box of designs as intervals: the least and the greatest value over its members.
+//!
+//! A box is a set of designs. A piece is a joint with its drive, or a link.
 
 use super::parts::{INERTIAS, LeastDemand, LinkBox, STIFFNESSES, inertia, stiffness_of};
 use super::pose::{Row, TILT, TORSION};
@@ -52,7 +54,7 @@ pub(super) struct BoxWork {
     /// Break points of the torsion curves that each joint may have.
     pub(super) breaks: Vec<BreakPoints>,
     /// Least and greatest magnitude of the torque on each joint in each judged case \[N m\]: first index the case,
-    /// second the piece.
+    /// second the piece. A judged case counts for deflection and lowest mode.
     pub(super) torques: Vec<Vec<[f64; 2]>>,
     /// The judged case in which the least tip deflection of the box is greatest, and the direction in which the tip
     /// moves in this case.
@@ -62,8 +64,9 @@ pub(super) struct BoxWork {
     /// Upper bound of the tip's deflection \[m\], one entry for each judged case in which contributions to the tip's
     /// displacement may oppose each other.
     pub(super) greatest_tip_m: Vec<f64>,
-    /// For each piece, the relative growth of the tip's least deflection if the stiffnesses of the piece had middle
-    /// values and not their greatest.
+    /// For each piece, the relative growth of the tip's least deflection with middle stiffnesses of the piece. A middle
+    /// stiffness is the geometric mean of its least and its greatest value; the least deflection has the greatest
+    /// value.
     pub(super) tip_growth: Vec<f64>,
     /// Buffers of the inverse iteration that improves trial shapes.
     pub(super) shape: ShapeWork,

@@ -1,4 +1,10 @@
 //! Branch and bound box by box.
+//!
+//! A box is a set of designs. It is bounded, and then either discarded (pruned) or halved; the halves are treated in
+//! the same way. A box of one design is evaluated. The designs found so far are the incumbents; a box is pruned if one
+//! of them dominates its bound. A *pass* is one search of the whole space with a fixed slack: the fraction by which a
+//! box may be better than the incumbents and is still pruned. A *task* is the work of one thread between two exchanges
+//! of findings, and a *round* is a set of tasks that run side by side.
 
 use super::bound::{BoxBound, DesignBox, Verdict};
 use super::box_work::BoxWork;
@@ -16,6 +22,7 @@ use std::sync::Arc;
 const BOXES_PER_TASK: usize = 32;
 
 /// A box that waits to be bounded, with the trial shapes and the bound of its parent, the box of which it is a half.
+/// Trial shapes are motions that bound the lowest mode.
 pub(super) struct OpenBox {
     pub design_box: DesignBox,
     pub shapes: Arc<Vec<Shape>>,
@@ -58,7 +65,7 @@ impl OpenBox {
 /// Bounds the box of all designs, then the boxes into which it is divided, and so on. `open` bounds one box and
 /// returns the boxes into which it is divided. At the end of each round of tasks, `learn` adds the designs found to
 /// `state`. Then `see` is called with `state` and the boxes that are still open. Returns the boxes that are open when
-/// the search is stopped.
+/// the search is stopped; there are none if the search came to its end.
 pub(super) fn open_all_boxes<K: Sync, F: Send + Default>(
     budget: &Budget,
     problem: &Problem,

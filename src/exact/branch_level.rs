@@ -1,9 +1,9 @@
 //! The choice of the level along which a box is halved.
 //!
-//! The bound of a box takes every part at its lightest and at its stiffest. The score of a level is how much
-//! the bound would worsen if the level's part had middling numbers instead: the geometric mean of the
-//! lightest and the heaviest, and of the stiffest and the softest. The level with the greatest score is
-//! halved.
+//! The bound of a box takes every part at its lightest and at its stiffest. A level is the choice of
+//! one part. The score of a level is how much the bound would worsen if its part had middle numbers instead.
+//! The middle mass is the geometric mean of the least and the greatest mass, and middle stiffnesses are such
+//! means too. The level with the greatest score is halved.
 //!
 //! The bounds of the two halves would be a worse guide, because a box has to be halved several times before
 //! its bound moves at all.
@@ -23,7 +23,8 @@ fn middling(low: f64, high: f64) -> f64 {
 
 impl Problem<'_> {
     /// The level (choice of one tube or drive) whose halving should improve the bound of the box most. `shapes` are the
-    /// trial shapes of the box. `None` if every level has a single option left.
+    /// trial shapes of the box, which are motions that bound the lowest mode. `None` if every level has a single option
+    /// left.
     pub(super) fn widest_level(
         &self,
         design_box: &[u32],
@@ -95,8 +96,9 @@ impl Problem<'_> {
         softened
     }
 
-    /// Computes `work.tip_growth`: for each piece, the fraction by which the least tip deflection would grow if each
-    /// stiffness of the piece were the geometric mean of its least and greatest values instead of its greatest value.
+    /// Computes `work.tip_growth`: for each piece, the fraction by which the least tip deflection would grow with
+    /// middle stiffnesses of the piece. A middle stiffness is the geometric mean of its least and its greatest value;
+    /// the least deflection has the greatest value.
     fn weigh_tip(&self, work: &mut BoxWork) {
         work.tip_growth.clear();
         work.tip_growth.resize(self.parts.len(), 0.0);

@@ -1,13 +1,18 @@
 //! The choice of how to divide a region that may still have a member below a local upper bound.
 //!
-//! The Lagrangian bound (`lagrangian.rs`) ends with a mixture: several relaxed designs with weights that sum to one.
-//! The bound is loose where these designs differ, and where the product of a force and a compliance is replaced by its
-//! McCormick underestimate. There are two ways to branch:
+//! A local upper bound is a mass, a deflection and a frequency; a design below it is new to the front. A region is a
+//! set of designs, given by the options that remain at each level and by bounds on torques.
+//!
+//! The Lagrangian bound (`lagrangian.rs`) is a lower bound of a weighted sum of inequalities (rows) over a region. It
+//! ends with a mixture: several relaxed designs with weights that sum to one. A relaxed design takes at each level the
+//! option that is cheapest in this sum, and the torques of its gears need not agree with its weights. The bound is
+//! loose where these designs differ. It is also loose where the product of a force and a compliance, each known as an
+//! interval, is replaced by a linear function below it (its McCormick underestimate). There are two ways to branch:
 //!
 //! - on the options of a level, where the mixed designs differ or a product is underestimated;
 //! - on a joint torque. A force is uncertain because of all the weights outboard and not because of one level, so
 //!   halving the interval of the torque helps where halving a level does not. It also separates the two states of a
-//!   gear that the mixture blends: a soft gear at a small torque and a stiff one at a large torque.
+//!   gear that the mixture blends: a soft gear at a small torque and a stiff gear at a large torque.
 
 use super::parts::{STIFFNESSES, inertia};
 use super::pose::Row;
@@ -68,7 +73,7 @@ fn spread(mixed: &Mixed, of: impl Fn(&RelaxedDesign) -> f64) -> f64 {
 }
 
 impl Rows<'_> {
-    /// Ways to divide the region, the one with the greatest expected benefit first. `mixed` is the mixture with which
+    /// Ways to divide the region, by descending expected benefit. `mixed` is the mixture with which
     /// the bound ended, and `multipliers` are the factors on the rows (inequalities) of the bound.
     pub(super) fn branchings(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<Branching> {
         let mut branchings = Vec::new();
@@ -97,8 +102,8 @@ impl Rows<'_> {
         branchings
     }
 
-    /// For the mass and for the stiffness of a piece: the index of the coordinate that stands for it in the key of an
-    /// option, and the best value of this coordinate in the box.
+    /// Two pairs, first for the mass of a piece and then for its stiffness. Each pair is the index of the coordinate
+    /// that stands for the quantity in the key of an option, and the best value of this coordinate in the box.
     fn best_of(&self, piece: usize) -> [(usize, f64); 2] {
         let (light, stiff) = (self.work.light[piece][inertia::MASS], self.work.stiff[piece][0]);
         let (places, stiff) = match &self.work.curves[piece] {
@@ -175,9 +180,10 @@ impl Rows<'_> {
         branchings
     }
 
-    /// Tip displacement by which the McCormick bound underestimates force times compliance in one strain coordinate
-    /// \[m\]. It is the excess `more` of the force over its least value, times the excess of the compliance over its
-    /// least value. Both are means over the mixture.
+    /// Tip displacement by which the McCormick bound underestimates force times compliance, in one strain coordinate
+    /// (one way to deform) of a piece \[m\]. The McCormick bound is a linear function below the product of two numbers
+    /// in intervals. The result is the excess `more` of the force over its least value, times the excess of the
+    /// compliance over its least value. Both are means over the mixture.
     fn product(&self, mixed: &Mixed, judged: usize, row: &Row, more: f64) -> f64 {
         let tip_per_unit = self.work.tip_directions[judged].dot(&row.tip_m);
         (tip_per_unit * more * self.softer(mixed, judged, row)).abs()
@@ -224,8 +230,8 @@ impl Problem<'_> {
         }
     }
 
-    /// The two problems into which `branching` divides this one. `kept` has, for each level, the nodes of its base tree
-    /// that remain. `None` if all options lie on one side.
+    /// The two problems into which `branching` divides this problem. `kept` has, for each level, the nodes that remain
+    /// of its base tree (the tree over all options of the level). `None` if all options lie on one side.
     pub(super) fn branch(&self, kept: &[Vec<u32>], branching: &Branching) -> Option<[Self; 2]> {
         match branching.by {
             BranchOn::Options { level, axis } => {
@@ -244,7 +250,8 @@ impl Problem<'_> {
     }
 
     /// Divides the options of `level` at the value `at` of the key coordinate `axis`. Returns, for each side and every
-    /// level, the nodes of the level's base tree that remain. `None` if all options of the level lie on one side.
+    /// level, the nodes that remain of the level's base tree (the tree over all its options). `None` if all options of
+    /// the level lie on one side.
     fn branch_on_options(
         &self,
         kept: &[Vec<u32>],

@@ -45,7 +45,7 @@ struct Joints<'c> {
 }
 
 impl<'c> Joints<'c> {
-    /// The joints of a space, whose drives are tabulated.
+    /// Collects the joints of a space. `tabulated` has the drives of each joint with the loads that they can carry.
     fn new(space: &'c DesignSpace, tabulated: &TabulatedJoints<'c>) -> Self {
         let numbers = piece_numbers(space);
         let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
@@ -79,9 +79,9 @@ impl<'c> Joints<'c> {
         room.and_then(|room| room.rooms.get(option)).copied().unwrap_or(LinkRoom::ANY)
     }
 
-    /// The lever that the link at `place` has with this option \[m\]: the distance along the axis of the joint directly
-    /// inboard from the face of the joint's flange to the point where the link attaches. 0 if the bearing of this joint
-    /// is not checked.
+    /// The lever that the link at `place` has with this option \[m\]. The lever is a distance along the axis of the
+    /// joint directly inboard: from the face of the joint's flange to the point where the link attaches. It is 0 if the
+    /// bearing of this joint is not checked.
     fn lever_m(&self, place: usize, option: usize) -> f64 {
         let inboard = place.checked_sub(1).and_then(|inboard| self.levers[inboard].as_ref());
         inboard.and_then(|lever| lever.lever_m.get(option)).copied().unwrap_or_default()
@@ -89,8 +89,9 @@ impl<'c> Joints<'c> {
 }
 
 impl JointNeeds {
-    /// The data of `joint` that a compiled pose needs. `slot` has its drives. `reach_m` is the distance of the tip
-    /// from the joint's axis \[m\]; the angular acceleration follows from it and the tip's acceleration.
+    /// The data of `joint` that a compiled pose needs. `slot` is its place in the arm, with its drives. `reach_m` is
+    /// the distance of the tip from the joint's axis \[m\]; the angular acceleration follows from it and the tip's
+    /// acceleration.
     fn of(space: &DesignSpace, joint: &SpaceJoint, reach_m: f64, slot: &Slot) -> Self {
         let motion = joint.motion(&space.motion, reach_m);
         let of_gear = Self {
@@ -112,7 +113,7 @@ impl JointNeeds {
 impl<'c> Problem<'c> {
     /// Prepares a space for the exact search, with only those link options for which `takes` is true. `ties` tells
     /// whether drives of equal mass, torsion curve and bearing stiffness become one option. `None` if some level
-    /// (choice) has no option.
+    /// (choice) has no option, or if this search cannot treat a piece of the arm.
     pub(super) fn new(
         space: &'c DesignSpace,
         catalogs: &'c Catalogs,
@@ -167,9 +168,9 @@ impl<'c> Problem<'c> {
         Some(problem.with_inertias())
     }
 
-    /// Compiles one layer of the chain, which belongs to the piece at `place`. The drives of a joint are taken out of
-    /// `joints`. `takes` and `ties` have the same meaning as in [`new`](Self::new). `None` if a choice has no option,
-    /// or if this search cannot treat the layer.
+    /// Compiles one layer of the chain: the piece at `place`, or a spring, a mass or a load that belongs to this piece.
+    /// The drives of a joint are taken out of `joints`. `takes` and `ties` have the same meaning as in
+    /// [`new`](Self::new). `None` if a choice has no option, or if this search cannot treat the layer.
     fn part(
         &mut self,
         (place, layer): (usize, Layer<'c>),
@@ -248,8 +249,8 @@ impl<'c> Problem<'c> {
     }
 
     /// Compiles a link of the chain with the options for which `takes` is true. For the index of an option, `leaves`
-    /// returns the lever of the loads on the bearing of the joint inboard \[m\], and the space that the link leaves for
-    /// the drive of this joint. `None` if no option is admitted.
+    /// returns two values: the lever of the loads on the bearing of the joint inboard \[m\], and the space that the
+    /// link leaves for the drive of this joint. `None` if no option is admitted.
     fn link(
         &mut self,
         piece: &'c SpacePiece,
@@ -328,8 +329,10 @@ impl<'c> Problem<'c> {
         Rays::new(motion, static_nm, inertia_kgm2)
     }
 
-    /// Adds the inertia matrices of every judged case to the problem. The ideal arm of the box of all designs shows
-    /// which coordinates deflect elastically. No matrices are added if no design meets the constraints.
+    /// Adds the inertia matrices of every judged case (a case that counts for deflection and lowest mode) to the
+    /// problem. Which coordinates deflect elastically is taken from the ideal arm of the box of all designs. This arm
+    /// has every stiffness at its greatest and every inertia at its least. No matrices are added if no design meets the
+    /// constraints.
     pub(super) fn with_inertias(mut self) -> Self {
         let mut work = BoxWork::default();
         let filled = self.fill(&mut self.root(), &mut work);

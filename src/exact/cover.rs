@@ -1,8 +1,9 @@
 //! A cover of the space by boxes. It is refined by halving the boxes with the greatest gap first.
 //!
-//! The boxes contain every design that no design found dominates, and each has a bound. The bounds therefore tell how
-//! near the designs found come to every design of the space ([`gap`](super::gap)). The gap of the cover is the gap of
-//! its worst box.
+//! A box is a set of designs. The boxes contain every design that no design found dominates, and each has a bound: the
+//! best mass, deflection and mode that a member could have. The bounds therefore tell how near the designs found come
+//! to every design of the space. This distance is the gap ([`gap`](super::gap)). The gap of the cover is the gap of its
+//! worst box.
 
 use super::bound::{BoxBound, Verdict};
 use super::box_work::BoxWork;
@@ -30,7 +31,7 @@ struct Piece {
 
 impl Cover {
     /// Makes a cover of at least `boxes` boxes. `found` are the objectives of the designs found, from which the gap of
-    /// each box follows. There are fewer boxes if the remaining ones cannot be halved or the search is stopped.
+    /// each box follows. There are fewer boxes if the remaining boxes cannot be halved or the search is stopped.
     pub(super) fn new(budget: &Budget, problem: &Problem, found: &[Objectives], boxes: usize) -> Self {
         let Some(shapes) = problem.first_shapes(&mut BoxWork::default()) else { return Self(Vec::new()) };
         let root =

@@ -2,6 +2,9 @@
 //!
 //! In a space that is too large to tabulate these options are few, so the relaxation (`src/relax`), a linear program
 //! over mixtures of parts, can be solved with them alone.
+//!
+//! A subproblem is the problem with only some of its options. It is first reduced: options that no design below the
+//! known design's objectives can have are excluded. Then it may be branched, which divides it into two subproblems.
 
 use super::box_work::BoxWork;
 use super::kinds::Ties;
@@ -22,7 +25,7 @@ const OBJECTIVE_MARGIN: f64 = 1e-6;
 const MOST_BRANCHED: usize = 50;
 const SMALL_SPACE: f64 = 1e6;
 
-/// A compiled design space that tells which parts can belong to a design as good as a known one.
+/// A compiled design space that tells which parts can belong to a design as good as a known design.
 pub struct DomainReduction<'p> {
     problem: Problem<'p>,
 }

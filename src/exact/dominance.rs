@@ -1,7 +1,7 @@
 //! Drives that a lighter drive dominates within a box.
 //!
-//! Let a design have drive B at a joint. Let drive A be lighter, at least as stiff up to the torque that the joint
-//! carries, and able to carry the demand on the joint, with a bearing that tilts no more. The demand depends only on
+//! Let a design have drive B at a joint. Let drive A be lighter, and at least as stiff up to the torque that the joint
+//! carries. Let A also meet the demand on the joint, and let its bearing tilt no more. The demand depends only on
 //! the arm outboard, so it is the same for both. Now put A in the place of B:
 //!
 //! - Every force of the study grows with every weight. So no torque, stress or demand inboard grows, and the tip does
@@ -75,8 +75,8 @@ impl DominatingDrive<'_> {
 impl Problem<'_> {
     /// Whether every load of the arm, and every displacement that a load causes, grows with every weight. Then a
     /// lighter arm of the same stiffness is no worse. With friction this is false, because the twist that friction
-    /// holds back grows with the weights too. With first-fit drives it is false too, because a lighter arm would get
-    /// lighter and softer drives.
+    /// holds back grows with the weights too. With first-fit drives (the lightest that meet the demand) it is false
+    /// too, because a lighter arm would get lighter and softer drives.
     pub(super) fn grows_with_weight(&self) -> bool {
         let fits_first = self.parts.iter().any(|part| matches!(part, Part::FirstFit { .. }));
         let friction = self.joint_plays.iter().flatten().any(JointPlay::has_friction);
@@ -89,7 +89,8 @@ impl Problem<'_> {
     }
 
     /// Removes dominated drives from `design_box`, whose numbers are in `work`. `tip_m` is the least tip deflection of
-    /// the box \[m\]. Returns whether the box became smaller; `None` if no design is left.
+    /// the box \[m\]. Returns whether the box became smaller; `None` if no design is left. The numbers in `work` are
+    /// not updated.
     pub(super) fn prune_dominated_drives(
         &self,
         design_box: &mut [u32],
@@ -137,8 +138,8 @@ impl Problem<'_> {
         })
     }
 
-    /// Whether every gear inboard vibrates with the same slope and the same play as before if the piece becomes lighter
-    /// by `lost_n` \[N\].
+    /// Whether every gear inboard keeps its tangent stiffness in the modes if the piece becomes lighter by `lost_n`
+    /// \[N\]. The stiffness stays if the slope of the gear's torsion curve and the slope of its lost motion both stay.
     fn slopes_stay(&self, piece: usize, lost_n: f64, work: &BoxWork) -> bool {
         self.judged_cases().all(|case| {
             self.poses[case].rows.iter().filter(|row| row.piece > piece).all(|row| {

@@ -1,11 +1,13 @@
 //! The feasible drives below a node, grouped by torsion curve and bearing.
 //!
 //! A joint has hundreds of drives but only some dozens of curves, and gears of one curve mostly have one bearing. The
-//! price of a drive is the price of its mass plus the prices of its curve and its bearing. Among the drives of one
-//! group only the lightest or the heaviest can therefore be the cheapest, whatever the prices are.
+//! price of a drive is what it adds to a weighted sum of inequalities ([`dual_price`](super::dual_price)). It is the
+//! price of its mass plus the prices of its curve and its bearing. Among the drives of one group only the lightest or
+//! the heaviest can therefore be the cheapest, whatever the prices are.
 //!
-//! The parts of a region are priced at dozens of sets of multipliers, and the states of a gear that may be the cheapest
-//! are the same at all of them. They are collected once ([`PricedDrives`]), and eight groups are priced side by side.
+//! The parts of a region are priced at dozens of sets of multipliers (the weights of the inequalities). A state of a
+//! gear is its torque with its twist and slope. The states that may be the cheapest are the same for all multipliers,
+//! so they are collected once ([`PricedDrives`]), and eight groups are priced side by side.
 
 use super::dual_price::{DualPrice, Gear, GearStates, states_of};
 use super::joint_play::JointPlay;
@@ -80,10 +82,11 @@ impl DrivesByCurve {
     }
 }
 
-/// Eight groups of drives ([`CurveGroup`]) that are not rigid, and the states of their gears in each judged case.
+/// Eight groups of drives ([`CurveGroup`]) that are not rigid, and the states of their gears in each judged case. A
+/// judged case counts for deflection and lowest mode.
 struct EightGroups {
-    /// Mass \[kg\] of the lightest and of the heaviest drive of each group, and their nodes. Lanes without a group of
-    /// their own repeat the last group.
+    /// Mass \[kg\] of the lightest and of the heaviest drive of each group, and their nodes. Places (of eight)
+    /// without a group of their own repeat the last group.
     mass_kg: [Eight; 2],
     nodes: [[u32; LANES]; 2],
     tilt_rad_per_nm: [Eight; 2],

@@ -1,8 +1,9 @@
 //! The price of a part under Lagrange multipliers, and the cheapest part below a node of a tree.
 //!
-//! Every number of a part (mass, inertia, compliance, stiffness) has a dual price: the amount per unit of this number
-//! that the part adds to the weighted sum of the rows in [`rows`](super::rows). The price of the part is the sum over
-//! its numbers.
+//! A row is an inequality that every design of interest satisfies: on the mass, on the displacement of the tip, on a
+//! mode or on a torque ([`rows`](super::rows)). The multipliers are the weights of the rows in a sum. Every number of a
+//! part (mass, inertia, compliance, stiffness) has a dual price: the amount per unit of this number that the part adds
+//! to the weighted sum. The price of the part is the sum over its numbers.
 
 use super::joint_play::JointPlay;
 use super::parts::{INERTIAS, LinkBox, STIFFNESSES, inertia, stiffness_of};
@@ -14,13 +15,14 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 /// Greatest number of boxes that are priced in the search for the cheapest part. With a smaller number, the lower bound
-/// of a box would more often be taken for the price of its cheapest part, and some local upper bounds would never be
-/// refuted.
+/// of a box would more often be taken for the price of its cheapest part. Some local upper bounds would then never be
+/// refuted: it would stay open whether a design lies below them.
 const MOST_LOOKS: usize = 200;
 /// Relative margin for the rounding of a torque.
 const ROUNDING: f64 = 1e-12;
 
-/// The gear of a joint in a judged case, as the rows of a bound treat it.
+/// The gear of a joint in a judged case, as the rows of a bound treat it. A judged case counts for deflection and
+/// lowest mode.
 pub(super) struct Gear {
     pub piece: usize,
     /// Index of the judged case.
@@ -169,7 +171,7 @@ fn each_state_of_sign(
             // If the modes use K1, the slope does not depend on the segment of the torque.
             let seen = if curve.k1_in_modes { w.k1_nm_per_rad } else { slope };
             let slope = play.map_or(seen, |play| play.in_series(seen, to));
-            // The soft envelope is taken at the end of the segment: one value is valid for both ends.
+            // The greatest twist is taken at the end of the segment on the softest curve. It is valid for both ends.
             let most = sign * curve.soft.angle_rad(to);
             for torque in [from, to].into_iter().take(if from < to { 2 } else { 1 }) {
                 let least = sign * curve.stiff.angle_in(segment, torque);
@@ -223,8 +225,8 @@ impl JointPrice {
         states_of(curve, self.play.as_ref(), self.torques_nm, ends);
     }
 
-    /// Price and state of a rigid joint. A box without a curve has a rigid member, but may have other members whose
-    /// curves are not known. The price is a lower bound for these members too.
+    /// Price and state of a rigid joint. A box of drives without a curve contains a rigid drive, but may contain other
+    /// drives whose curves are not known. The price is a lower bound for these drives too.
     fn rigid(&self) -> (f64, JointState) {
         let [low, high] = self.torques_nm.map(|t| self.torque * t);
         // Other members of the box may twist by any angle. If some twist lowers the price, no finite lower bound
@@ -363,7 +365,7 @@ struct Offer {
 
 impl Ord for Offer {
     /// The cheaper box counts as greater, because [`BinaryHeap`] pops its greatest entry. Of boxes with equal prices
-    /// the one with the lower node comes first.
+    /// the box with the lower node comes first.
     fn cmp(&self, other: &Self) -> Ordering {
         other.price.total_cmp(&self.price).then(other.node.cmp(&self.node))
     }

@@ -1,7 +1,9 @@
 //! A first gap that is known long before the first pass of a search is done.
 //!
-//! Short descents (dives) find a few designs. A cover of the space by a thousand boxes ([`cover`](super::cover)) tells
-//! how near to every design of the space they are. As more designs are found, the gap of the same boxes falls.
+//! The gap is the fraction by which the best design found may be worse than a design of the space, in each objective.
+//! Short descents (dives) find a few designs. A cover of the space by a thousand boxes of designs
+//! ([`cover`](super::cover)) tells how near these designs are to every design of the space. As more designs are found,
+//! the gap of the same boxes falls.
 //!
 //! The result of a search does not depend on these designs. They are listed only if the search is stopped, because then
 //! its gap may rest on them.

@@ -1,10 +1,11 @@
 //! Finds better incumbents than the probes did, by a genetic algorithm that starts with their designs.
 //!
-//! The proof of a front is faster with better incumbents, because everything that the incumbents leave open has to be
-//! searched. Probes find some hundreds of designs one by one. The algorithm makes further designs from these. A child
+//! Incumbents are the designs found so far. The proof of a front is faster with better incumbents, because every design
+//! that no incumbent dominates has to be searched. A probe is a quick descent to one good design; the probes find some
+//! hundreds of designs one by one. The algorithm makes further designs from these. A child
 //! takes some parts from a parent of similar mass, or options close to its first parent's, and is kept if no design
 //! seen before dominates it. Of designs that differ by little, one is kept for each cell of a grid
-//! ([`thinned`](super::grid::thinned)), so that they do not crowd out the others.
+//! ([`thinned`]), so that they do not crowd out the others.
 //!
 //! The result proves nothing. Its designs are evaluated and listed like all others.
 
@@ -24,10 +25,10 @@ use rand_xoshiro::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Greatest number of generations. Later ones hardly find better designs.
+/// Greatest number of generations. Later generations hardly find better designs.
 const GENERATIONS: u64 = 20;
-/// Fraction of a time limit after which no further generation begins. A pass proves a gap, and a generation proves
-/// nothing.
+/// Fraction of a time limit after which no further generation begins. The rest of the time is for the passes of the
+/// search, because a pass proves a gap and a generation proves nothing.
 const MOST_TIME: f64 = 0.25;
 /// Greatest number of children in a generation. In a small space, a generation has as many children as the square
 /// root of the number of designs.
@@ -37,7 +38,7 @@ const CELL_WIDTH: f64 = 0.02;
 /// Greatest distance between the two parents of a child, in places of the list of designs by mass.
 const MATING_DISTANCE: u64 = 12;
 
-/// A design with trial shapes that bound its modes. The shapes were computed for this design or for a similar one.
+/// A design with trial shapes that bound its modes. The shapes were computed for this design or for a similar design.
 pub(super) struct Individual {
     pub design_box: DesignBox,
     pub objectives: Objectives,

@@ -10,7 +10,8 @@ use super::pose::Row;
 /// Relative margin for the rounding of a force.
 const ROUNDING: f64 = 1e-12;
 
-/// An interval to which the region restricts one generalized force of a judged case.
+/// An interval to which the region restricts one generalized force of a judged case. A judged case counts
+/// for deflection and lowest mode.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ForceBound {
     /// Index of the case.

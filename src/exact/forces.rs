@@ -1,4 +1,7 @@
 //! The generalized forces of a case as intervals, within the force bounds of the region.
+//!
+//! A generalized force is the force or the torque that strains one coordinate, such as the torque on a joint. A force
+//! bound is an interval to which branching has restricted one such force ([`force_bound`](super::force_bound)).
 
 use super::force_bound::ForceBound;
 use super::interval::interval;
@@ -46,7 +49,7 @@ impl Problem<'_> {
         Self { force_bounds: Arc::from(bounds), ..self.clone() }
     }
 
-    /// The problem without force bounds.
+    /// The problem without force bounds: it has all designs that its options allow.
     pub(super) fn without_force_bounds(&self) -> Self {
         Self { force_bounds: Arc::default(), ..self.clone() }
     }

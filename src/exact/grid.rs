@@ -4,9 +4,9 @@ use crate::pareto::front::exact_front;
 use crate::pareto::objectives::Objectives;
 use std::collections::BTreeMap;
 
-/// Thins designs to the best one of each cell of a logarithmic grid of width `step` over their `objectives`. The best
-/// design of a cell has the least sum of the logarithms of mass, deflection and reciprocal mode. A cell is dropped if
-/// another cell with a design dominates it. For every design that is dropped, a design is kept that is worse by at
+/// Thins designs to the best design of each cell of a logarithmic grid of width `step` over their `objectives`. The
+/// best design of a cell has the least sum of the logarithms of mass, deflection and reciprocal mode. A cell is dropped
+/// if another cell with a design dominates it. For every design that is dropped, a design is kept that is worse by at
 /// most one `step` in the logarithm of each objective. With `step <= 0` all designs are kept.
 pub(super) fn thinned<T>(all: Vec<T>, step: f64, objectives: impl Fn(&T) -> &Objectives) -> Vec<T> {
     if step <= 0.0 {

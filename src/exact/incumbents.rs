@@ -93,8 +93,8 @@ impl Incumbents {
         in_list(self.rows.get(&step(best.mass_kg))) || in_list(self.columns.get(&step(best.tip_deflection_m)))
     }
 
-    /// Whether an incumbent would dominate the bound with a better trial shape. Only then is a better shape worth its
-    /// time.
+    /// Whether an incumbent might dominate the bound of a box after its trial shape (the motion that bounds the lowest
+    /// mode) is improved. Only then is a better shape worth its time.
     pub(super) fn nearly_dominates(&self, box_bound: &BoxBound) -> bool {
         self.dominates(&box_bound.with_better_shape())
     }

@@ -1,4 +1,7 @@
 //! Computes the numbers of a box as intervals, part by part from the tip inward.
+//!
+//! A box is a set of designs, given by one node of the tree of options at each level. A level is the choice of one tube
+//! or drive. An interval has the least and the greatest value over the designs of the box.
 
 use super::bearing_rows::Numbers;
 use super::box_work::BoxWork;
@@ -61,8 +64,8 @@ impl Problem<'_> {
     }
 
     /// Reduces the drives of a joint to the drives that may carry the least demand, and writes the intervals over them
-    /// to `work`. `node` is the node of the joint's tree and is replaced by a smaller one. `None` if no drive may
-    /// carry the demand.
+    /// to `work`. `node` is the node of the joint's tree; it is replaced by a smaller node if that contains all these
+    /// drives. `None` if no drive may carry the demand.
     fn fill_drives(
         &self,
         piece: usize,
@@ -118,9 +121,9 @@ impl Problem<'_> {
         Some(())
     }
 
-    /// Reduces the options of a link to the options that may carry the least stress, and writes the intervals over
-    /// them to `work`. `node` is the node of the link's tree and is replaced by a smaller one. `None` if no option may
-    /// carry the stress.
+    /// Reduces the options of a link to the options that may carry the least stress, and writes the intervals over them
+    /// to `work`. `node` is the node of the link's tree; it is replaced by a smaller node if that contains all these
+    /// options. `None` if no option may carry the stress.
     fn fill_links(
         &self,
         piece: usize,

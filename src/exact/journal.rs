@@ -1,10 +1,14 @@
 //! The states that an exact search saves on the way, so that another process can continue it.
 //!
 //! A study is searched in *parts*: first the front of all designs, then the front of each material. The state contains
-//! the results of the finished parts and the progress of the present one. A pass over boxes is saved between two
-//! rounds, together with the open boxes. A pass over regions is saved only at its start, because each open region is a
+//! the results of the finished parts and the progress of the present part.
+//!
+//! A part is searched in *passes* over the whole space, each with less *slack* than the pass before. The slack is a
+//! fraction: a box of designs is discarded although it may be better than the designs found by this fraction. A pass
+//! over boxes is saved between two rounds of parallel tasks, together with the open boxes. A pass over regions (all
+//! designs below a mass, a deflection and a frequency) is saved only at its start, because each open region is a
 //! separate problem. Rounds do not depend on the number of threads, so a search that is continued takes the same steps
-//! as one that was never stopped.
+//! as a search that was never stopped.
 
 use super::bound::{BoxBound, DesignBox};
 use super::boxes::OpenBox;
@@ -54,8 +58,8 @@ pub(super) struct Begun {
     open: Option<OpenPass>,
 }
 
-/// The open boxes of a pass. `shapes` has each list of trial shapes once, because several boxes share it. A box refers
-/// to its list by index.
+/// The open boxes of a pass. `shapes` has each list of trial shapes (motions that bound the lowest mode) once, because
+/// several boxes share it. A box refers to its list by index.
 #[derive(Clone, Serialize, Deserialize)]
 struct OpenPass {
     slack: f64,

@@ -1,13 +1,19 @@
 //! The Lagrangian bound of a box, part by part, and the multipliers that improve it.
 //!
-//! For multipliers `y ≥ 0`, the weighted sum of the rows ([`rows`](super::rows)) is a sum of one number for each part,
-//! the price of the part. The least sum over all members of the box is therefore the sum of the least prices, which
-//! are found level by level; the parts that have them make a *relaxed design*. This least sum is the value of the dual
-//! function at `y`. If it exceeds the weighted limits of a local upper bound, no member lies below that bound.
+//! A box is a set of designs, its members. A local upper bound is a mass, a deflection and a frequency, and the search
+//! asks whether a member is below it (lighter, stiffer and with a higher mode). A row is an inequality that every such
+//! member satisfies: on the mass, on the displacement of the tip, on a mode or on a torque.
 //!
-//! The next multipliers are the solution of a matrix game against the relaxed designs found so far (Kelley's
-//! cutting-plane method). If no multipliers refute the bound, the modes of the mixed arm give new rows. The mixed arm
-//! has the mean stiffnesses and inertias of the relaxed designs, weighted by the solution of the game.
+//! For multipliers `y ≥ 0`, the weighted sum of the rows ([`rows`](super::rows)) is a sum of one number for each part,
+//! the price of the part. The least sum over all members of the box is therefore the sum of the least prices. They are
+//! found level by level. The parts with the least prices make a *relaxed design*. This least sum is the value of the
+//! dual function at `y`. If it exceeds the weighted limits of a local upper bound, no member lies below that bound. The
+//! bound is then *refuted*.
+//!
+//! The next multipliers are the solution of a *matrix game* (Kelley's cutting-plane method). They are the weights of
+//! the rows that make the least weighted sum, over the relaxed designs found so far, as large as possible. If no
+//! multipliers refute the bound, the modes of the mixed arm give new rows. The mixed arm has the mean stiffnesses and
+//! inertias of the relaxed designs, weighted by the solution of the game.
 
 use super::bound::START_SHAPES;
 use super::dual_price::{DualPrice, JointPrice, TubePrice};
@@ -27,7 +33,7 @@ const STEPS: usize = 3;
 type Arm = (Vec<[f64; STIFFNESSES]>, Vec<[f64; INERTIAS]>);
 
 /// The numbers of a joint that is to be added to a relaxed design (the cheapest parts under some multipliers). `curve`
-/// is `None` for a rigid joint.
+/// is `None` for a rigid joint. `tilt_rad_per_nm` has the least and the greatest tilt of its bearing per moment.
 struct AddedJoint<'a> {
     piece: usize,
     mass_kg: f64,
@@ -107,8 +113,8 @@ impl Rows<'_> {
         self.modes.len() > before
     }
 
-    /// Stiffnesses and inertias of the mixed arm in a judged case. They are means over the relaxed designs `members`
-    /// with the weights `mix`.
+    /// Stiffnesses and inertias of the mixed arm in a judged case (a case that counts for deflection and lowest mode).
+    /// They are means over the relaxed designs `members` with the weights `mix`.
     fn mixed_arm(&self, members: &[RelaxedDesign], mix: &[f64], judged: usize) -> Arm {
         let pieces = self.problem.parts.len();
         let mut arm = (vec![[0.0; STIFFNESSES]; pieces], vec![[0.0; INERTIAS]; pieces]);

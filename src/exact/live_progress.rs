@@ -1,6 +1,7 @@
 //! The progress of a search while it runs, for other threads to read.
 //!
-//! The reported gap never rises. A bound that was proved once stays proved, because incumbents only get better.
+//! The reported gap never rises. A bound that was proved once stays proved, because the designs found so
+//! far only get better.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -44,8 +45,8 @@ impl LiveProgress {
         self.lock().known
     }
 
-    /// Reports a gap that was proved (relative). A gap that is not smaller than the one reported before is ignored, and
-    /// so is `None`.
+    /// Reports a gap that was proved (relative). A gap that is not smaller than the last reported gap is ignored.
+    /// `None` is ignored too.
     pub(super) fn prove(&self, gap: Option<f64>) {
         let known = &mut self.lock().known;
         known.gap = least(known.gap, gap);
@@ -62,7 +63,7 @@ impl LiveProgress {
         self.lock().due = Some(Instant::now() + after);
     }
 
-    /// Reports the new progress `news`. The reported gap is replaced only by a smaller one.
+    /// Reports the new progress `news`. The reported gap is replaced only by a smaller gap.
     pub(super) fn tell(&self, news: Known) {
         let known = &mut self.lock().known;
         *known = Known { gap: least(known.gap, news.gap), ..news };
@@ -73,7 +74,7 @@ impl LiveProgress {
     }
 }
 
-/// The smaller of two gaps. `None` means that a gap is unknown; then the other one is returned.
+/// The smaller of two gaps. `None` means that a gap is unknown; then the other gap is returned.
 pub(super) fn least(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     a.into_iter().chain(b).reduce(f64::min)
 }

@@ -1,8 +1,8 @@
 //! Local upper bounds of the incumbents. They describe the region in which further designs of the front may lie.
 //!
-//! The search region is the set of objective vectors that no incumbent dominates. It is the union of boxes
-//! below local upper bounds: a design that is not dominated is lighter, deflects less and has a higher mode
-//! than some local upper bound.
+//! Incumbents are the designs found so far. The search region is the set of all triples of mass, deflection and mode
+//! that no incumbent dominates. It is the union of the regions below local upper bounds. A design below a local upper
+//! bound is lighter, deflects less and has a higher mode than the bound.
 //!
 //! One sweep over the incumbents by rising mass finds all local upper bounds. Deflection and mode of the incumbents so
 //! far form a staircase, with a bound between any two neighbouring steps. When a heavier incumbent cuts off such a
@@ -167,7 +167,7 @@ struct Stairs {
 
 impl Stairs {
     /// Adds a design that is at least as heavy as all designs before it. Local upper bounds that are complete now are
-    /// appended to `upper_bounds`. Returns whether no earlier design dominates this one.
+    /// appended to `upper_bounds`. Returns whether no earlier design dominates this design.
     fn add(&mut self, design: &Objectives, upper_bounds: &mut Vec<LocalUpperBound>) -> bool {
         let (tip_m, hz) = (design.tip_deflection_m, design.lowest_mode_hz);
         // Steps before `from` deflect less than the design. Steps before `to` have no higher mode.

@@ -1,8 +1,9 @@
-//! The exact lowest eigenvalue of one arm, independent of any trial shape.
+//! The exact lowest eigenvalue of one arm, independent of any trial shape (a motion that bounds the lowest
+//! mode).
 //!
-//! With `A = C^½ M C^½` and the compliance matrix `C`, the inverse of the stiffness matrix `K`, all eigenvalues of
-//! `K φ = λ M φ` lie above `λ` exactly if `1/λ - A` is positive definite (Sylvester's law of inertia). One Cholesky
-//! factorization decides that.
+//! Let `K` be the stiffness matrix, `C` its inverse, `M` the mass matrix and `A = C^½ M C^½`. All eigenvalues of
+//! `K φ = λ M φ` lie above a number `λ` exactly if `1/λ - A` is positive definite (Sylvester's law of inertia). One
+//! Cholesky factorization decides whether it is.
 
 use super::parts::INERTIAS;
 use super::pose::{COORDINATES, Pose};
@@ -15,7 +16,8 @@ const TOLERANCE: f64 = 1e-9;
 
 /// The inertia matrix of a case as a linear function of the line inertias of the pieces.
 pub(super) struct CaseInertia {
-    /// Index of the piece and of its strain coordinate for each row of the matrix.
+    /// For each row of the matrix, the index of the piece and of its strain coordinate. A strain coordinate is a way in
+    /// which a piece deforms, such as the torsion of a joint.
     coordinates: Vec<(usize, usize)>,
     /// Inertia matrix of the payload and of the bodies that the study gives, row by row.
     fixed: Vec<f64>,

@@ -1,5 +1,6 @@
-//! A matrix game, solved by the simplex method. The solution is the weights of the columns under which the least
-//! weighted sum of a row is as large as possible.
+//! A matrix game, solved by the simplex method. The game is given by a matrix. Its solution is the weights of the
+//! columns under which the least weighted sum of a row is as large as possible. The weights are not negative and sum to
+//! one.
 
 use crate::mechanics::lanes::{LANES, LaneWork, Lanes, in_lanes, subtract_multiple};
 use std::ops::Range;
@@ -64,8 +65,8 @@ pub(super) fn solve(rows: &[f64], width: usize, balanced: Range<usize>) -> Game 
         if cost > -ROUNDING {
             break;
         }
-        // Of several variables with this cost, the one with the lowest number enters, wherever its column stands in
-        // the tableau.
+        // Of several variables with this cost, the variable with the lowest number enters, wherever its column
+        // stands in the tableau.
         let equals = (0..count).filter(|&j| objective[j] == cost);
         let Some(enter) = equals.min_by_key(|&j| others[j]) else { break };
         let ratio = |i: usize| {

@@ -1,9 +1,13 @@
 //! The search for designs near a finished front, box by box.
 //!
-//! Every objective of a box's bound is at least as good as the same objective of any member, so no member has a
-//! smaller shortfall ([`Shortfall`]) than the bound. A box is pruned if the shortfall of its bound is too large.
-//! Incumbents do not prune here, and dominated drives stay, because near designs may be dominated. Once more designs
-//! have been found than were asked for, the greatest allowed shortfall is lowered.
+//! The shortfall of a design ([`Shortfall`]) is the least fraction by which it is worse than some design of the front.
+//! A box is a set of designs, its members. Every objective of a box's bound is at least as good as the same objective
+//! of any member, so no member has a smaller shortfall than the bound. A box is pruned if the shortfall of its bound is
+//! too large.
+//!
+//! Near designs may be dominated. Therefore a box is not pruned because a known design dominates it, and drives that a
+//! lighter drive dominates are not removed. Once more designs have been found than were asked for, the greatest allowed
+//! shortfall is lowered.
 
 use super::bound::{BoxBound, Verdict};
 use super::box_work::BoxWork;
@@ -82,8 +86,8 @@ impl Exact<'_> {
     }
 }
 
-/// How many near designs may be stored before the list is cut back to the `most` nearest that were asked for: twice
-/// `most` and a buffer, so that the list is not cut back at every find.
+/// How many near designs may be stored before the list is cut back to the `most` nearest designs, which the user asked
+/// for. It is twice `most` and a buffer, so that the list is not cut back at every find.
 fn kept_at_most(most: usize) -> usize {
     2 * most + BUFFERED_DESIGNS
 }

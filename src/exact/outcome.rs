@@ -3,7 +3,8 @@
 use crate::search::sweep::Candidate;
 use serde::{Deserialize, Serialize};
 
-/// The findings of one shard, before designs with tied drives are listed.
+/// The findings of one shard, the part of a space that one process searches. Of designs that differ only in drives of
+/// equal mass, torsion curve and bearing stiffness (ties), it has one.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct FoundInShard {
     /// The subtrees of the space that were searched. A subtree is named by the halves that lead to it from the box of

@@ -1,4 +1,7 @@
 //! The numbers of a part on which bounds depend, and their intervals over a box of parts.
+//!
+//! A part is a tube or a drive. A box of parts is a set of them, its members. The bounds of a box hold for every
+//! member.
 
 use super::torsion::{BreakPoints, CurveBox};
 use super::tree::{Bounds, Key};
@@ -81,8 +84,9 @@ pub(super) struct LinkBox {
     pub round: bool,
     /// Least cost of the material \[EUR/m\].
     pub cost_eur_per_m: f64,
-    /// Least and greatest lever \[m\]: the distance along the axis of the joint directly inboard from the face of the
-    /// joint's flange to the point where the link attaches. 0 if the bearing of this joint is not checked.
+    /// Least and greatest lever \[m\]. The lever is a distance along the axis of the joint directly inboard: from the
+    /// face of the joint's flange to the point where the link attaches. It is 0 if the bearing of this joint is not
+    /// checked.
     pub lever_m: [f64; 2],
     /// Least and greatest space that the link leaves for the gear and motor of the joint inboard.
     pub room: [LinkRoom; 2],
@@ -148,8 +152,9 @@ impl Bounds for LinkBox {
         }
     }
 
-    /// Mass is weighted twice, because it is an objective and also loads everything inboard. Shear stiffness is
-    /// weighted little and axial stiffness not at all, because they hardly change any objective.
+    /// The logarithms of mass and stiffnesses, by which the tree separates tubes. Mass is weighted twice, because it is
+    /// an objective and also loads everything inboard. Shear stiffness is weighted little and axial stiffness not at
+    /// all, because they hardly change any objective.
     fn key(&self) -> Key {
         let s = self.low.stiffnesses.map(|s| if s.is_finite() { libm::log(s) } else { 0.0 });
         [2.0 * libm::log(self.low.inertias[inertia::MASS]), s[0], 0.7 * s[1], 0.1 * s[2], 0.3 * s[3]]
@@ -317,8 +322,8 @@ impl Bounds for DriveBox {
         }
     }
 
-    /// Drives are separated first by torsion curve, because all drives with the same gear have the same one, and then
-    /// by mass and capacity.
+    /// The numbers by which the tree separates drives. The numbers of the torsion curve come first, because all
+    /// drives with the same gear have the same curve. Mass and capacity follow.
     fn key(&self) -> Key {
         let k = self.curve.map_or([0.0; 3], |c| {
             let w = &c.stiff.windup;

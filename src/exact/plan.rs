@@ -1,13 +1,15 @@
 //! The slack of the next pass.
 //!
-//! A search has passes with less and less slack. In a pass with slack `ε`, a box is also pruned if an incumbent comes
-//! within the factor `1 + ε` of its bound in all three objectives. A completed pass therefore proves that for every
-//! design some design found is worse by at most `ε`. The time of a pass grows as a power of the reciprocal of its
-//! slack, `t ∝ ε^-g`. The exponent `g` is measured on the last two completed passes.
+//! A search goes over the whole space several times, in passes with less and less slack. In a pass with slack `ε`, a
+//! box of designs is also discarded if it promises little: some design found before comes within the factor `1 + ε` of
+//! the box's bound in all three objectives. A completed pass therefore proves this: every design has a design found
+//! that is worse than it by at most `ε`. The time of a pass grows as a power of the reciprocal of its slack, `t ∝
+//! ε^-g`. The exponent `g` is measured on the last two completed passes.
 //!
 //! Without a time limit the slacks come from a fixed list and do not depend on the machine. With a time limit they
-//! come from the same list as long as a pass is short compared with the time left, and if the gap that was asked for
-//! can be proved in time. Otherwise the last pass gets the least slack for which there should be time.
+//! come from the same list as long as a pass is short compared with the time left. They also come from the list if the
+//! gap that was asked for can be proved in time. Otherwise the last pass gets the least slack for which there should be
+//! time.
 
 use serde::{Deserialize, Serialize};
 
@@ -35,7 +37,7 @@ const LAST_PASS_SHARE: f64 = 0.75;
 /// of the list.
 const SHORT_PASS_SHARE: f64 = 0.05;
 /// Greatest factor by which one pass divides the slack. A larger step would be predicted from times measured at a much
-/// larger slack. An additional pass in between takes only a small part of the time of the next one.
+/// larger slack. An additional pass in between takes only a small part of the time of the next pass.
 const LONGEST_STEP: f64 = 3.0;
 /// If no finer pass is predicted to fit in the time left, a pass with the slack times this factor is still tried,
 /// because the prediction may be wrong.
@@ -50,7 +52,7 @@ pub(super) struct Pass {
 
 /// The slacks of the passes of a search.
 pub(super) struct Plan {
-    /// Slacks in descending order. The last one is the gap that was asked for.
+    /// Slacks in descending order. The last slack is the gap that was asked for.
     slacks: Vec<f64>,
     /// Greatest number of slacks of the list that are skipped at once.
     most_passed_over: usize,
@@ -96,8 +98,8 @@ impl Plan {
     }
 }
 
-/// The slack of the next pass on the way from the slack `from` to the finer one `slack`. The way is divided into as few
-/// equal steps of the logarithm as possible, none longer than [`LONGEST_STEP`].
+/// The slack of the next pass on the way from the slack `from` to the finer slack `slack`. The way is divided into as
+/// few equal steps of the logarithm as possible, none longer than [`LONGEST_STEP`].
 fn step_to(slack: f64, from: f64) -> f64 {
     let finer = from / slack;
     if finer * SHORTEST_STEP < 1.0 {

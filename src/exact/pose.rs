@@ -1,5 +1,6 @@
 //! One case of a study as rows of numbers: for each strain coordinate, the generalized force that each weight causes
-//! and the displacement of the tip.
+//! and the displacement of the tip. A strain coordinate is one way in which a piece deforms, such as the torsion of a
+//! joint.
 
 use super::bearing_rows::BearingRows;
 use super::interval::interval;
@@ -63,7 +64,7 @@ pub(super) struct Pose {
     /// Whether no two contributions to the tip's displacement can oppose each other.
     pub contributions_align: bool,
     /// Density of the water around the arm \[kg/m³\], 0 in air. The net weight of a tube per length is
-    /// `g (mass - water · outer area)`.
+    /// `g (mass per length - water · outer area)`.
     pub water_kg_m3: f64,
     pub pieces: Vec<PosedPiece>,
     /// Inertia of the payload about the world's origin.
@@ -95,7 +96,7 @@ pub(super) enum PosedPiece {
 /// A tube in a pose.
 pub(super) struct PosedTube {
     pub length_m: f64,
-    /// Place of the inboard end.
+    /// Position of the inboard end \[m\].
     pub root_m: Vector3<f64>,
     /// Axes of the section frame as columns, x along the tube.
     pub frame: Matrix3<f64>,

@@ -1,8 +1,9 @@
-//! The search for the first incumbents by quick descents (probes).
+//! The search for the first incumbents by quick descents (probes). Incumbents are designs that were found already;
+//! boxes that they dominate are pruned.
 //!
-//! A probe minimizes one weighted sum of the logarithms of mass, deflection and mode. It follows the half with the
-//! better bound of every box down to one design, and then optimizes one level at a time with the other levels fixed.
-//! Its result proves nothing, but a search with good incumbents prunes early.
+//! A probe minimizes one weighted sum of the logarithms of mass, deflection and the reciprocal of the mode. It follows
+//! the half with the better bound of every box down to one design, and then optimizes one level at a time with the
+//! other levels fixed. Its result proves nothing, but a search with good incumbents prunes early.
 
 use super::bound::{BoxBound, DesignBox, Verdict};
 use super::box_work::BoxWork;
@@ -50,7 +51,7 @@ impl Merit {
     }
 }
 
-/// The best design that one probe has found so far, with its trial shapes.
+/// The best design that one probe has found so far, with its trial shapes (motions that bound the lowest mode).
 struct Best {
     merit: f64,
     design_box: DesignBox,
@@ -81,8 +82,8 @@ pub(super) fn probe<'p>(
     best.into_iter().flatten().collect()
 }
 
-/// Makes short probes, as many as `dives`, and returns what they find. A short probe only descends once; it does not optimize the levels one by
-/// one.
+/// Makes as many short probes as `dives` says, and returns what they find. A short probe descends once and does not
+/// optimize the levels one by one.
 pub(super) fn dives(budget: &Budget, problem: &Problem, dives: usize) -> Findings {
     let mut all = Findings::default();
     let Some(shapes) = problem.first_shapes(&mut BoxWork::default()) else { return all };
@@ -127,9 +128,9 @@ impl Probe<'_, '_> {
         Some(Individual { design_box: best.design_box, objectives: best.objectives, shapes: best.shapes })
     }
 
-    /// Searches the box `design_box` for a better design than `best`: one with a smaller merit, which is the objective
-    /// of the probe. Of two halves, the one with the better bound is opened first, and at most `most_boxes` boxes are
-    /// bounded. Returns the better design, or `best` if none was found.
+    /// Searches the box `design_box` for a better design than `best`. Better means a smaller merit, which is the
+    /// objective of the probe. Of two halves, the half with the better bound is opened first, and at most `most_boxes`
+    /// boxes are bounded. Returns the better design, or `best` if none was found.
     fn descend(
         &self,
         design_box: DesignBox,

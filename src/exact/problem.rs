@@ -13,7 +13,8 @@ use crate::space::design_space::DesignSpace;
 use crate::space::slot::SizedJoint;
 use std::sync::Arc;
 
-/// A compiled design space. Pieces are counted from the tip, and most lists have one entry for each piece.
+/// A compiled design space. A piece is a joint, a link, or a spring or mass between them. Pieces are counted from the
+/// tip, and most lists have one entry for each piece.
 #[derive(Clone)]
 pub(super) struct Problem<'c> {
     pub space: &'c DesignSpace,
@@ -23,7 +24,8 @@ pub(super) struct Problem<'c> {
     /// Number of options of each level.
     pub level_sizes: Vec<u32>,
     pub poses: Arc<Vec<Pose>>,
-    /// Inertia matrix of each judged case, as a function of the line inertias of the pieces.
+    /// Inertia matrix of each judged case (a case that counts for deflection and lowest mode), as a function of the
+    /// line inertias of the pieces.
     pub inertias: Arc<Vec<CaseInertia>>,
     /// Ratio of peak stress to static stress in sizing cases, in which the arm also accelerates.
     pub peak_factor: f64,
@@ -59,8 +61,9 @@ pub(super) enum Part<'c> {
     Offset { mass_kg: f64 },
 }
 
-/// Lever of the loads on a joint's output bearing: the distance along the axis from the face of the joint's flange (or
-/// from the centre of the bearing, if the study states the lever) to the point where the link attaches.
+/// Lever of the loads on a joint's output bearing: the distance along the axis from the face of the joint's flange to
+/// the point where the link attaches. If the study states the lever, it is measured from the centre of the bearing
+/// instead.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Lever {
     /// The lever is the same for all options \[m\].
@@ -86,8 +89,9 @@ impl Part<'_> {
     }
 }
 
-/// The drives that a first-fit joint can get, by rising mass. The ladder returns the box around any contiguous run of
-/// these drives.
+/// The drives that a first-fit joint (one that takes the lightest drive which carries its demand) can get, by rising
+/// mass. The ladder returns the box around any contiguous run of these drives: the least and the greatest value of each
+/// number over them.
 pub(super) struct Ladder {
     /// `runs[k][i]` is the box around the `2^k` drives from index `i` on. The box around any run of drives is the union
     /// of two of these boxes.

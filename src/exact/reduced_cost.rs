@@ -1,6 +1,10 @@
 //! Reduced-cost fixing: it removes the options that no member below a local upper bound can have.
 //!
-//! At a dual point (a set of multipliers), let every other part be the cheapest one. Then the weighted limits allow a
+//! A member is a design of the box that is searched. It is below a local upper bound if its mass and deflection are
+//! less and its mode is higher. Every such member satisfies some inequalities ([`rows`](super::rows)). Multipliers are
+//! weights of these inequalities. The price of a part is what it adds to their weighted sum.
+//!
+//! At a dual point (a set of multipliers), let every other part be the cheapest one. The weighted limits then allow a
 //! greatest price for the remaining part. An option with a higher price belongs to no member below the local upper
 //! bound. A box of options is compared with eight dual points at a time.
 
@@ -23,9 +27,9 @@ const DUAL_POINTS_USED: usize = 32;
 type PricedLimit = (DualPrice, f64);
 
 impl Rows<'_> {
-    /// The options that remain in each level after reduced-cost fixing, as nodes of its base tree. `points` are the
-    /// dual points by which options are excluded that no member below `upper` can have. `None` if a level has no option
-    /// left.
+    /// The options that remain in each level after reduced-cost fixing, as nodes of its base tree (the tree over all
+    /// options). `points` are the dual points by which options are excluded that no member below `upper` can have.
+    /// `None` if a level has no option left.
     pub(super) fn affordable_options(
         &self,
         design_box: &[u32],
@@ -61,8 +65,9 @@ impl Rows<'_> {
             .collect()
     }
 
-    /// Nodes of a level's base tree below `node` that contain every option which no dual point excludes. `afforded`
-    /// has, for each dual point, the prices of the level and the greatest price that an option may have.
+    /// Nodes of a level's base tree (the tree over all options) below `node`. They contain every option that no dual
+    /// point excludes. `afforded` has, for each dual point, the prices of the level and the greatest price that an
+    /// option may have.
     fn affordable(&self, piece: usize, node: u32, afforded: &[PricedLimit]) -> Vec<u32> {
         let prices: Vec<EightPrices> = afforded.chunks(LANES).map(EightPrices::new).collect();
         let prices = &prices[..];
@@ -94,13 +99,13 @@ struct EightPrices {
     compliance: [Eight; STIFFNESSES],
     /// Amount by which each unit of a stiffness lowers the weighted sum of the rows at each dual point.
     stiffness: [Eight; STIFFNESSES],
-    /// For each judged case: the price of a joint per unit of twist, its price per unit of torque, and the amount by
-    /// which each unit of slope lowers the weighted sum.
+    /// Three numbers for each judged case, which counts for deflection and lowest mode: the price of a joint per unit
+    /// of twist, its price per unit of torque, and the amount by which each unit of slope lowers the weighted sum.
     joint: Vec<[Eight; 3]>,
 }
 
 impl EightPrices {
-    /// Packs up to eight dual points into the lanes of a vector. In unused lanes any price is allowed.
+    /// Packs up to eight dual points into the eight places (lanes) of a vector. In unused lanes any price is allowed.
     fn new(afforded: &[PricedLimit]) -> Self {
         let lanes = |of: &dyn Fn(&DualPrice) -> f64| -> Eight {
             std::array::from_fn(|lane| afforded.get(lane).map_or(0.0, |(price, _)| of(price)))
@@ -124,7 +129,7 @@ impl EightPrices {
     }
 }
 
-/// Computes whether every drive of a box is excluded: whether, at some dual point (set of multipliers), the least
+/// Computes whether every drive of a box is excluded. This is so if, at some dual point (set of multipliers), the least
 /// price of a drive in the box is above the allowed price. A price that is not a number excludes nothing.
 struct DrivesCost<'a> {
     drives: &'a DriveBox,
@@ -169,8 +174,8 @@ impl LaneWork for DrivesCost<'_> {
     }
 }
 
-/// Computes whether every tube of a box is excluded: whether, at some dual point (set of multipliers), the least price
-/// of a tube in the box is above the allowed price. A price that is not a number excludes nothing.
+/// Computes whether every tube of a box is excluded. This is so if, at some dual point (set of multipliers), the least
+/// price of a tube in the box is above the allowed price. A price that is not a number excludes nothing.
 struct LinksCost<'a> {
     links: &'a LinkBox,
     prices: &'a [EightPrices],

@@ -1,5 +1,11 @@
 //! The bound of a region. Its result is either a proof that the region is empty, or the surviving options, ways to
 //! branch and promising designs.
+//!
+//! A region is the set of designs below a local upper bound: with less than its mass, less than its deflection and a
+//! higher mode. The proof is a weighted sum of inequalities ([`rows`](super::rows)) that no design satisfies. The
+//! weights are the multipliers. A relaxed design is the cheapest choice of parts in such a sum, and a mixture is a
+//! weighted mean of several relaxed designs. The multipliers are found as the solution of a *matrix game*: the weights
+//! that make the least sum over the known relaxed designs as large as possible.
 
 use super::bound::{BoxBound, DesignBox};
 use super::box_work::BoxWork;
@@ -9,15 +15,15 @@ use super::matrix_game::Game;
 use super::problem::Problem;
 use super::rows::{DualPoint, ROUNDING, RelaxedDesign, Rows, WarmStart};
 
-/// Greatest number of dual points (sets of multipliers) for one box, in addition to those that use a single row.
+/// Greatest number of dual points (sets of multipliers) for one box, in addition to the points that use a single row.
 const MOST_POINTS: usize = 24;
-/// Greatest number of rounds in which new trial shapes are added for one box.
+/// Greatest number of rounds in which new trial shapes (motions that bound the lowest mode) are added for one box.
 const MOST_SHAPES: usize = 3;
 /// Greatest number of dual points that are added once it is clear that the multipliers cannot prove the region empty.
-/// Further points still exclude more options by their reduced costs.
+/// Further points still exclude more options by their reduced costs: the increase of the weighted sum with the option.
 const MOST_TO_REDUCE: usize = 8;
-/// The search for multipliers stops if the value of the matrix game, which limits what any multipliers can prove,
-/// exceeds the value of the best dual point so far by at most this much (in the scale of the rows).
+/// The search for multipliers stops if the value of the matrix game exceeds the value of the best dual point so far by
+/// at most this much (in the scale of the rows). The value of the matrix game limits what any multipliers can prove.
 const VALUE_TOLERANCE: f64 = 1e-4;
 /// Least weight of a relaxed design in the mixture. A smaller weight is due to rounding.
 const LEAST_MIXTURE_WEIGHT: f64 = 1e-9;
@@ -29,12 +35,13 @@ pub(super) struct Survivors {
     pub options: Vec<Vec<u32>>,
     /// Ways to divide the region, the most promising first.
     pub branchings: Vec<Branching>,
-    /// Relaxed designs of the mixture. If one of them is a single design, it is evaluated as a possible incumbent.
+    /// Relaxed designs of the mixture. If one of them is a single design, it is evaluated: it may join the
+    /// designs found so far.
     pub candidates: Vec<DesignBox>,
 }
 
-/// For each set of multipliers that was tried for a box: its dual point, and the relaxed design that minimizes the weighted
-/// sum.
+/// For each set of multipliers that was tried for a box: its dual point, and the relaxed design that minimizes the
+/// weighted sum.
 #[derive(Default)]
 struct Proofs {
     points: Vec<DualPoint>,
@@ -163,7 +170,7 @@ impl Rows<'_> {
                 *nearest = nearest.max(plane.above(upper));
                 *nearest <= ROUNDING
             });
-            // The new multipliers refute no bound, not even the one for which they were made.
+            // The new multipliers refute no bound, not even the bound for which they were made.
             if open.len() == before {
                 break;
             }

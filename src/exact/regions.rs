@@ -1,11 +1,14 @@
 //! The search region by region.
 //!
-//! A region is the part of the objective space below a [`LocalUpperBound`] of the incumbents. Far fewer options can
-//! belong to a design of a region than the space has. A dual point excludes every option whose price exceeds what the
-//! local upper bound allows ([`reduced_cost`](super::reduced_cost)). With fewer options the bounds are sharper, and
-//! more options can be excluded.
+//! Incumbents are the designs found so far. A region is the part of the objective space below a
+//! [`LocalUpperBound`](super::local_upper_bounds::LocalUpperBound) of the incumbents. Far fewer options can belong to a
+//! design of a region than the space has. A dual point is a set of weights for the inequalities that bound a region
+//! ([`rows`](super::rows)); the price of a part is what it adds to their weighted sum. A dual point excludes every
+//! option whose price exceeds what the local upper bound allows ([`reduced_cost`](super::reduced_cost)). With fewer
+//! options the bounds are sharper, and more options can be excluded.
 //!
-//! Local upper bounds are refuted several at a time, by one bound that covers all of them. A set of bounds that is not
+//! A local upper bound is *refuted* if no design is below it. Local upper bounds are refuted several at a time, by one
+//! bound that covers all of them. A set of bounds that is not
 //! refuted is divided into two. A region below a single bound that is not refuted is branched on options or on a torque
 //! ([`branching`](super::branching)) until few designs are left. These are searched box by box.
 
@@ -30,11 +33,13 @@ use std::sync::Arc;
 /// The bound of a region is computed again with the remaining options if at least this fraction of the region's designs
 /// was excluded.
 const WORTH_IT: f64 = 0.1;
-/// Width of a grid cell for the thinning of incumbents, as a fraction of the slack.
+/// Width of a grid cell for the thinning of incumbents, as a fraction of the slack. The slack is the fraction by which
+/// a design may be better than the incumbents and still be missed in this pass.
 const THINNING_CELL: f64 = 0.45;
 
-/// The options that may belong to a design of a region. The trial shapes and multipliers belong to the larger region
-/// of which this region is a part, until its own are computed.
+/// The options that may belong to a design of a region. Its trial shapes (motions that bound the lowest mode) and its
+/// multipliers (in `warm_start`) first come from the larger region of which it is a part. They are replaced when its
+/// own are computed.
 #[derive(Clone)]
 pub(super) struct Subproblem<'p> {
     problem: Arc<Problem<'p>>,
@@ -132,7 +137,7 @@ impl<'p> Search<'_, 'p> {
             return vec![second, first];
         }
         // The options that are left belong to the bound that covers the whole group. They do not tell how to divide
-        // the options for the one bound that is left, so the region of this bound is bounded anew.
+        // the options for the single bound that is left, so the region of this bound is bounded anew.
         if !was_single {
             return vec![Task::Region { below, subproblem }];
         }

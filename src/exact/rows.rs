@@ -1,20 +1,21 @@
 //! Rows that bound mass, deflection and mode of a box's members together.
 //!
-//! The bound of a box takes every part at its lightest *and* at its stiffest, but a part is one or the other.
-//! The rows below are sums of one number for each part, so lightness and stiffness are traded part by part:
+//! A box is a set of designs, its members. The bound of a box takes every part at its lightest *and* at its stiffest,
+//! but a part is one or the other. A row is a linear inequality. The rows below are sums of one number for each part,
+//! so lightness and stiffness are traded part by part:
 //!
 //! - *mass*: the sum of the masses. It is exact.
 //! - *displacement of the tip* in a case, along a fixed direction: the twists of the gears, each at a torque of its
 //!   own, and the deflections of tubes and bearings. A product of the force `F` and the compliance `c` of a tube or a
-//!   bearing is replaced by `F₀ c + c₀ (F - F₀)`, where `F₀` and `c₀` are the least of the box (McCormick). The error
-//!   is at most the product of the widths of the two intervals.
-//! - *torque of a gear*: the torque at which its curve is evaluated, less the torque that the weights outboard make.
+//!   bearing is replaced by `F₀ c + c₀ (F - F₀)`, where `F₀` and `c₀` are the least values in the box (McCormick's
+//!   envelope). The error is at most the product of the widths of the two intervals.
+//! - *torque of a gear*: the torque at which its curve is evaluated, minus the torque that the weights outboard cause.
 //!   For a member the difference is zero, so this row is exact.
 //! - *mode*: `λ xᵀMx - xᵀKx` for a trial shape `x`. It is not positive for a member whose eigenvalues are at least `λ`.
 //!   The error is about the square of the shape's error.
 //!
 //! For a member below a [`LocalUpperBound`] each row has an upper limit. With multipliers that are not
-//! negative, the weighted sum of the rows then has one too. This is the Lagrangian relaxation of the region;
+//! negative, the weighted sum of the rows then has an upper limit too. This is the Lagrangian relaxation of the region;
 //! [`lagrangian`](super::lagrangian) minimizes the sum.
 
 use super::bound::{BoxBound, DesignBox, START_SHAPES};
@@ -29,9 +30,9 @@ use super::problem::{Part, Problem};
 use super::shape::Shape;
 use super::tip_row::TipRow;
 
-/// Relative margin by which incumbents are made worse before a region is bounded by them. It is larger than the
-/// relative amount by which an incumbent must be better to dominate, and than the difference below which objectives
-/// count as equal.
+/// Relative margin by which incumbents (designs found already) are made worse before a region is bounded by them. It is
+/// larger than the relative amount by which an incumbent must be better to dominate, and than the difference below
+/// which objectives count as equal.
 pub(super) const DOMINANCE_MARGIN: f64 = 2.0 * BETTER_BY;
 /// Margin for the rounding of sums whose terms are about 1.
 pub(super) const ROUNDING: f64 = 1e-9;
@@ -42,7 +43,8 @@ pub(super) struct WarmStart {
     /// Multipliers of the mass row, of the tip rows and of the mode rows. Every box computes its own multipliers for
     /// torque rows.
     pub multipliers: Vec<f64>,
-    /// Trial shapes (motions that bound the lowest mode): for each judged case, one for each starting acceleration.
+    /// Trial shapes (motions that bound the lowest mode): for each judged case (a case that counts for deflection and
+    /// lowest mode), one for each starting acceleration.
     pub shapes: Vec<Shape>,
     /// The feasible drives of each level; `None` for a level of links.
     drives: Vec<Option<FeasibleDrives>>,
@@ -106,8 +108,8 @@ pub(super) struct Mode {
     pub kinetic: [f64; 2],
 }
 
-/// A minimizer of the weighted sum of rows over a box. It need not be a member of the box: the torques at which its
-/// gears are evaluated need not agree with its weights, and its node of a level may be a box of several options.
+/// A minimizer of the weighted sum of rows over a box. It need not be a member of the box. The torques at which its
+/// gears are evaluated need not agree with its weights, and its node of a level may stand for several options.
 pub(super) struct RelaxedDesign {
     /// The node of each level.
     pub design_box: DesignBox,
@@ -303,12 +305,12 @@ impl<'a> Rows<'a> {
         self.modes.push(Mode { judged, start, shape, kinetic });
     }
 
-    /// The multipliers with which the search for better ones starts. `above` are the multipliers of the parent box.
-    /// Rows that the parent box did not have get equal multipliers.
+    /// The multipliers with which the search for better multipliers starts. `above` are the multipliers of the parent
+    /// box. Rows that the parent box did not have get equal multipliers.
     pub(super) fn starting_multipliers(&self, above: &[f64]) -> Vec<f64> {
         let mut multipliers = vec![0.0; self.scale.len()];
         let others: Vec<usize> = (0..=self.tips.len()).chain(self.first_mode..self.scale.len()).collect();
-        // New rows have no multiplier from the parent. Equal ones are as good a guess as any.
+        // New rows have no multiplier from the parent. Equal multipliers are as good a guess as any.
         let even = 1.0 / others.len() as f64;
         for (k, row) in others.into_iter().enumerate() {
             multipliers[row] = above.get(k).copied().unwrap_or(even);

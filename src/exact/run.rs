@@ -1,4 +1,6 @@
-//! The exact search: probes, passes with less and less slack, and the listing of the front.
+//! The exact search: probes, passes with less and less slack, and the listing of the front. A probe quickly finds a
+//! good design. A pass searches the whole space. The slack of a pass is the fraction by which a design may be better
+//! than the designs found already (the *incumbents*) and still be missed.
 
 use super::bound::BoxBound;
 use super::bound::DesignBox;
@@ -171,8 +173,8 @@ impl<'p> Exact<'p> {
         Self { shard, ..self }
     }
 
-    /// Goes on where an earlier process ended, and saves states for a later one. All these processes must make the same
-    /// calls of [`run`](Self::run) and [`run_of_material`](Self::run_of_material), in the same order.
+    /// Goes on where an earlier process ended, and saves states for a later process. All these processes must make the
+    /// same calls of [`run`](Self::run) and [`run_of_material`](Self::run_of_material), in the same order.
     ///
     /// # Errors
     /// Returns a message if the bytes are not a saved state of an exact search.

@@ -9,7 +9,7 @@ use crate::search::sweep::{Candidate, SLACK};
 use serde::{Deserialize, Serialize};
 use std::collections::HashSet;
 
-/// Number of candidates above which the dominated ones are removed from time to time: whenever the number reaches a
+/// Number of candidates above which dominated candidates are removed from time to time: whenever the number reaches a
 /// power of two.
 const BUFFER: usize = 4096;
 
@@ -17,9 +17,9 @@ const BUFFER: usize = 4096;
 #[derive(Default)]
 pub(super) struct SearchState {
     pub incumbents: Incumbents,
-    /// Numbers of the designs that were evaluated as possible incumbents.
+    /// Numbers of the designs that were evaluated and may have joined the designs found.
     pub tried: HashSet<u128>,
-    /// Designs found that meet every constraint; dominated ones among them are removed from time to time.
+    /// Designs found that meet every constraint. Dominated designs among them are removed from time to time.
     kept: Vec<Candidate>,
     /// Designs for which rounding leaves open whether a part carries its demand. The full model judges them.
     undecided: Vec<Candidate>,

@@ -1,6 +1,7 @@
 //! Trial shapes, which give an upper bound of the lowest mode of every arm in a box.
 //!
-//! For any motion `x` of an arm, `λ₁ ≤ xᵀKx / xᵀMx` (Rayleigh). In strain coordinates `K` is diagonal, so `xᵀKx` is a
+//! For any motion `x` of an arm, `λ₁ ≤ xᵀKx / xᵀMx` (Rayleigh). In strain coordinates (the ways in
+//! which each piece deforms) `K` is diagonal, so `xᵀKx` is a
 //! sum over the stiffnesses of the parts. The inertia of the arm does not depend on its stiffness, so `xᵀMx` is a sum
 //! over the masses and line inertias, and no coefficient is negative. It is therefore enough to store two lists of
 //! coefficients for each shape. With every stiffness at its greatest and every inertia at its least, the quotient
@@ -189,8 +190,8 @@ pub(super) fn products<const N: usize>(a: &[[f64; N]], b: &[[f64; N]]) -> f64 {
 }
 
 /// Writes `M x` to `work.forces`: the inertia force on every coordinate, divided by the squared angular frequency, when
-/// the arm moves by `x` and its base by `base`. One pass goes outward and computes the motion, a second one goes inward
-/// and sums the forces. No matrix is formed.
+/// the arm moves by `x` and its base by `base`. One pass goes outward and computes the motion, a second pass goes
+/// inward and sums the forces. No matrix is formed.
 pub(super) fn inertia_forces(
     pose: &Pose,
     inertia: &[[f64; INERTIAS]],

@@ -2,9 +2,9 @@
 //!
 //! The box of all designs is halved, and its halves again, until there are enough boxes. The box with the most designs
 //! is halved first, always at its level with the most options. The subtrees thus depend on the space alone, and every
-//! process makes the same ones. They are dealt to the shards in turn. The name of a subtree lists the halves that lead
-//! to it. The names of some subtrees therefore tell whether these subtrees together contain every design exactly once
-//! ([`refuse_holes`]).
+//! process makes the same subtrees. They are dealt to the shards in turn. The name of a subtree lists the halves that
+//! lead to it. The names of some subtrees therefore tell whether these subtrees together contain every design exactly
+//! once ([`refuse_holes`]).
 //!
 //! A shard prunes only designs that are infeasible or dominated. The dominating design was found by the shard or given
 //! to it, or has a lighter drive and may lie in any subtree (`dominance.rs`). So the findings of all shards together
@@ -21,7 +21,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// Number of subtrees of each shard in a search by boxes. With several small subtrees in each shard, no single shard
-/// gets all the hard ones.
+/// gets all the hard subtrees.
 const SUBTREES_PER_SHARD: usize = 8;
 /// Number of subtrees of each shard in a search by regions. It is one, because the search of each subtree goes through
 /// all regions.

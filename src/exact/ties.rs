@@ -8,7 +8,7 @@ use std::collections::{BTreeSet, HashMap};
 
 impl Problem<'_> {
     /// All designs that the designs in `found` represent. The drive of such a design represents all drives of its kind
-    /// (equal mass, curve and bearing stiffness). If there are more than `most` designs, only the first one for each
+    /// (equal mass, curve and bearing stiffness). If there are more than `most` designs, only the first design for each
     /// design in `found` is returned. The flag is `true` if all are returned.
     pub(super) fn with_ties(&self, found: &[Candidate], most: usize) -> (Vec<Candidate>, bool) {
         let with_ties: Vec<(&Candidate, Vec<Vec<u32>>)> = self.feasible_drives(found);

@@ -6,7 +6,8 @@ use super::parts::STIFFNESSES;
 use super::problem::{Part, Problem};
 
 /// The displacement of the tip in a judged case along a fixed direction, as a linear function of the numbers of the
-/// parts. It is the direction of the tip's least displacement over the box.
+/// parts. It is the direction of the tip's least displacement over the box. A judged case counts for deflection and
+/// lowest mode.
 pub(super) struct TipRow {
     /// Index of the case.
     pub case: usize,
@@ -16,7 +17,8 @@ pub(super) struct TipRow {
     /// Displacement of the tip along the direction per radian of each joint's torsion \[m/rad\]; 0 for other pieces.
     pub joints: Vec<f64>,
     /// For each gear that keeps a single slope, the torque at which its torsion curve is evaluated \[N m\]. `None` for
-    /// other pieces, for gears whose slope may change, and for joints whose drive is chosen by first fit.
+    /// other pieces, for gears whose slope may change, and for joints whose drive is chosen by first fit (the
+    /// lightest drive that meets the demand).
     pub torques_nm: Vec<Option<f64>>,
     /// Displacement of the tip along the direction per unit of each compliance of a tube, or of a joint's bearing; one
     /// entry for each piece.

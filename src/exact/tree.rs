@@ -63,7 +63,7 @@ impl<B: Bounds> Node<B> {
 
 impl<B: Bounds> Tree<B> {
     /// Builds a tree over options, each given by its number and its bounds. The options are halved at the median of the
-    /// coordinate with the greatest spread, down to single ones. `None` if there are no options.
+    /// coordinate with the greatest spread, down to single options. `None` if there are no options.
     pub(super) fn build(options: impl Iterator<Item = (u32, B)>) -> Option<Self> {
         let options: Vec<(u32, B)> = options.collect();
         let item =

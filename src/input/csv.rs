@@ -73,8 +73,8 @@ fn utf8(record: ByteRecord) -> Result<StringRecord, String> {
     StringRecord::from_byte_record(record).map_err(|e| e.utf8_error().to_string())
 }
 
-/// The separators other than commas that occur at least `least` times in the first cell of a header. Spaces are
-/// separators if there is no other one, and a run of spaces counts once.
+/// The separators other than commas that occur at least `least` times in the first cell of a header. Spaces count as
+/// separators only in a header of one cell without other separators. A run of spaces counts once.
 pub(crate) fn other_separators(header: &[String], least: usize) -> impl Iterator<Item = &'static str> + '_ {
     let occurs = move |separator: char| header.first().is_some_and(|c| c.matches(separator).count() >= least);
     let words = [(';', "semicolons"), ('\t', "tabs")].map(|(separator, word)| (occurs(separator), word));

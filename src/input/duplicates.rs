@@ -1,4 +1,5 @@
-//! Duplicate keys in JSON. A JSON parser silently keeps the last of them, so the text is searched for them.
+//! Duplicate keys in JSON. A JSON parser silently keeps the last of several equal keys, so this module searches the
+//! text for them.
 
 use serde::de::{DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
 use std::collections::HashSet;

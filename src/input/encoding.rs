@@ -1,4 +1,4 @@
-//! Text files in other encodings than UTF-8, which are refused with the encoding and what to do.
+//! Text files in other encodings than UTF-8. They are refused with a message that names the encoding and the remedy.
 
 /// Why a file is not read as text.
 #[derive(Debug, PartialEq, Eq)]

@@ -420,7 +420,8 @@ fn kind(value: &Value) -> String {
     }
 }
 
-/// The known name that is most similar to `word`. `None` if none is similar enough to be meant with a typing error.
+/// The known name that is most similar to `word`. `None` if none is so similar that `word` may be a
+/// misspelling of it.
 pub fn closest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     known
         .iter()

@@ -26,7 +26,7 @@ pub struct Key {
     pub kind: Kind,
     /// Unit of the value; `-` if it has none.
     pub unit: &'static str,
-    /// The value that is used without the key, as JSON or in words; `None` if the key is required.
+    /// The value that is used if a file does not have the key, as JSON or in words; `None` if the key is required.
     pub default: Option<&'static str>,
     /// Description in a sentence.
     pub about: &'static str,
@@ -57,7 +57,7 @@ pub enum Kind {
     Below(f64),
     /// A number from the first to the second limit, limits included.
     Range(f64, f64),
-    /// A whole number that is at least this.
+    /// A whole number that is at least this limit.
     Whole(u32),
     /// A list of exactly this many values of one kind.
     Array(usize, &'static Kind),
@@ -118,7 +118,7 @@ impl Shape {
 }
 
 impl Key {
-    /// This key with another value that is used without it, as JSON or in words.
+    /// This key with another default: the value that is used if a file does not have the key, as JSON or in words.
     pub(crate) const fn or(self, default: &'static str) -> Self {
         Self { default: Some(default), ..self }
     }

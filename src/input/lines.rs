@@ -1,7 +1,7 @@
 //! Line numbers of the records in a CSV file.
 
-/// Counts the lines up to the first byte of a record. The CSV reader itself gives the line at which the record before
-/// ends. After blank lines and with CRLF line ends, the record begins at another line.
+/// Counts the lines up to the first byte of a record. The CSV reader itself gives the line at which the previous
+/// record ends. This line is wrong if blank lines follow it, or if lines end with CR and LF.
 pub struct LineCounter<'a> {
     bytes: &'a [u8],
     at: usize,

@@ -1,13 +1,14 @@
 //! Which magnitudes of a number a file may state.
 
-/// The largest magnitude of a number in a file, in its unit. The mechanics takes up to the eighth power of it, which is
-/// still a finite number.
+/// The largest magnitude of a number in a file, in its unit. The mechanics computes powers of such numbers, up to the
+/// eighth. The eighth power of this number is still a finite number.
 const LARGEST: f64 = 1e30;
 
-/// The smallest number that may be stated for a quantity that must be greater than zero, and is divided by.
+/// The smallest number that a file may state for a quantity that must be greater than zero. Such quantities are used
+/// as divisors.
 const SMALLEST: f64 = 1e-30;
 
-/// Why a number cannot be calculated with, and a hint; `None` if it can.
+/// Why a number cannot be used in calculations, and a hint; `None` if it can be used.
 pub(crate) fn beyond_calculation(x: f64) -> Option<(String, &'static str)> {
     match x {
         _ if !x.is_finite() => Some((format!("= {x} is not a finite number"), "give a finite number")),

@@ -1,9 +1,9 @@
 //! Rules on the characters of names and other texts in input files.
 //!
 //! Names are printed in tables, pages and messages. Control characters, and characters that change the direction of
-//! writing, would make a text look different from what it is. So no text may contain them. A spreadsheet runs a
-//! cell that begins with `=`, `+`, `-` or `@` as a formula. So no name may begin with one of these, unless it is a
-//! number.
+//! writing, would make a text look different from its content. So no text may contain such characters. A spreadsheet
+//! runs a cell that begins with `=`, `+`, `-` or `@` as a formula. So no name may begin with one of these, unless it is
+//! a number.
 
 /// Description of what is wrong with a text, and a hint.
 pub(crate) type Unfit = (String, &'static str);
@@ -35,7 +35,8 @@ fn unfit_character(text: &str, counts: impl Fn(char) -> bool) -> Option<Unfit> {
     Some((format!("has U+{:04X}, {what}", u32::from(hidden)), "remove it"))
 }
 
-/// Whether a character is a control character, or a mark, embedding, override or isolate of bidirectional text.
+/// Whether a character is a control character, or one of the Unicode characters that change the direction of
+/// writing (marks, embeddings, overrides and isolates).
 fn is_hidden(c: char) -> bool {
     let turns =
         matches!(c, '\u{061c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');

@@ -32,7 +32,7 @@ impl FileKind {
         out
     }
 
-    /// Every kind of object in such a file, each once. The outermost comes first.
+    /// Every kind of object in such a file, each once. The outermost object comes first.
     pub fn shapes(&self) -> Vec<&'static Shape> {
         let mut found = Vec::new();
         collect(&self.root, &mut found);

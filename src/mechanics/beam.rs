@@ -1,10 +1,11 @@
 //! Beams: a link that deforms, described by strain coordinates.
 //!
 //! Let `ξ = x/L` run from 0 to 1 along the link. Each strain (curvature in both planes, shear in both planes, twist
-//! rate and axial strain) is a sum of Legendre polynomials `P_i(2ξ-1)`. Slopes and displacements are the integrals of
-//! the strains from the clamped root. Legendre polynomials are orthogonal, so the stiffness matrix is diagonal. Only
-//! the lowest polynomials move the end of the link: `P_0` and `P_1` of curvature, and `P_0` of the other strains. The
-//! others are inner shapes: they deform the link while its end stays in place.
+//! rate and axial strain) is a sum of Legendre polynomials `P_i(2ξ-1)`. The coefficients are the strain coordinates.
+//! Slopes and displacements are the integrals of the strains from the clamped root. Legendre polynomials are
+//! orthogonal, so the stiffness matrix is diagonal. Only the lowest polynomials move the end of the link: `P_0` and
+//! `P_1` of curvature, and `P_0` of the other strains. The others are inner shapes: they deform the link while its end
+//! stays in place.
 //!
 //! | strain | number of coordinates | compliance of the i-th | motion of the link at ξ per unit |
 //! |---|---|---|---|
@@ -14,9 +15,9 @@
 //! | stretch | 3 | `(2i+1)/(E A L)` | displacement `L ∫P_i` |
 //!
 //! A sum of these shapes can represent the exact deflection under an end force, an end moment and a uniform load (Eqs
-//! 1-4 and their Timoshenko counterparts), so statics are exact. Natural frequencies converge from above. The inertia
-//! matrix does not depend on the stiffness, so frequencies rise with every stiffness and fall with every mass. The
-//! exact search relies on this.
+//! 1-4 of docs/model.md and their Timoshenko counterparts). Statics are therefore exact. Natural frequencies converge
+//! from above. The inertia matrix does not depend on the stiffness, so frequencies rise with every stiffness and fall
+//! with every mass. The exact search relies on this.
 
 use super::{Wrench, body_inertia, force_wrench, stack};
 use crate::arm::LinkModel;
@@ -239,8 +240,8 @@ impl PreparedBeam {
         fields.fixed_rows::<3>(0) - turned
     }
 
-    /// The point of the axis with which a body on the link moves: the displacement fields at this point (see
-    /// [`Self::fields`]), and the vector from the point to the centre of gravity of the body \[m\], in the section
+    /// The point of the axis with which a body on the link moves. The result is the displacement fields at this point
+    /// ([`Self::fields`]), and the vector from the point to the centre of gravity of the body \[m\], in the section
     /// frame.
     pub(crate) fn carrier(&self, body: &RigidBody) -> (Matrix6xX<f64>, Vector3<f64>) {
         let cg_m = self.frame.transpose() * body.cg_m;

@@ -515,7 +515,7 @@ impl Walk {
     }
 
     /// Adds rigid bodies. Their centres of gravity are given from the position that the walk has reached, in the
-    /// carried frame.
+    /// carried frame (it turns with the joints inboard).
     pub(super) fn bodies(&mut self, bodies: &[RigidBody]) {
         for body in bodies {
             let turn = self.rotation.matrix();

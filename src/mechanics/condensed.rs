@@ -1,6 +1,7 @@
 //! Condensed links: a link reduced to the six motions of its end.
 //!
-//! Only six combinations `g` of the strain coordinates `q` of a link move its end. The other shapes vibrate inside
+//! A link deforms in its strain coordinates `q`, which are polynomials of curvature, shear, twist and stretch. Only six
+//! combinations `g` of them move its end. The other shapes vibrate inside
 //! the link, at frequencies far above the lowest frequency of the arm. Let `E` be the motion of the end per unit of
 //! each `q`, and `C` the diagonal compliance matrix. The compliance of the end is then `F = E C Eᵀ = L Lᵀ`. The
 //! coordinates `g` are chosen such that the end moves by `L g` and that their stiffness matrix is the unit matrix.
@@ -13,10 +14,10 @@
 //!
 //! over the motion of the root and `g`.
 //!
-//! *Validity.* The neglected term is of the order `(λ/λ_inner)³`, where `λ_inner` is the lowest eigenvalue of the
-//! inner shapes. It is at most 1e-6 of the link's inertia if `λ_inner` is a hundred times `λ`, which means that the
-//! inner modes have ten times the frequency of the arm's lowest mode. The search uses this form. Every number that it
-//! reports is computed by the full model.
+//! *Validity.* The neglected term is of the order `(λ/λ_inner)³`, where `λ_inner` is the lowest eigenvalue of the inner
+//! shapes. It is at most 1e-6 of the link's inertia if `λ_inner` is a hundred times `λ`. The inner modes then have ten
+//! times the frequency of the arm's lowest mode. The search uses this form. Every number that it reports is computed by
+//! the full model.
 
 use super::beam::PreparedBeam;
 use nalgebra::{DMatrix, Matrix3, Matrix6, SMatrix, Vector3, Vector6};

@@ -7,8 +7,8 @@ use nalgebra::{Rotation3, Vector3};
 /// The deflections that a walk from base to tip applies to the arm.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Deflections {
-    /// The strain coordinates of all elements, base to tip. The coordinate of a passive joint includes the rotation
-    /// that its linkage adds.
+    /// The strain coordinates (deflections) of all elements, base to tip. The coordinate of a passive joint includes
+    /// the rotation that its linkage adds.
     strains: Vec<f64>,
     /// Number of strain coordinates that have been applied.
     next: usize,

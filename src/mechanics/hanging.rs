@@ -39,7 +39,8 @@ pub(crate) fn hanging_tip_m<'a>(posed: impl Fn(Deflections) -> Posed<'a>) -> Vec
     tip_m
 }
 
-/// What the linear displacement of the tip lacks: its position as the arm hangs, less the position of the linear statics \[m\].
+/// Error of the position of the tip by linear statics \[m\]: the position of the tip as the arm hangs, minus its
+/// position by linear statics.
 pub(crate) fn beyond_linear_m<'a>(posed: impl Fn(Deflections) -> Posed<'a>) -> Vector3<f64> {
     let Hanging { tip_m, straight_tip_m, displacement_m } = Hanging::new(posed);
     tip_m - straight_tip_m - displacement_m
@@ -49,8 +50,9 @@ pub(crate) fn beyond_linear_m<'a>(posed: impl Fn(Deflections) -> Posed<'a>) -> V
 struct Hanging {
     /// Position of the tip \[m\].
     tip_m: Vector3<f64>,
-    /// Position of the tip without deflection, and its displacement by the linear statics \[m\].
+    /// Position of the tip without deflection \[m\].
     straight_tip_m: Vector3<f64>,
+    /// Displacement of the tip by linear statics \[m\].
     displacement_m: Vector3<f64>,
 }
 
@@ -67,8 +69,8 @@ impl Hanging {
     }
 }
 
-/// Position of the tip at rest \[m\], if it is at `tip_m` first and then moves by the deflections `first`; `None` if it does not
-/// come to rest.
+/// Position of the tip at rest \[m\]. The first position of the tip is `tip_m`; the deflections `first` then move it.
+/// `None` if the tip does not come to rest.
 fn resting_tip_m<'a>(
     posed: impl Fn(Deflections) -> Posed<'a>,
     mut tip_m: Vector3<f64>,
@@ -88,7 +90,7 @@ fn resting_tip_m<'a>(
 }
 
 impl Posed<'_> {
-    /// The deflections of all elements with these strain coordinates.
+    /// The deflections of all elements with these strain coordinates, given as one list for each element.
     fn hung(&self, strains: Vec<Vec<f64>>) -> Deflections {
         let strains: Vec<f64> = strains.into_iter().flatten().collect();
         Deflections::of(self.with_passive(&DVector::from_vec(strains)).as_slice().to_vec())

@@ -24,7 +24,7 @@ pub struct Transferred {
     pub torque_nm: f64,
 }
 
-/// The strain coordinates of two joints that a linkage couples.
+/// The strain coordinates (angles of torsion) of two joints that a linkage couples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LinkedCoordinates {
     /// Index of the strain coordinate of the driving joint.

@@ -4,7 +4,8 @@
 //! everything outboard: the inertia of a rigid body, plus what its flexibility adds. An element with unit stiffness
 //! and end motion `t` changes it from `W` on its outboard side to `W_in` on its inboard side. For a joint, `t` is the
 //! twist vector of its axis times the square root of its compliance; for a link see [`condensed`](super::condensed).
-//! The indices r and g stand for the root and the end coordinates.
+//! The indices r and g stand for the motion of the root and for the end coordinates, which are the six motions of the
+//! link's end.
 //!
 //! ```text
 //! W_in = W_rr + λ P (1 - λ S)⁻¹ Pᵀ,   P = (M_rg + W t),   S = M_gg + tᵀ W t
@@ -73,16 +74,16 @@ impl Pass {
 /// Largest estimated error of an accepted root, relative to `1/λ`.
 ///
 /// The error of a secant step is `C` times the product of the last two steps. `C` is about 1 for most arms and far
-/// larger if a pole is near. The last three steps show how large `C` is, so the limit applies to the error estimated
-/// from them.
+/// larger if a pole ([`lowest_eigenvalue`]) is near. The last three steps show how large `C` is, so the limit applies
+/// to the error estimated from them.
 pub(super) const SHOWN_ERROR: f64 = 1e-13;
 /// Largest last step of an accepted root, relative to `1/λ`. A larger step could jump over another mode between the
 /// last two points.
 pub(super) const LAST_STEP: f64 = 5e-8;
-/// Size of the "previous" step that the first steps of the iteration are compared with, relative to `1/λ`. The factor
-/// `C` of [`SHOWN_ERROR`] is estimated from a step divided by the two steps before it. With previous steps as small as
-/// this one the estimate is very large, so that no root is accepted before the iteration has taken real steps, unless
-/// its step is practically zero.
+/// Assumed size of the two steps before the first step of the iteration, relative to `1/λ`. The factor `C` of
+/// [`SHOWN_ERROR`] is estimated as a step divided by the product of the two steps before it. So small a previous step
+/// makes the estimate very large. No root is therefore accepted before the iteration has taken real steps, unless a
+/// step is practically zero.
 pub(super) const UNKNOWN_STEP: f64 = 1e-9;
 /// The value of [`LAST_STEP`] that is used when one chain is solved by itself. It is stricter, because one more pass
 /// then costs little.
@@ -98,8 +99,8 @@ const MOST_PASSES: usize = 300;
 ///
 /// The last pivot is `1 - λ w(λ)`, where `w` is nearly constant. The secant method is therefore applied to `1/λ - w`
 /// as a function of `1/λ`, which is a straight line if everything outboard is rigid. It converges quickly unless the
-/// last joint hardly takes part in the mode: then a pole of `w` is next to the root. In that case the root of the
-/// product of all pivots is searched instead, which has no poles.
+/// last joint hardly takes part in the mode: then a pole of `w` (a value of `λ` at which `w` is infinite) is next to
+/// the root. In that case the root of the product of all pivots is searched instead. This product has no poles.
 pub(crate) fn lowest_eigenvalue<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> f64 {
     if trace_s2 <= 0.0 {
         return f64::INFINITY;

@@ -1,8 +1,8 @@
 //! The lowest natural frequency of eight chains at once.
 //!
 //! The eight chains share everything outboard of one piece. The pass is the same as in [`lowest`](super::lowest): it
-//! computes the apparent inertia from the tip to the base, with one pivot for each strain coordinate. One pass serves
-//! all eight chains, each at its own `λ`. The shared part is read from memory once.
+//! computes the apparent inertia from the tip to the base, with one pivot for each strain coordinate (each elastic
+//! degree of freedom). One pass serves all eight chains, each at its own `λ`. The shared part is read from memory once.
 
 // loops over row and column indices read better here than iterators
 #![allow(clippy::needless_range_loop)]
@@ -29,7 +29,8 @@ enum Shared<const N: usize> {
 
 /// The inboard pieces of eight chains, in which the chains differ.
 pub(crate) trait Inner<V: Lanes, const N: usize> {
-    /// Adds the inboard pieces to a pass, from the tip inward. If any of them is compliant, the last one must be.
+    /// Adds the inboard pieces to a pass, from the tip inward. If any of these pieces is compliant, the last piece must
+    /// be compliant.
     fn add_to(&self, walk: &mut Walk<V, N>);
 }
 
@@ -46,7 +47,7 @@ pub(crate) struct LaneLink<const N: usize> {
     end: LaneMatrix<N>,
 }
 
-/// Result of one pass in each lane, each at its own `λ`.
+/// Result of one pass in each lane, each at its own `λ`. A lane is the place of one of the eight chains.
 #[derive(Clone, Copy)]
 pub(crate) struct LanePass<V> {
     /// Bit mask: lanes in which no pivot is negative, which means that no eigenvalue is below `λ`.
@@ -368,8 +369,9 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
 /// Lowest eigenvalue of every wanted lane, by the secant method on the product of all pivots times `x = 1/λ`.
 ///
 /// The product of the pivots is `Π (1 - x_i / x)`, so this function is `(x - x_1) Π (1 - x_i / x)`, where the product
-/// `Π` is over all modes except the first. It is a straight line if the other modes are far away. However near they
-/// are, it has no poles. A guess beyond the second mode is moved back.
+/// `Π` is over all modes except the first. The function is a straight line if the other modes are far away. However
+/// near they are, the function has no poles at positive `x`, which are points where it is infinite. A guess beyond the
+/// second mode is moved back.
 #[inline(always)]
 pub(crate) fn roots<V: Lanes, const N: usize>(
     outboard: &Outboard<N>,

@@ -1,9 +1,9 @@
 //! The lowest natural frequency of the full model, without forming the mass matrix.
 //!
 //! The largest eigenvalue of `C^½ M C^½` is `1/ω₁²`. [`largest_eigenvalue`] finds it from products of this matrix with
-//! vectors. A product with the mass matrix is two passes over the chain: outward, the rates of the strain coordinates
-//! add up to the motion of every body and link; inward, the momenta of everything outboard add up to the momentum of
-//! each coordinate. The time grows in proportion to the number of elements.
+//! vectors. A product with the mass matrix is two passes over the chain. In the outward pass, the rates of the strain
+//! coordinates add up to the motion of every body and link. In the inward pass, the momenta of everything outboard add
+//! up to the momentum of each coordinate. The time grows in proportion to the number of elements.
 
 use super::chain::{ElasticElement, Item, Posed};
 use super::krylov::largest_eigenvalue;
@@ -54,8 +54,8 @@ impl<'a> MassProduct<'a> {
         Self { stages, linked: posed.linked_coordinates() }
     }
 
-    /// The mass matrix times `rates`: the momentum of each strain coordinate, base to tip, at these rates of the
-    /// coordinates.
+    /// The mass matrix times `rates`: the momentum of each strain coordinate (elastic degree of freedom), base to tip,
+    /// at these rates of the coordinates.
     fn momenta(&self, rates: &DVector<f64>) -> DVector<f64> {
         let rates = LinkedCoordinates::turned_along(&self.linked, rates);
         let mut momenta = DVector::zeros(rates.len());

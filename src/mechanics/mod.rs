@@ -1,4 +1,5 @@
-//! Mechanics: deflection, natural frequencies and harmonic response of an arm, all from one formulation.
+//! Mechanics: deflection, natural frequencies and harmonic response of an arm, all from one formulation. Equation
+//! numbers refer to docs/model.md.
 //!
 //! Every elastic element has a few *strain coordinates*, each of them a scalar spring. A joint has one (its angle of
 //! torsion), a bearing that tilts has two. The drive of a prismatic joint has one and its guide up to three. A link
@@ -8,9 +9,10 @@
 //! - Statics (`statics`; Eqs 1-4, 7, 13-15): the generalized force on a coordinate is the work of the outboard wrench
 //!   on the twist of the coordinate. The coordinate deflects by force times compliance. The displacement of the tip is
 //!   the sum over all coordinates.
-//! - Modes (`modes`; Eqs 16-18 are the case of rigid links): the mass matrix `M` follows from the composite outboard
-//!   inertia and each pair of twists. The compliance matrix `C` is diagonal, and `C^½ M C^½ ψ = ψ/ω²`. The lowest
-//!   mode alone (`lowest_mode`, `krylov`) needs products with `M` only, which take a pass over the chain.
+//! - Modes (`modes`; Eqs 16-18 are the case of rigid links): the mass matrix `M` follows from the inertia of everything
+//!   outboard of a coordinate and from each pair of twists. The compliance matrix `C` is diagonal, and `C^½ M C^½ ψ =
+//!   ψ/ω²`. The lowest mode alone (`lowest_mode`, `krylov`) needs products with `M` only. Each product takes two passes
+//!   over the chain.
 //! - Response (`response`; F(t) of Eq 16): the sum of the modes under a harmonic force at the tip.
 //!
 //! `hanging` repeats the statics in the deflected pose, for large displacements. `centre_line` turns strain coordinates

@@ -1,7 +1,8 @@
-//! Modes: natural frequencies and shapes (Eqs 16-18), with motor shafts locked, without damping and without the
-//! stiffness due to gravity.
+//! Modes: natural frequencies and shapes (Eqs 16-18 of docs/model.md). Motor shafts are locked. Damping and the
+//! stiffness due to gravity are left out.
 //!
-//! Let `C` be the diagonal compliance matrix of the strain coordinates and `M` their mass matrix. The symmetric
+//! The strain coordinates are the elastic degrees of freedom: torsions of joints and polynomials of the deformation of
+//! links. Let `C` be their diagonal compliance matrix and `M` their mass matrix. The symmetric
 //! matrix `A = C^½ M C^½` has the eigenvalues `1/ω²`. `M` may be singular, for example with a point mass on a roll
 //! axis. One of these eigenvalues is then zero, and its mode is not returned.
 

@@ -55,7 +55,7 @@ impl Panels {
     /// The product of this left factor with a right factor.
     ///
     /// # Panics
-    /// If the right factor does not have as many rows as this one has columns.
+    /// If the right factor does not have as many rows as this left factor has columns.
     pub(crate) fn times(&self, b: DMatrixView<f64>) -> DMatrix<f64> {
         let mut out = DMatrix::zeros(self.rows, b.ncols());
         self.add_times(&mut out, b);
@@ -78,7 +78,7 @@ impl Panels {
     }
 
     /// The lower triangle of the product of this left factor with its own transpose, whose columns are `columns`. Above
-    /// the diagonal of the result are some other entries of the product, and zeros.
+    /// the diagonal the result is incomplete: some entries of the product are there, the others are zero.
     ///
     /// # Panics
     /// If `columns` are not as many and as long as the left factor's rows.
@@ -111,11 +111,15 @@ impl Panels {
     }
 }
 
+/// Adds the sums of products of `a` and `columns` to a matrix.
 struct Sums<'a> {
+    /// Entries of the matrix to which the sums are added, column by column.
     out: &'a mut [f64],
     /// Number of rows of the matrix to which the sums are added.
     stride: usize,
+    /// The left factor.
     a: &'a Panels,
+    /// The columns of the right factor.
     columns: &'a [&'a [f64]],
     /// Whether only the sums from the diagonal down are asked for.
     is_lower: bool,

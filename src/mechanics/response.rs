@@ -1,4 +1,4 @@
-//! Response of the tip to a harmonic force at the tip: F(t) of Eq 16, with modal damping.
+//! Response of the tip to a harmonic force at the tip: F(t) of Eq 16 in docs/model.md, with modal damping.
 //!
 //! The amplitude is `u(ω) = Σ u_k (u_k·F) / (1 - (ω/ω_k)² + 2 i ζ ω/ω_k)`. Here `u_k` is the displacement of the tip
 //! in mode k, scaled to a strain energy of ½ J, and ζ is the damping ratio. The sum runs over all modes of the model;

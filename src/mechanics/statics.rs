@@ -1,4 +1,4 @@
-//! Statics: joint torques and displacement of the tip under gravity and load (Eqs 4, 7, 13-15).
+//! Statics: joint torques and displacement of the tip under gravity and load (Eqs 4, 7 and 13-15 of docs/model.md).
 //!
 //! The calculation is linear about the undeformed pose, except for the torsion of joints, which follows their joint
 //! laws. In a serial chain every internal force follows from the loads alone, so one pass from the tip to the base is
@@ -30,7 +30,7 @@ pub struct Statics {
     /// The part of this displacement that each element causes \[m\], with the name of the element, base to tip. The
     /// parts add up to the whole.
     pub shares_m: Vec<(String, Vector3<f64>)>,
-    /// Value of each strain coordinate, as one list for each element, base to tip.
+    /// Value of each strain coordinate (elastic degree of freedom), as one list for each element, base to tip.
     pub deformations: Vec<Vec<f64>>,
     /// Force and moment at the root of each link.
     pub link_roots: Vec<LinkRoot>,
@@ -122,8 +122,9 @@ impl Posed<'_> {
         out
     }
 
-    /// The tip displacement \[m\] and the strain coordinates of all elements, base to tip: those of
-    /// [`statics`](Self::statics), which also has what bearings, guides and roots of links bear.
+    /// The tip displacement \[m\] and the strain coordinates of all elements, base to tip. The method
+    /// [`statics`](Self::statics) finds the same values, and in addition the loads on bearings, guides and roots of
+    /// links.
     pub(crate) fn displaced(&self) -> (Vector3<f64>, Vec<Vec<f64>>) {
         let mut wrench = self.tip_load();
         let transferred = self.transferred();
@@ -205,8 +206,8 @@ struct Strained {
 }
 
 impl ElasticElement {
-    /// The deflection of the element under `wrench`, the load of everything outboard. `transferred` are the torques that linkages
-    /// put on driving joints.
+    /// The deflection of the element under `wrench`, the load of everything outboard. `transferred` are the torques
+    /// that linkages put on driving joints.
     fn strained(&self, transferred: &[Transferred], wrench: &Wrench) -> Strained {
         let mut motion = Twist::zeros();
         let mut forces: Vec<f64> = self.twists.iter().map(|twist| twist.dot(wrench)).collect();

@@ -93,7 +93,7 @@ impl PaperArm {
         self.line_kg_per_m(link) * self.lengths_m[link]
     }
 
-    /// Mass per length of a link \[kg/m\]: q/g of Eq 6.
+    /// Mass per length of a link \[kg/m\]: the weight per length q of Eq 6, divided by g.
     pub fn line_kg_per_m(&self, link: usize) -> f64 {
         self.material.density_kg_m3 * self.sections[link].properties(self.material.poisson).area_m2
     }

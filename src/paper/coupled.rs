@@ -1,8 +1,9 @@
 //! The paper's coupled masses and springs (Eqs 16 to 18), written separately from the general mechanics.
 //!
-//! The unknowns are the absolute angles ψ of three rigid links. The matrices follow from Lagrange's equations. Here
-//! m_i and I_i are a tube's mass and moment of inertia about its centre, m_w is the mass of the wrist and m_p is the
-//! mass of the load.
+//! The unknowns are the absolute angles ψ of three rigid links. The matrices follow from Lagrange's equations. In
+//! them, m1, m2, I1 and I2 are the masses of the two tubes and their moments of inertia about their centres. The masses
+//! of joint 3, of the wrist and of the load are m3, m_w and m_p. The lengths of the links are l1, l2 and l3. The
+//! stiffnesses of joints 2, 3 and 4 are K2, K3 and K4.
 //!
 //! ```text
 //! M11 = I1 + m1 l1²/4 + (m3 + m2 + m_w + m_p) l1²     K = | K2+K3  -K3     0  |
@@ -12,7 +13,8 @@
 //! M23 = m_p l2 l3,  M33 = m_p l3²                     right side for a vertical tip force: [l1, l2, l3] F
 //! ```
 //!
-//! Eq 17 requires `det(K - λ M) = 0`, a cubic in λ = ω². The numbers that the paper calls ω in Hz are f = ω/2π.
+//! Eq 17 requires `det(K - λ M) = 0`, a cubic in λ = ω². The numbers that the paper calls ω, in Hz, are frequencies f =
+//! ω/2π.
 
 use super::arm::PaperArm;
 use crate::arm::joint_law::Curve;

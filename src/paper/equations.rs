@@ -54,7 +54,8 @@ pub enum EndForce {
     DriveAtTheEnd,
 }
 
-/// Eqs 4 and 13 to 15 for the stretched arm with constant stiffnesses. `L_tot` is measured to the wrist.
+/// Eqs 4 and 13 to 15 for the stretched arm with constant stiffnesses. The length `L_tot` of Eq 13, from a joint to the
+/// end of the arm, is here measured to the wrist. `force` says which weight is the end force of Eq 4.
 pub fn printed_deflection(arm: &PaperArm, force: EndForce) -> PrintedDeflection {
     let [l1, l2] = arm.lengths_m;
     let to_wrist_m = [l1 + l2, l2, 0.0];
@@ -85,22 +86,24 @@ pub const LOAD_ACCELERATION_M_S2: f64 = 1.0 / 0.20;
 pub struct DynamicTorque {
     /// Static torque T_j at the output \[N m\].
     pub static_nm: f64,
-    /// T_lin by the factor 1/2 that the paper prints, T_j / 2 \[N m\].
+    /// T_lin, the torque of linear acceleration, by the factor 1/2 that the paper prints: T_j / 2 \[N m\].
     pub linear_half_nm: f64,
-    /// T_lin by the definition in Eq 8, (a/g) T_j \[N m\].
+    /// T_lin by the definition in Eq 8, (a/g) T_j, with the acceleration a of the load and the gravitational
+    /// acceleration g \[N m\].
     pub linear_ratio_nm: f64,
     /// Torque of linear acceleration, computed from inertia: moment of inertia of everything outboard about the
     /// joint, times the joint's acceleration \[N m\].
     pub linear_inertia_nm: f64,
     /// Angular acceleration of the joint: acceleration of the load, divided by the distance of the load \[rad/s²\].
     pub output_acceleration_rad_s2: f64,
-    /// T_rot on the motor's shaft, as in Eqs 10 and 11 \[N m\].
+    /// T_rot, the torque that accelerates motor and gear input, on the motor's shaft as in Eqs 10 and 11 \[N m\].
     pub rotary_motor_side_nm: f64,
     /// T_rot on the output side of the gear: larger than on the motor's shaft by the gear ratio \[N m\].
     pub rotary_output_side_nm: f64,
 }
 
-/// Eqs 8 to 12 at joint 2 of the stretched arm for an input inertia J = J_mot + J_trans (Eq 9).
+/// Eqs 8 to 12 at joint 2 of the stretched arm. `ratio` is the reduction ratio, and `input_inertia_kgm2` is the sum of
+/// the moments of inertia of motor and gear at the motor's shaft (Eq 9).
 pub fn dynamic_torque_at_joint_2(arm: &PaperArm, ratio: f64, input_inertia_kgm2: f64) -> DynamicTorque {
     let static_nm = arm.solve(LinkModel::Rigid).torque_nm(JOINTS[0]);
     let reach_m = arm.lengths_m.iter().sum::<f64>() + arm.third_link_m;

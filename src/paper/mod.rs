@@ -1,14 +1,15 @@
-//! Reproduces the paper: its table and its three figures, with every number computed.
+//! Reproduces the paper *Mechanical analysis of high precision manipulator*, from which this program grew: its table
+//! and its three figures, with every number computed.
 //!
 //! | study | what it answers |
 //! |---|---|
-//! | `paper-table1` | each number that the paper derives from its Table 1, next to ours: the reading of the equation that gives it, the value of the exact model, and the reason for a difference; also the error that the remedies of the conclusions would leave |
+//! | `paper-table1` | each number that the paper derives from its Table 1, next to the number of this program: the interpretation of the equation that gives the paper's number, the value of the general mechanics, and the reason for a difference; also the error that remains with the remedies of the paper's conclusions |
 //! | `fig2-metals` | deflection against weight per length of three metals |
 //! | `fig3-wall-or-width` | whether a kilogram is better spent on the wall or on the outer dimensions |
 //! | `fig4-composites` | composites compared with the best metal |
 //!
 //! The paper's equations are written as printed ([`equations`], [`coupled`]), separately from the general
-//! mechanics. So each can be checked with the other.
+//! mechanics. So the equations and the mechanics can be checked against each other.
 
 pub mod arm;
 pub mod claim;

@@ -1,5 +1,5 @@
-//! Rows on the paper's dynamic numbers: frequencies, the effect of four times the stiffness, and the bandwidth of
-//! the servo.
+//! Rows on the paper's dynamic numbers: frequencies, the effect of a joint four times as stiff, and the bandwidth
+//! of the servo.
 
 use super::arm::PaperArm;
 use super::coupled::{CoupledArm, single_spring_hz};

@@ -1,4 +1,4 @@
-//! The result of a study of the paper, and the errors that prevent one.
+//! The result of a study of the paper, and the errors that prevent a result.
 
 use super::names::NAMES;
 

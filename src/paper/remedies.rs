@@ -10,7 +10,8 @@ use crate::catalog::Catalogs;
 use crate::report::number::{fixed, percent, percent_change, shortest};
 use crate::report::table::{Column, Table};
 
-/// Relative errors of the gear's torsion curve that are assumed for the second remedy of the paper's conclusions.
+/// Assumed relative errors of the gear's torsion curve, for the second remedy of the paper's conclusions: the
+/// deflection of the joints is computed from the motor's torque by this curve.
 pub const CURVE_ERRORS: [f64; 3] = [0.05, 0.10, 0.20];
 /// Reduction ratio of the drives in the connection table.
 pub const RATIO: f64 = 100.0;
@@ -103,8 +104,8 @@ pub struct Connection {
     pub joint: &'static str,
     /// Stiffness of a connection between gear and arm \[N m/rad\].
     pub output_nm_per_rad: f64,
-    /// Stiffness of a connection between motor and gear with the same effect: smaller by the factor N², with the ratio
-    /// N of the gear \[N m/rad\].
+    /// Stiffness of a connection between motor and gear with the same effect: smaller by the factor N², where N
+    /// is the ratio of the gear \[N m/rad\].
     pub motor_side_nm_per_rad: f64,
     /// Increase of the load's displacement by the connection \[m\].
     pub added_m: f64,
@@ -112,8 +113,8 @@ pub struct Connection {
     pub frequency_ratio: f64,
 }
 
-/// The effect of compliant connections (after Rivin) on deflection and lowest frequency. Each connection is between
-/// motor and gear or between gear and arm, in one joint at a time.
+/// The effect of compliant connections (E. I. Rivin, *Mechanical Design of Robots*, 1988) on deflection and lowest
+/// frequency. Each connection is between motor and gear or between gear and arm, in one joint at a time.
 pub fn connections(arm: &PaperArm) -> Vec<Connection> {
     let before = arm.solve(LinkModel::Full);
     let one = |joint: &'static str, stiffness: f64| {

@@ -1,10 +1,11 @@
-//! Rows with a number of the paper next to ours, and tables of such rows.
+//! Rows with a number of the paper next to the number of this program, and tables of such rows.
 
 use crate::report::number::{fixed, shortest};
 use crate::report::table::{Column, Table};
 use serde_json::{Value, json};
 
-/// One of the paper's numbers next to ours.
+/// One of the paper's numbers next to the number of this program. A *reading* of an equation is one interpretation of
+/// it, where the paper is ambiguous.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PaperRow {
     /// Key of the row, which stays the same in all versions.
@@ -20,13 +21,14 @@ pub struct PaperRow {
     /// Our number, with the equation read in the way that gives the paper's number; `None` if there is no such
     /// reading.
     pub reading_value: Option<f64>,
-    /// The number of the exact model, with all compliances and Table 1 as printed; `None` if it has no such number.
+    /// The number of the general mechanics, with all compliances and Table 1 as printed; `None` if it has no such
+    /// number.
     pub exact: Option<f64>,
     /// Number of digits after the decimal point.
     pub decimals: usize,
     /// The reading of the equation that gives `reading_value`, in words.
     pub reading: String,
-    /// The reason why our number and the paper's differ; empty if they do not.
+    /// The reason why our number and the paper's number differ; empty if they agree.
     pub reason: String,
 }
 
@@ -50,13 +52,13 @@ impl PaperRow {
         self
     }
 
-    /// Sets the number that the exact model gives.
+    /// Sets the number that the general mechanics gives.
     pub fn exact(mut self, value: f64) -> Self {
         self.exact = Some(value);
         self
     }
 
-    /// Sets the reason why our number and the paper's differ.
+    /// Sets the reason why our number and the paper's number differ.
     pub fn because(mut self, reason: impl Into<String>) -> Self {
         self.reason = reason.into();
         self

@@ -1,4 +1,4 @@
-//! Rows on the paper's static numbers: torques, deflection, and the links' share of it.
+//! Rows on the paper's static numbers: torques, deflection, and the part of the deflection that the links cause.
 
 use super::arm::{JOINTS, LINKS, PaperArm};
 use super::equations::{EndForce, PrintedDeflection, printed_deflection};

@@ -1,4 +1,4 @@
-//! `paper-table1`: the paper's numbers next to ours.
+//! `paper-table1`: the paper's numbers next to the numbers of this program.
 
 use super::arm::PaperArm;
 use super::output::{PaperError, PaperStudyOutput};
@@ -23,9 +23,9 @@ pub const DAMPING_RATIO: f64 = 0.02;
 /// All results of the study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table1 {
-    /// Rows with the paper's numbers next to ours.
+    /// Rows with the paper's numbers next to the numbers of this program.
     pub rows: Vec<PaperRow>,
-    /// Further tables with titles: errors that remain after the conclusions' remedies, connections, and so on.
+    /// Further tables with titles, such as the errors that remain with the remedies of the paper's conclusions.
     pub sections: Vec<Section>,
 }
 

@@ -1,5 +1,6 @@
-//! Arms that have the paper's three frequencies. Several arms have them, so the frequencies do not determine the
-//! third spring.
+//! Arms that have the paper's three frequencies. Eq 16 has three springs: for joint 2, for joint 3 and for the
+//! wrist.
+//! Several arms have the paper's frequencies, so the frequencies do not determine the third spring.
 
 use super::arm::PaperArm;
 use super::coupled::{CoupledArm, masses_that_give};
@@ -53,7 +54,7 @@ impl Reading {
     }
 }
 
-/// Stiffness of joints 4, 5 and 6 as printed \[N m/rad\].
+/// Stiffnesses K4, K5 and K6 of joints 4, 5 and 6 as printed \[N m/rad\].
 const K4_K5_K6: [f64; 3] = [108e3, 108e3, 17.5e3];
 
 /// Stiffness of the first `count` of joints 4, 5 and 6 in series \[N m/rad\].

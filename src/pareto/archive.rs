@@ -4,6 +4,7 @@
 //! below its mass and deflection has had so far. Both scales divide each octave (factor of two) into equal steps,
 //! which are the leading bits of a floating-point number. The map from numbers to steps is monotone and exact, and
 //! needs no logarithm.
+//!
 //! A design is entered at the next grid point above its mass and deflection. It is looked up at the next grid point
 //! below them. Its frequency is rounded down on entry. The table therefore rejects a design only if another one
 //! dominates it. Designs that it lets through are filtered exactly later, so the result does not depend on the
@@ -17,7 +18,7 @@ const MASS_OCTAVES: (i32, i32) = (-7, 17);
 /// Range of deflections in powers of two: 0.1 um to 16 m.
 const DEFLECTION_OCTAVES: (i32, i32) = (-23, 4);
 /// Smallest relative difference between the lowest modes of a rejected design and of the design that dominates it.
-/// It is far above the rounding errors of the fast model, on which the table works.
+/// It is far above the rounding errors of the search's fast model, from which the numbers of the table come.
 const MODE_MARGIN: f64 = 1e-5;
 
 /// The table of best frequencies. All threads share it.
@@ -25,7 +26,7 @@ pub(crate) struct Archive {
     /// Number of leading mantissa bits that determine the cell of a number.
     bits: u32,
     columns: usize,
-    /// Best frequency of each cell, as the bits of an `f32`: positive floats are ordered like their bits.
+    /// Best frequency of each cell \[Hz\], as the bits of an `f32`. Positive floats are ordered like their bits.
     best_hz: Vec<AtomicU32>,
 }
 

@@ -6,8 +6,8 @@
 //!
 //! All values of the second objective are known in advance, so a step is addressed by the rank of its second
 //! objective. The steps are then a set of small integers, stored as bits: 64 ranks in a word, and one bit for each
-//! word in the level above. Finding a neighbour or changing a step takes one word in each level. With the two sorts, a
-//! sweep takes O(n log n) time (Kung, Luccio & Preparata 1975).
+//! word in the level above. Finding a neighbour or changing a step takes one word in each level. Together with
+//! the two sorts that precede it, a sweep takes O(n log n) time (Kung, Luccio & Preparata 1975).
 
 /// The steps of the staircase: ranks of the second objective, each with the third objective of its point.
 pub(crate) struct Staircase {

@@ -1,4 +1,5 @@
-//! Drops the drives that cannot meet any demand that the remaining options leave possible.
+//! Drops the drives that are too weak, or needlessly strong, for every demand that the remaining options of the other
+//! pieces leave possible.
 
 use super::parts::Parts;
 use super::statics::CaseLoads;
@@ -9,7 +10,7 @@ use crate::space::slot::Slot;
 
 impl Parts {
     /// Drops the drives that cannot meet the least demand that any remaining options outboard put on their joint. If a
-    /// joint takes the lightest drive that meets its demand, drives heavier than the lightest one that meets the
+    /// joint takes the lightest drive that meets its demand, drives heavier than the lightest drive that meets the
     /// greatest demand are dropped too. Returns whether any drive was dropped.
     pub(super) fn drop_drives(&mut self, problem: &ArmProblem, cases: &[CaseLoads]) -> bool {
         let mut dropped = false;

@@ -1,8 +1,8 @@
 //! A lower bound on the mass of every design that deflects at most as far, and has at least as high a lowest mode,
 //! as required.
 //!
-//! *Relaxation* here means a linear program in which the choice of one option per piece is relaxed: each piece of
-//! the arm may be a mixture of its catalog options, with weights that sum to one. Then
+//! *Relaxation* here means a linear program in which the choice of one option per piece is relaxed. Each piece of the
+//! arm may be a mixture of its catalog options, with weights that sum to one. Then
 //!
 //! - mass is linear in the weights;
 //! - tip deflection has lower bounds that are linear (`statics`: loads at an end of their range, plus McCormick's

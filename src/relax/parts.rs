@@ -104,9 +104,9 @@ impl Parts {
         dropped
     }
 
-    /// Keeps the options of a slot for which `passes` is true, and always the option of the known design. `passes`
-    /// gets the index of an option among the remaining ones and its index among all. Returns whether any option was
-    /// dropped. A bearing loses options only together with its drive.
+    /// Keeps the options of a slot for which `passes` is true, and always the option of the known design. `passes` gets
+    /// the index of an option among the remaining options and its index among all options. Returns whether any option
+    /// was dropped. A bearing loses options only together with its drive.
     pub(super) fn keep(&mut self, slot: usize, passes: impl Fn(usize, u32) -> bool) -> bool {
         if self.bearings.iter().any(|(bearing, _)| *bearing == slot) {
             return false;

@@ -10,7 +10,8 @@ use crate::space::problem::ArmProblem;
 
 /// Greatest number of rounds of solving and dropping options.
 const MOST_ROUNDS: usize = 4;
-/// Greatest number of solutions of the program in a round. After each solution, trial shapes or options are added.
+/// Greatest number of solutions of the program in a round. After each solution, trial shapes (each
+/// gives an inequality on the lowest mode) or options are added.
 const STEPS: usize = 40;
 /// Relative amount by which a required objective is relaxed, as a margin for rounding.
 const ROUNDING: f64 = 1e-9;
@@ -36,7 +37,8 @@ pub struct MassBound {
 pub struct Relaxation<'a> {
     problem: &'a ArmProblem<'a>,
     cases: Vec<CaseLoads>,
-    /// The inertias and stiffnesses of the arm from which trial shapes are made, one model for each judged case.
+    /// The inertias and stiffnesses of the arm from which trial shapes are made, one model for each judged case. A
+    /// judged case counts for deflection and lowest mode.
     models: Vec<ShapeModel>,
 }
 
@@ -87,7 +89,8 @@ struct Search<'a> {
     directions: Vec<(usize, nalgebra::Vector3<f64>)>,
     models: &'a [ShapeModel],
     parts: Parts,
-    /// Trial shapes: the index of the model (judged case), and the values of the strain coordinates.
+    /// Trial shapes: the index of the model (judged case), and the values of the arm's strain coordinates (torsions of
+    /// joints and deformations of links).
     shapes: Vec<(usize, nalgebra::DVector<f64>)>,
     best_kg: f64,
     /// The best bound after the first round of solving \[kg\], before it was used to drop options.
@@ -113,8 +116,9 @@ impl Search<'_> {
         }
     }
 
-    /// Drops the options that cannot satisfy some inequality, even if every other piece takes the option that is best
-    /// for this inequality.
+    /// Drops the options with which some inequality is violated even if every other piece takes the option that is best
+    /// for this inequality. Drives that cannot meet their demand are dropped too. This is repeated until nothing
+    /// changes.
     fn reduce(&mut self) {
         loop {
             let mut dropped = self.parts.drop_drives(self.problem, self.cases);
@@ -153,7 +157,7 @@ impl Search<'_> {
     }
 
     /// Greatest tangent stiffness of each remaining option of a joint \[N m/rad\]; first index the judged case, second
-    /// the slot, third the option.
+    /// the slot (piece of the arm), third the option.
     fn stiffness(&self) -> Vec<Vec<Vec<f64>>> {
         self.models.iter().map(|m| self.cases[m.case].stiffest(self.problem, &self.parts)).collect()
     }

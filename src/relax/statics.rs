@@ -1,10 +1,12 @@
 //! Linear lower bounds of the tip deflection and of the loads on joints, in one case.
 //!
+//! A slot is a piece of the arm with its options. A row is a linear inequality of the program.
+//!
 //! A piece is loaded by the wrench (force and moment) of everything outboard, `W = W₀ + Σ_j q_j û_j`. Here `û_j` is
 //! the wrench of one unit of the load of slot `j`, and `q_j` is the load of its chosen option. The displacement of
-//! the tip along a direction `d` is a sum over the pieces. With `q` between `q⁻` and `q⁺`, each term is at least
-//! its value at one end plus, for each load, the least slope times the distance from that end. Each of the two ends
-//! gives a row.
+//! the tip along a direction `d` is a sum over the pieces. The loads `q` lie between `q⁻` and `q⁺`. At each
+//! end (all loads least, or all greatest) every term has a value, and each load adds at least its least slope times its
+//! distance from that end. The sum is a lower bound of the term. Each of the two ends gives a row.
 
 use super::parts::{Parts, slot_masses};
 use super::row::Row;
@@ -17,7 +19,8 @@ use crate::space::slot::Slot;
 use crate::space::station::{Station, StationJoint, StationSlot};
 use nalgebra::{Matrix6, Vector3};
 
-/// The loads of one case, as the linear program uses them: the wrench of each slot's load, and the load of each option.
+/// The loads of one case, as the linear program uses them: the wrench (force and moment) of each slot's load, and the
+/// load of each option.
 pub(super) struct CaseLoads {
     case: usize,
     /// For each slot, the wrench (force and moment) per unit of the slot's load.

@@ -1,5 +1,9 @@
 //! Eight partial arms, whose numbers stand next to each other in memory, while slots (places of a part) are added from
 //! the row level to the base.
+//!
+//! A row is the set of designs that differ in the choice of one part alone; this choice is the row level. A hinge is
+//! one elastic coordinate: the rotation of a joint or of a bearing spring, or one motion of a given tube's end. A block
+//! of the eigenvalue problem is a set of motions that do not couple with the other motions.
 
 use super::row_case::hinge_numbers;
 use crate::mechanics::lanes::{Eight, LANES};
@@ -14,9 +18,9 @@ use crate::space::problem::ArmProblem;
 pub(crate) struct EightArms {
     /// Bit mask, one bit per arm: the arms that have met every limit checked so far.
     pub held: u8,
-    /// If no arm is left in `held`: how many of the drives that the search chooses inboard of the row level had been
-    /// added when the last arm failed. A row with the same arm outboard and the same drives up to this number fails
-    /// too, so the sweep skips it.
+    /// Used if no arm is left in `held`: the number of drives chosen by the search inboard of the row level that had
+    /// been added when the last arm failed. A row with the same arm outboard and the same drives up to this number
+    /// fails too, so the sweep skips it.
     pub failed_with: usize,
     /// Mass of each arm, summed over the slots added so far \[kg\].
     pub mass_kg: Eight,
@@ -29,7 +33,8 @@ pub(crate) struct EightArms {
     pub largest_s2: Eight,
     /// The eight arms in each case.
     pub cases: Vec<CaseArms>,
-    /// Tip deflection of the complete arms \[m\], the largest over the judged cases.
+    /// Tip deflection of the complete arms \[m\], the largest over the judged cases, which count for deflection and
+    /// lowest mode.
     pub tip_deflection_m: Eight,
     /// Lowest mode of the complete arms \[Hz\].
     pub lowest_mode_hz: Eight,

@@ -4,9 +4,11 @@
 //! past a break point of this curve. Its tangent stiffness then rises, and the lowest mode with it. A design can be on
 //! a front for that reason alone.
 //!
-//! A part is reported as ballast if a lighter part that is at least as stiff in every way exists for its place, and
-//! if the design with this lighter part weighs less and deflects no more. Only its lowest mode is lower, because a
-//! gear inboard gets into a softer segment of its torsion curve, or because the play of a joint opens.
+//! A part is reported as ballast under two conditions. A lighter part that is at least as stiff in every way exists for
+//! its place. And the design with this lighter part weighs less and deflects no more, so that only its lowest mode is
+//! lower. The reason is
+//! that a gear inboard gets into a softer segment of its torsion curve, or that the play of a joint (its lost motion)
+//! is less closed under the smaller torque.
 
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::mechanics::Wrench;
@@ -54,14 +56,14 @@ struct Weighed<'p, 'c> {
     options: Vec<u32>,
     arm: Partial,
     objectives: Objectives,
-    /// Torque on every joint of the design \[N m\]; first index the slot, second the case. It is 0 for slots that are
-    /// not joints.
+    /// Torque on every joint of the design \[N m\]; first index the slot, second the case. A slot is a
+    /// piece of the arm, tip first. The torque is 0 for slots that are not joints.
     torques_nm: Vec<Vec<f64>>,
 }
 
 impl ArmProblem<'_> {
     /// The ballast of a design; `None` if it has none or if no design has this number. If several parts are ballast,
-    /// it is the one whose replacement gives the lightest design.
+    /// the result is the part whose replacement gives the lightest design.
     pub fn ballast(&self, design: u128) -> Option<Ballast> {
         let weighed = Weighed::new(self, options(self.level_sizes(), design)?)?;
         let found = (0..weighed.options.len()).flat_map(|level| weighed.at(level));
@@ -126,7 +128,7 @@ impl<'p, 'c> Weighed<'p, 'c> {
         let mut options = self.options.clone();
         options[level] = option;
         let lighter = self.problem.walk(&options, |_, _| {}).ok()?;
-        // less weight outboard may let first fit choose another drive inboard; then the part alone is not the reason
+        // less weight outboard may change the lightest drive that fits inboard; then the part alone is not the reason
         let others_stay =
             (0..lighter.options.len()).all(|s| s == slot || lighter.options[s] == self.arm.options[s]);
         let o = self.problem.objectives(&lighter)?;
@@ -182,7 +184,7 @@ impl<'p, 'c> Weighed<'p, 'c> {
         }
     }
 
-    /// Whether the lighter design would have as high a lowest mode as the present one if no joint inboard had become
+    /// Whether the lighter design would have as high a lowest mode as the present design if no joint inboard had become
     /// softer. Then these joints are the reason for the lower mode.
     fn joints_are_why(&self, lighter: &Partial, slot: usize) -> bool {
         let mut held = lighter.clone();

@@ -12,9 +12,12 @@
 //! The shortfall of a design of the front is zero.
 //!
 //! All designs are visited a second time, after the front is known. The designs of the front, each made worse by the
-//! slack, fill a table (`Archive`) that rejects most designs at once. The table rejects no near design: a design that a
-//! worsened design of the front dominates lies beyond the slack of every design of the front, because no design of the
-//! front dominates another. The other designs are compared with the front one by one. The search needs memory in
+//! slack, fill a table (`Archive`) that rejects most designs at once: every design that a worsened design dominates. No
+//! near design is rejected. A rejected design is worse than some design k of the front by at least the slack in every
+//! objective. A design of the front within the slack of it would therefore be dominated by k, and no design of the
+//! front dominates another.
+//!
+//! The designs that the table does not reject are compared with the front one by one. The search needs memory in
 //! proportion to the number of near designs that are asked for.
 
 use super::finish::FinishRows;
@@ -92,7 +95,7 @@ pub struct NearDesign {
 /// The result of a search for near designs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NearDesigns {
-    /// The near designs, smallest shortfall first. Of designs with an equal shortfall, the one with the smaller
+    /// The near designs, smallest shortfall first. Of designs with an equal shortfall, the design with the smaller
     /// number comes first.
     pub nearest: Vec<NearDesign>,
     /// Number of near designs, which may be larger than the length of `nearest`; `None` if the search stopped

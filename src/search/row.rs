@@ -57,8 +57,8 @@ pub(crate) struct Row {
     pub rooms: Vec<RowRoom>,
 }
 
-/// The form of the torsion curves that the drives of a joint have in the judged cases. The simpler forms save work in
-/// the sweep.
+/// The form of the torsion curves that the drives of a joint have in the judged cases, which count for deflection and
+/// lowest mode. The simpler forms save work in the sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Twisting {
     /// No load turns the joint. The angle stays zero, and modes use the first slope of the curve.
@@ -85,10 +85,13 @@ pub(crate) struct RowChunk<'a, 'c> {
 }
 
 impl Row {
-    /// Prepares the inner slots of a problem for the evaluation of eight designs at once. `None` where the designs must
-    /// be evaluated one by one: if there is no level; if a given tube inboard is too slender, so that no design meets
-    /// its limits; if the space has linkages or effects that are not written for eight designs at once; and if springs
-    /// pull on tubes, because the stress is then not checked for eight designs at once.
+    /// Prepares the inner slots (from the row level to the base) of a problem for the evaluation of eight designs at
+    /// once. `None` if the designs must be evaluated one by one, which is so in four cases:
+    ///
+    /// - The search has nothing to choose (there is no level).
+    /// - A given tube inboard is too slender, so that no design meets the limits.
+    /// - The space has linkages or effects that the code for eight designs does not know.
+    /// - Springs pull on tubes. The code for eight designs does not check the stress at these points.
     pub(crate) fn new(problem: &ArmProblem) -> Option<Self> {
         if problem.space().beyond_exact().is_some() || problem.space().pulls_on_tubes() {
             return None;

@@ -1,5 +1,8 @@
 //! Loads on the output bearings of inner joints, eight designs at once.
 //!
+//! A row is the set of designs that differ in the choice of one part alone, the row level. Inner joints are the joints
+//! from the row level to the base. If the row level is a link, this link is the row's link.
+//!
 //! The loads are defined in [`bearing_loads`](crate::space::bearing_loads). Each load is a sum of three terms: from
 //! everything outboard of the row, from the row's link, and from the inner drives. The third term grows linearly with
 //! the masses of these drives. Each term is projected in advance on the five force and moment components that load a
@@ -18,7 +21,8 @@ use nalgebra::Matrix6;
 pub(crate) struct RowBearing {
     /// Index of the joint among the inner slots (the slots from the row level to the base).
     pub k: usize,
-    /// The bearing in each sizing case. Each entry has the index of the case and the bearing's loads in it.
+    /// The bearing in each sizing case (a case in which drives and stresses are checked). Each entry has the index of
+    /// the case and the bearing's loads in it.
     cases: Vec<(usize, BearingCase)>,
     /// The lever: the distance along the joint's axis from the face of its flange to the point at which the link
     /// attaches. The moment on the bearing includes the radial force times this lever.
@@ -243,8 +247,8 @@ impl RowBearing {
 }
 
 impl Source {
-    /// The five components of this load in eight designs. The term `begun` comes from the arm outboard of the row; the
-    /// terms of the row's link and of the inner drives, which have the masses `masses_kg`, are added to it.
+    /// The five components of this load in eight designs. The term `begun` comes from the arm outboard of the row. The
+    /// terms of the row's link and of the inner drives are added to it. The masses of the inner drives are `masses_kg`.
     #[inline(always)]
     fn load<V: Lanes>(&self, chunk: usize, begun: &Components, masses_kg: &[Eight]) -> [V; 5] {
         let mut out = [V::zero(); 5];

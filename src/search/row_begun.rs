@@ -1,4 +1,7 @@
 //! The numbers of a row that depend on the arm outboard of it. They are computed once for all designs of the row.
+//!
+//! A row is the set of designs that differ in the choice of one part alone, the row level. Its designs have the arm
+//! outboard of the row level in common.
 
 use super::arms::EightArms;
 use super::row::Row;
@@ -25,7 +28,7 @@ pub(crate) struct Begun {
     /// The numbers that depend on the case, one entry for each case.
     pub cases: Vec<CaseBegun>,
     /// For each inner joint (from the row level to the base), the place of the last design's drive in the ladder of the
-    /// drive table. The ladder lists, lightest first, the drives that can be the lightest one for some demand. The
+    /// drive table. The ladder lists, lightest first, the drives that can be the lightest for some demand. The
     /// search for the drive of the next design starts at this place, because the demands of neighbouring designs are
     /// similar.
     pub steps: Vec<usize>,
@@ -58,7 +61,7 @@ pub(crate) struct CaseBegun {
 }
 
 /// The arm outboard of a row as the computation of the lowest mode needs it: two blocks of three motions each in a
-/// planar pose, or one block of six motions in a spatial one.
+/// planar pose, or one block of six motions in a spatial pose.
 pub(crate) enum CaseOutboard {
     Planar(Box<[Outboard<3>; 2]>),
     Spatial(Box<Outboard<6>>),

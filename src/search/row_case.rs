@@ -1,6 +1,6 @@
 //! The numbers of a row that depend on the case, but not on the option of the row level: the torques and inertias about
-//! the hinges, and the numbers that the eigenvalue problem of the case needs. The file `row` says what inner slots and
-//! hinges are.
+//! the hinges, and the numbers that the eigenvalue problem of the case needs. An inner slot is a place of the
+//! arm from the row level to the base. A hinge is one elastic coordinate of an inner slot.
 
 use crate::mechanics::{Twist, Wrench};
 use crate::space::slot::Slot;
@@ -15,7 +15,7 @@ pub(crate) struct Hinge {
     pub number: usize,
     /// Inner slot that has this coordinate.
     pub slot: usize,
-    /// Number of the end coordinate (0 to 5) of a given tube; `None` for a joint.
+    /// Number of the end coordinate (motion of the tube's end, 0 to 5) of a given tube; `None` for a joint.
     pub end: Option<usize>,
 }
 
@@ -158,10 +158,10 @@ impl RowCase {
     }
 }
 
-/// Torque and inertia about each hinge that the inner pieces cause, in two lists: torque and inertia per kilogram of
-/// the drive in each inner slot, and torque and inertia due to all pieces with a given mass. `slots` are the inner
-/// slots of the case, and `pieces` the same slots of the problem. `numbers` is the length of a list with an entry for
-/// the number of every hinge.
+/// Torque and inertia about each hinge that the inner pieces cause, in two lists. The first has torque and inertia per
+/// kilogram of the drive in each inner slot. The second has torque and inertia due to all pieces with a given mass.
+/// `slots` are the inner slots of the case, and `pieces` the same slots of the problem. `numbers` is the length of a
+/// list with an entry for the number of every hinge.
 fn at_joints_of_pieces(
     slots: &[StationSlot],
     pieces: &[Slot],
@@ -288,7 +288,7 @@ fn loaded(station: &Station) -> [bool; 6] {
     loaded
 }
 
-/// Number of inner slots from the row level to the last one that is compliant in this block; 0 if none is. `first` is
+/// Number of inner slots from the row level to the last slot that is compliant in this block; 0 if none is. `first` is
 /// the slot of the row level, and `links_are_compliant` tells whether some option of the row's link is compliant.
 fn last_compliant<const N: usize>(block: &Block<N>, first: usize, links_are_compliant: bool) -> usize {
     let is_compliant = |slot: &BlockSlot<N>| match slot {

@@ -1,4 +1,7 @@
 //! Chunks: the numbers of eight options of the row's link, next to each other in memory.
+//!
+//! A row is the set of designs that differ in the options of one link alone, the row's link. A hinge
+//! is one elastic coordinate inboard of this link ([`row`](super::row)).
 
 use super::row_case::{Entry, Hinge, RowCase};
 use crate::mechanics::lanes::{Eight, LANES};
@@ -117,7 +120,7 @@ impl Chunk {
 
 impl CaseChunk {
     /// Computes the numbers of the eight link options of a chunk in one case. `at(lane)` is the number of the option in
-    /// a lane, and `first` the slot of the link.
+    /// a lane, and `first` the slot (place in the arm) of the link.
     fn new(
         station: &Station,
         case: &RowCase,

@@ -39,8 +39,8 @@ impl DriveAttributes {
     }
 }
 
-/// Masses and torsion curves of the drives that can be in a slot. The list is empty for links and offsets. The springs
-/// of a bearing count as drives without mass.
+/// Masses and torsion curves of the drives that can be in a slot (place in the arm). The list is empty for links and
+/// offsets. The springs of a bearing count as drives without mass.
 pub(super) fn drive_attributes(slot: &Slot) -> DriveAttributes {
     let mut drives = DriveAttributes::default();
     match slot {

@@ -118,7 +118,7 @@ impl RowChunk<'_, '_> {
             return FinishedEight { held, below_bar, unsure: 0 };
         }
         arms.tip_deflection_m = tip_m2.sqrt().store();
-        // Dunkerley's sums are computed only now, because few designs get this far
+        // Dunkerley's sums (of 1/λ over all modes) are computed only now, because few designs get this far
         self.sum_traces::<V>(begun, arms);
         let question = Question::new(*self, begun, arms);
         below_bar |= question.below_bar::<V>(keep, held & !below_bar);
@@ -275,7 +275,7 @@ impl RowChunk<'_, '_> {
         own.max(V::splat(self.from.stress_ratio))
     }
 
-    /// Index of the drive that each of the eight arms gets at inner slot `k`: the chosen drive, or the lightest one
+    /// Index of the drive that each of the eight arms gets at inner slot `k`: the chosen drive, or the lightest drive
     /// that meets the demand. An arm for which no drive meets the demand is removed from `held`.
     #[inline(always)]
     fn pick<V: Lanes>(
@@ -403,7 +403,7 @@ impl RowChunk<'_, '_> {
     }
 
     /// Adds the tip displacement that the bending of the given tube in inner slot `k` causes. Returns, for each arm,
-    /// the largest term that one end coordinate of the tube adds to Dunkerley's sums \[s²\].
+    /// the largest term that one end coordinate of the tube (one motion of its end) adds to Dunkerley's sums \[s²\].
     #[inline(always)]
     fn add_tube<V: Lanes>(&self, k: usize, arms: &mut EightArms) -> V {
         let mut largest = V::zero();

@@ -46,7 +46,7 @@ struct BlockOf {
 struct Ask<V> {
     /// Bit mask, one bit per arm: the arms for which the question is asked.
     open: u8,
-    /// Upper limit of the eigenvalues that are sought \[1/s²\]. Larger ones need not be computed.
+    /// Upper limit of the eigenvalues that are sought \[1/s²\]. Larger eigenvalues need not be computed.
     below: V,
     /// Eigenvalue at which the iteration starts; `None` if the question is only whether an eigenvalue is below
     /// `below`.
@@ -54,7 +54,7 @@ struct Ask<V> {
 }
 
 impl RowChunk<'_, '_> {
-    /// Number of the group (material) of the design in a lane; `None` if its links are of several materials.
+    /// Number of the group (material) of the design in a lane (0 to 7); `None` if its links are of several materials.
     #[inline(always)]
     pub(crate) fn group(&self, lane: usize) -> Option<usize> {
         let material = self.row.chunks.get(self.chunk).and_then(|chunk| chunk.materials[lane]);
@@ -74,9 +74,9 @@ impl<'a, 'c> Question<'a, 'c> {
     }
 
     /// The designs among `held` that one bar, used for all eight, shows to be dominated. The bar of a design of known
-    /// mass and deflection is the lowest mode below which the design is dominated. The bar that is used here is that
-    /// of an imagined design with the least mass and the least deflection of the eight, so the bar of each of the
-    /// eight is at least as high. `tip_m2` has the squares of the deflections \[m²\].
+    /// mass and deflection is the lowest mode below which the design is dominated. The bar that is used here belongs
+    /// to an imagined design with the least mass and the least deflection of the eight. The bar of each of the eight is
+    /// at least as high. `tip_m2` has the squares of the deflections \[m²\].
     #[inline(always)]
     pub(crate) fn below_one_bar<V: Lanes>(&self, keep: &impl Keep, tip_m2: &Eight, held: u8) -> u8 {
         if !self.at.of_one_group() {
@@ -117,8 +117,9 @@ impl<'a, 'c> Question<'a, 'c> {
         asked & !above
     }
 
-    /// The lowest eigenvalue of each arm over all judged cases \[1/s²\], and a bit mask of the arms for which the
-    /// iteration did not converge. `held` is a bit mask of the arms for which it is computed.
+    /// The lowest eigenvalue of each arm over all judged cases (which count for deflection and lowest mode) \[1/s²\],
+    /// and a bit mask of the arms for which the iteration did not converge. `held` is a bit mask of the arms for which
+    /// it is computed.
     #[inline(always)]
     pub(crate) fn lowest<V: Lanes>(&self, held: u8) -> (V, u8) {
         let (mut lowest, mut unsure) = (V::splat(f64::INFINITY), 0);
@@ -140,7 +141,7 @@ impl<'a, 'c> Question<'a, 'c> {
 
     /// The arms in which a single joint is so compliant that the lowest eigenvalue must be below the bar `below`
     /// \[1/s²\]. The reason: the reciprocal of the lowest eigenvalue is the largest eigenvalue of flexibility times
-    /// mass (in its symmetric form), and no diagonal entry of a symmetric matrix exceeds its largest eigenvalue.
+    /// mass (in its symmetric form). No diagonal entry of a symmetric matrix exceeds its largest eigenvalue.
     #[inline(always)]
     fn sluggish<V: Lanes>(&self, below: V) -> u8 {
         V::splat(1.0).less(V::load(&self.arms.largest_s2) * below)

@@ -5,7 +5,8 @@ use crate::space::fit::RoomAtJoint;
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::Slot;
 
-/// The room that a link leaves for the gear and motor of a joint inboard of the row level.
+/// The room that a link leaves for the gear and motor of a joint inboard of the row level, which is the choice in which
+/// the eight designs differ.
 pub(crate) struct RowRoom {
     /// Index of the joint among the inner slots (the slots from the row level to the base).
     pub k: usize,

@@ -25,9 +25,8 @@ pub struct OnSameDrives {
 impl ArmProblem<'_> {
     /// An arm that is lighter than the design with the options `options`, has the same drives at the joints sized by
     /// first fit, and is no worse in deflection and lowest mode. Parts are exchanged one at a time, each time in the
-    /// way that gives the lightest arm, so there may be a still lighter arm that this search does not find. `None` if
-    /// no joint is sized by first fit, if no exchange helps, or if first fit would give the lighter arm the same
-    /// drives.
+    /// way that gives the lightest arm. There may be a still lighter arm that this search does not find. `None` if no
+    /// joint is sized by first fit, if no exchange helps, or if first fit would give the lighter arm the same drives.
     pub fn lighter_on_same_drives(&self, options: &[u32]) -> Option<OnSameDrives> {
         let design = self.walk(options, |_, _| {}).ok()?;
         let first_fit = |slot: &Slot| matches!(slot, Slot::Sized(sized) if !sized.all_fits);

@@ -44,7 +44,7 @@ pub type Factors = BTreeMap<Rating, f64>;
 /// The designs of a problem whose parts are to be varied.
 pub struct ChosenParts<'p, 'c> {
     problem: &'p ArmProblem<'c>,
-    /// For each design, the option of every slot, tip first.
+    /// For each design, the option of every slot (piece of the arm), tip first.
     designs: Vec<Vec<u32>>,
     /// For each slot, the options that the designs use. Only these parts are built.
     used: Vec<BTreeSet<u32>>,

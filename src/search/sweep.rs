@@ -177,7 +177,7 @@ pub struct Sweep<'p, P: FinishRows> {
 struct Pool {
     /// Table that rejects dominated candidates at once.
     archive: Archive,
-    /// The candidates, and how many of them were left after the last removal of dominated ones.
+    /// The candidates, and how many of them were left after the last removal of dominated candidates.
     candidates: Mutex<(Vec<Candidate>, usize)>,
 }
 

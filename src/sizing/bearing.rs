@@ -3,18 +3,22 @@
 //! The vendor compares three things with what a bearing is rated for (Harmonic Drive LLC, FHA-C manual, pages 20 to 23;
 //! Harmonic Drive AG, engineering data 1021387, pages 43 and 45):
 //!
-//! 1. *Running*. The largest moment while the joint turns is at most the permissible one. That is a limit of
-//!    deflection and not of life, so it applies however short the load lasts. `M = M₀ + R F_r`, with the moment M₀ at
-//!    the face of the flange, and R the distance from the bearing's centre to this face.
-//! 2. *Static safety*. `fs = C₀ / P₀` with `P₀ = F_r + 2 M / d_p + 0.44 F_a` is at least 1.5 in normal use, 2 with
-//!    shocks and 3 for high precision. Here: [`SAFETY_AT_REST`] at rest, [`SAFETY_IN_A_STOP`] in an emergency stop.
-//! 3. *Life*. `L₁₀ = 10⁶ / (60 n) · (C / (f_w P_c))^(10/3)` hours with `P_c = X (F_r + 2 M / d_p) + Y F_a`. X and Y
-//!    are 1 and 0.45 while `F_a` is at most 1.5 times `F_r + 2 M / d_p`, else both are 0.67. n is the mean speed of the
-//!    joint over its cycle, so the same formula holds for joints that swing: a swing of ±θ travels 4θ in each
+//! 1. *Running*. The largest moment while the joint turns is at most the permissible moment. The permissible moment is
+//!    a limit of deflection and not of life, so it applies however short the load lasts. `M = M₀ + R F_r`, with the
+//!    moment M₀ at the face of the flange, and R the distance from the bearing's centre to this face.
+//! 2. *Static safety*. The safety factor `fs = C₀ / P₀` with `P₀ = F_r + 2 M / d_p + 0.44 F_a` is at least 1.5 in
+//!    normal use, 2 with shocks and 3 for high precision. Here: [`SAFETY_AT_REST`] at rest, [`SAFETY_IN_A_STOP`] in an
+//!    emergency stop.
+//! 3. *Life*. `L₁₀ = 10⁶ / (60 n) · (C / (f_w P_c))^(10/3)` hours with `P_c = X (F_r + 2 M / d_p) + Y F_a`. X and Y are
+//!    1 and 0.45 while `F_a` is at most 1.5 times `F_r + 2 M / d_p`, else both are 0.67. n is the mean speed of the
+//!    joint over its cycle, so the same formula holds for joints that swing. A swing of ±θ travels 4θ in each
 //!    oscillation.
 //!
+//! F_r and F_a are the radial and the axial force. d_p is the pitch diameter of the bearing. C₀ and C are its static
+//! and its dynamic load rating, and f_w is a load factor of the vendor.
+//!
 //! Each of the three loads grows with every force and moment. So a bearing is described by a set of thresholds, as the
-//! rest of a drive is.
+//! gear and the motor of a drive are.
 
 use crate::arm::bearing::Bearing;
 
@@ -27,10 +31,10 @@ pub(crate) const SAFETY_IN_A_STOP: f64 = 2.0;
 pub(crate) const LOAD_FACTOR: f64 = 1.3;
 /// Factor of the axial force in the static equivalent load P₀.
 pub(super) const AXIAL_SHARE: f64 = 0.44;
-/// Factor Y of the axial force in the dynamic equivalent load while this force is at most 1.5 times the one across; the
-/// factor X of the force across is then 1.
+/// Factor Y of the axial force in the dynamic equivalent load P_c, while the axial force is at most 1.5 times
+/// `F_r + 2 M / d_p`. The factor X of `F_r + 2 M / d_p` is then 1.
 pub(super) const AXIAL_FACTOR: f64 = 0.45;
-/// The factors X and Y of the dynamic equivalent load where the axial force exceeds 1.5 times the force across.
+/// The factors X and Y of the dynamic equivalent load P_c where the axial force exceeds 1.5 times `F_r + 2 M / d_p`.
 pub(super) const STEEP_FACTOR: f64 = 0.67;
 /// Number of turns for which the dynamic load rating C is defined.
 pub(super) const RATED_TURNS: f64 = 1e6;
@@ -46,8 +50,9 @@ pub struct BearingLoad {
     pub axial_n: f64,
 }
 
-/// The loads on the output bearing of a joint in a study. Each number is the largest over the sizing cases and over the
-/// ramps or stops of single joints. The numbers of one load may come from different cases, which is on the safe side.
+/// The loads on the output bearing of a joint in a study. Each number is the largest over the sizing cases (in which
+/// drives and stresses are checked) and over the ramps or stops of single joints. The numbers of one load may come from
+/// different cases, which is on the safe side.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BearingDemand {
     /// Loads from gravity, payload and tip force alone, with all joints at rest.

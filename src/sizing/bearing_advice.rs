@@ -13,7 +13,7 @@ use crate::catalog::gear::Gear;
 /// A gear whose output bearing fails a check.
 struct Overloaded<'t> {
     gear: &'t str,
-    /// The failed check of this gear's bearing. If several fail, it is the one with the smallest margin.
+    /// The failed check of this gear's bearing. If several checks fail, it is the check with the smallest margin.
     check: Check,
     /// Whether the bearing is the only reason why the gear is rejected.
     is_alone: bool,
@@ -71,7 +71,7 @@ impl DriveTable<'_> {
     }
 
     /// `gear` with the failed check of its output bearing, or `None` if its bearing passes. If several checks of the
-    /// bearing fail, it is the one with the smallest margin.
+    /// bearing fail, it is the check with the smallest margin.
     fn overloaded<'t>(&self, gear: &'t Gear, demand: &JointDemand) -> Option<Overloaded<'t>> {
         let bearing = self.bearing_of(gear);
         let checks = gear_checks(gear, self.gear_mass(), bearing.as_ref(), self.motion(), demand);

@@ -3,7 +3,8 @@
 use super::drive::{MissingRating, Rating};
 use std::fmt;
 
-/// The limits of a drive that are checked: of its gear, output bearing and motor, and of their sizes.
+/// The limits of a drive that are checked: limits of its gear, of its output bearing and of its motor, and limits on
+/// their sizes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum CheckKind {
     /// Static plus linear torque is at most the gear's limit for repeated peaks.
@@ -16,7 +17,7 @@ pub enum CheckKind {
     GearBuckling,
     /// Torque in an emergency stop is at most the torque at which the teeth jump (ratcheting).
     GearRatcheting,
-    /// The largest moment across the axis while the joint turns is at most the one that the output bearing permits.
+    /// The largest moment across the axis while the joint turns is at most the moment that the output bearing permits.
     BearingMoment,
     /// Static safety of the output bearing at rest is at least the required one.
     BearingRest,

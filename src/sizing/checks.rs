@@ -1,4 +1,4 @@
-//! All checks of a drive, one by one: those of its gear, of its output bearing and of its motor.
+//! All checks of a drive, one by one: the checks of its gear, of its output bearing and of its motor.
 
 use super::bearing_checks::bearing_checks;
 use super::check::{Check, CheckKind, check, plain};
@@ -152,7 +152,7 @@ fn motor_rms(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Check
     check(CheckKind::MotorRms, needed, continuous_nm, used.unwrap_or(f64::NAN), used.map(|_| 1.0))
 }
 
-/// All checks of a drive: first those of the gear, then those of the motor.
+/// All checks of a drive: first the checks of gear and output bearing, then the checks of the motor.
 pub fn checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Vec<Check> {
     let mut all = gear_checks(drive.gear, drive.gear_mass, drive.bearing().as_ref(), motion, demand);
     all.extend(motor_checks(drive, motion, demand));
@@ -160,8 +160,8 @@ pub fn checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Vec<
 }
 
 /// The checks of a drive that stands still and holds a reaction: `ramp_nm` while another joint ramps, `stop_nm` while
-/// it makes an emergency stop \[N m\]. They are those of single torques. Mean values over the cycle, which these short
-/// torques hardly change, are left out.
+/// it makes an emergency stop \[N m\]. Only checks that compare a single torque are made. Mean values over the cycle
+/// are left out, because these short torques hardly change them.
 pub(crate) fn reaction_checks(drive: &Drive, motion: &JointMotion, ramp_nm: f64, stop_nm: f64) -> Vec<Check> {
     use CheckKind::{GearBuckling, GearPeak, GearRatcheting, GearStop, MotorPeak};
     let still = JointMotion { speed_rad_s: 0.0, acceleration_rad_s2: 0.0, stated: None, ..*motion };
@@ -177,8 +177,8 @@ pub fn all_hold(checks: &[Check]) -> bool {
     checks.iter().all(Check::holds)
 }
 
-/// The binding check: of those among `checks` that could be made, the one with the smallest torque margin (allowed over
-/// needed torque). `None` if no check could be made.
+/// The binding check: the check with the smallest torque margin (allowed over needed torque) among the checks that
+/// could be made. `None` if no check could be made.
 pub fn binding(checks: &[Check]) -> Option<&Check> {
     let made = checks.iter().filter_map(|c| Some((c.torque_margin()?, c)));
     made.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, check)| check)

@@ -1,5 +1,6 @@
 //! The demand on one joint: its motion, which the study fixes, and its torques, which follow from the masses outboard
-//! (Eqs 8 and 12, cubic mean over the duty cycle).
+//! (Eqs 8 and 12 of docs/model.md, cubic mean over the duty cycle). *The paper* is the source of these equations, named
+//! in docs/model.md.
 
 use super::bearing::BearingDemand;
 use super::duty::{HeatWeights, MeanTorqueWeights};
@@ -211,7 +212,7 @@ impl JointMotion {
 /// The torques on one joint, on the output side of the gear. None of them is negative.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointDemand {
-    /// Largest static torque over the sizing cases, Eq 7 \[N m\].
+    /// Largest static torque over the sizing cases (in which drives and stresses are checked), Eq 7 \[N m\].
     pub static_torque_nm: f64,
     /// Torque of linear acceleration, Eq 8 \[N m\].
     pub linear_torque_nm: f64,
@@ -264,7 +265,7 @@ impl JointDemand {
         Self { bearing, ..self }
     }
 
-    /// This demand with `room` as the largest diameters of gear and motor.
+    /// This demand with `room` as the largest widths of gear and motor.
     pub fn with_room(self, room: LinkRoom) -> Self {
         Self { room, ..self }
     }
@@ -304,7 +305,7 @@ pub fn stop_torque_nm(static_torque_nm: f64, linear_torque_nm: f64, stop_factor:
 }
 
 /// Cube of the cubic mean torque over a duty cycle \[(N m)³\]: T_mean³ = Σ |T_i|³ n_i t_i / Σ n_i t_i (Eq 18.2 of the
-/// vendor). `weights` are those of the cycle.
+/// vendor). `weights` are the weights of the cycle's terms.
 #[inline]
 pub fn cubic_mean_cubed_nm3(weights: MeanTorqueWeights, static_torque_nm: f64, linear_torque_nm: f64) -> f64 {
     let cube = |x: f64| x * x * x;

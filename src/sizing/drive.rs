@@ -1,4 +1,4 @@
-//! A drive: a gear and a motor, with torques on either side of the gear (Eqs 9-12).
+//! A drive: a gear and a motor, with torques on either side of the gear (Eqs 9-12 of docs/model.md).
 
 use super::demand::{JointMotion, input_speed_rpm};
 use crate::arm::bearing::{Bearing, BearingSource};
@@ -76,7 +76,7 @@ pub struct Drive<'c> {
     pub gear: &'c Gear,
     /// The motor.
     pub motor: &'c Motor,
-    /// Which mass of the gear is used: that of the component set or of the housed unit.
+    /// Which mass of the gear is used: the mass of the component set or the mass of the housed unit.
     pub gear_mass: GearMass,
     /// Where the output bearing comes from.
     pub bearing: BearingSource,
@@ -100,7 +100,7 @@ impl Drive<'_> {
         self.gear.envelope_as(self.gear_mass)
     }
 
-    /// What the joint weighs beyond gear, motor and bearing.
+    /// The masses of the joint in addition to gear, motor and bearing: housing, brake, encoders, cables and so on.
     pub fn extras(&self) -> Extras {
         self.extras.with_parts(self.gear, self.motor, self.gear_mass)
     }
@@ -242,8 +242,8 @@ mod tests {
 
     #[test]
     fn with_the_wave_generator_of_hfuc_58_the_rotary_torque_is_eight_times_that() {
-        // Eq 9 adds the inertia of the gear's input: 0.00273 kg m² (gears.csv, HFUC-58-100), seven times that of the
-        // rotor.
+        // Eq 9 adds the inertia of the gear's input: 0.00273 kg m² (gears.csv, HFUC-58-100), seven times the inertia
+        // of the rotor.
         let (gear, motor) = (hfuc_58_100(), f11_10());
         let drive = Drive {
             gear: &gear,

@@ -36,10 +36,10 @@ pub struct Phase {
 
 /// A cycle that the joint repeats for its whole life.
 ///
-/// The mean values follow the vendor (Harmonic Drive, engineering data 1019659, Eqs 18.2 and 18.5). The mean torque
-/// is the cubic mean weighted by time *and* speed. The mean speed includes pauses. A cycle lifts the load; if it
-/// lowers the load instead, the torques of its two ramps change places, and the mean over a lift and a lowering is
-/// the same.
+/// The mean values follow the vendor (Harmonic Drive, engineering data 1019659, Eqs 18.2 and 18.5). The mean torque is
+/// the cubic mean weighted by time *and* speed. The mean speed includes pauses. A cycle lifts the load. If it lowers
+/// the load instead, the torques of its two ramps change places. The mean is then the same, because the ramps up and
+/// down take equally long.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DutyCycle {
     /// The phases in order.

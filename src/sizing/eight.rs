@@ -21,11 +21,11 @@ pub(crate) struct EightDemands<V> {
     mean_torque_cubed_nm3: V,
     /// Loads on the output bearings; `None` if they are not checked.
     bearing: Option<EightBearing<V>>,
-    /// Largest widths of gear, round motor and square flange that the links leave room for \[m\]; `None` if the study does not
-    /// ask for this check.
+    /// Largest widths of gear, round motor and square flange that the links leave room for \[m\]; `None` if the study
+    /// does not ask for this check.
     room: Option<[V; 3]>,
-    /// T + T_lin, the torque while speeding up \[N m\]. The next field has max(T - T_lin, 0) and max(T_lin - T, 0) \[N
-    /// m\], which are needed while slowing down.
+    /// T + T_lin, the torque while speeding up \[N m\] (T: static torque, T_lin: linear torque). The next field has
+    /// max(T - T_lin, 0) and max(T_lin - T, 0) \[N m\], which are needed while slowing down.
     up_nm: V,
     down_nm: [V; 2],
     heat_weights: HeatWeights,
@@ -203,14 +203,14 @@ impl<V: Lanes> EightDemands<V> {
         }
     }
 
-    /// These demands with `bearing` as the loads on the output bearings; `None`: the bearings are not checked.
+    /// These demands with `bearing` as the loads on the output bearings. With `None`, the bearings are not checked.
     #[inline(always)]
     pub(crate) fn with_bearing(self, bearing: Option<EightBearing<V>>) -> Self {
         Self { bearing, ..self }
     }
 
-    /// These demands with `room` as the largest widths of gear, round motor and square flange that fit \[m\]; `None`: sizes are not
-    /// checked.
+    /// These demands with `room` as the largest widths of gear, round motor and square flange that fit \[m\]. With
+    /// `None`, sizes are not checked.
     #[inline(always)]
     pub(crate) fn with_room(self, room: Option<[V; 3]>) -> Self {
         Self { room, ..self }
@@ -261,7 +261,8 @@ impl DriveTable<'_> {
     /// For each lane (arm) in the mask `wanted`, the index of the lightest drive that meets its demand, and the bit
     /// mask of the lanes that have such a drive.
     ///
-    /// The search for the first step of the ladder that may meet a demand begins at `step`. The step that it finds is
+    /// The ladder lists the drives that can be the lightest for some demand, lightest first. The search for the
+    /// first step of the ladder that may meet a demand begins at `step`. The step that it finds is
     /// stored in `step`. Successive demands are similar, so the next search is short.
     #[inline(always)]
     pub(crate) fn first_fits<V: Lanes>(

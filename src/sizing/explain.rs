@@ -24,7 +24,7 @@ pub enum RejectedPart {
         /// Name of the actuator.
         actuator: String,
     },
-    /// A gear that passes its own checks, but that has no motor which passes too. The checks listed are those with the
+    /// A gear that passes its own checks, but that has no motor which passes too. The listed checks were made with the
     /// nearest motor: the motor whose smallest margin is the largest.
     GearWithoutMotor {
         /// Name of the gear.
@@ -32,7 +32,7 @@ pub enum RejectedPart {
         /// Name of the nearest motor, whose smallest margin is the largest.
         nearest_motor: String,
     },
-    /// A motor that fails with some of the gears that pass their own checks. The checks listed are those with the
+    /// A motor that fails with some of the gears that pass their own checks. The listed checks were made with the
     /// nearest gear: the gear with which the smallest margin of the motor is the largest.
     Motor {
         /// Name of the motor.
@@ -170,7 +170,7 @@ impl fmt::Display for Relaxation {
 pub struct Shortfall {
     /// Name of the joint.
     pub joint: String,
-    /// Name of the nearest drive: the one whose smallest margin is the largest.
+    /// Name of the nearest drive: the drive whose smallest margin is the largest.
     pub drive: String,
     /// The check of this drive that has the smallest margin.
     pub check: Check,
@@ -209,8 +209,8 @@ struct Trial<'c> {
 }
 
 impl<'c> DriveTable<'c> {
-    /// Why parts were rejected for `demand`. The list has every gear that fails by itself, every gear that passes but
-    /// has no motor that passes with it, every actuator that fails, and every motor that fails with some gear that
+    /// Why parts were rejected for `demand`. The list has every gear and every actuator that fails by itself. It also
+    /// has every gear that passes but has no motor that passes with it, and every motor that fails with some gear that
     /// passes. Gears come first; gears and motors are each in the order of the catalog.
     pub fn explain(&self, demand: &JointDemand) -> Vec<Rejection> {
         let (mut rejections, trials) = (Vec::new(), self.trials(demand));
@@ -261,7 +261,7 @@ impl<'c> DriveTable<'c> {
     }
 
     /// The smallest margin of the nearest drive, as a factor on torque, for a demand that no drive meets. The nearest
-    /// drive is the one whose smallest margin is the largest. 0 if no drive could be checked.
+    /// drive is the drive whose smallest margin is the largest. 0 if no drive could be checked.
     pub(crate) fn nearest_margin(&self, demand: &JointDemand) -> f64 {
         self.nearest(demand).and_then(|(_, check)| check.torque_margin()).unwrap_or(0.0)
     }
@@ -320,8 +320,8 @@ impl<'c> DriveTable<'c> {
         Rejection { joint: self.joint().to_string(), part, checks, also_lacks }
     }
 
-    /// The columns that a rejected part leaves blank, without those that `checks` name; none if every check was made. A
-    /// check names only the first rating that it lacks.
+    /// The columns that a rejected part leaves blank, except the columns that `checks` name already. Empty if every
+    /// check was made. A check names only the first rating that it lacks.
     fn also_lacks(&self, part: &RejectedPart, checks: &[Check]) -> Vec<&'static str> {
         let named: Vec<&str> = checks
             .iter()
@@ -386,7 +386,7 @@ impl<'c> DriveTable<'c> {
     }
 
     /// The lightest drive that meets `demand` if speed and acceleration are multiplied by `factor`. All pairs of gear
-    /// and motor are tried, not only those of the table: a pair that was excluded as too fast may pass at the lower
+    /// and motor are tried, not only the pairs of the table: a pair that was excluded as too fast may pass at the lower
     /// speed. `None` if no pair passes.
     fn lightest_when_slowed(&self, factor: f64, demand: &JointDemand) -> Option<Drive<'c>> {
         let motion = self.motion().slowed(factor);
@@ -404,14 +404,15 @@ impl<'c> DriveTable<'c> {
     }
 }
 
-/// The pair of gear and motor whose smallest margin is the largest. Of pairs with equal margins, it is the one with the
-/// fewest failed checks, then the first one. `None` if there are no trials.
+/// The pair of gear and motor whose smallest margin is the largest. Of pairs with equal margins, the pair with the
+/// fewest failed checks is taken, then the first pair. `None` if there are no trials.
 fn nearest_trial<'t, 'c: 't>(trials: impl Iterator<Item = &'t Trial<'c>>) -> Option<&'t Trial<'c>> {
     let nearness = |t: &Trial| (t.worst_margin, std::cmp::Reverse(t.failed.len()));
     trials.reduce(|best, t| if nearness(t) > nearness(best) { t } else { best })
 }
 
-/// Those of `checks` that exclude a part. The smallest margin comes first; checks that could not be made come last.
+/// The checks in `checks` that exclude a part. The smallest margin comes first; checks that could not be made come
+/// last.
 pub(super) fn not_holding(checks: Vec<Check>) -> Vec<Check> {
     let mut failed: Vec<_> = checks.into_iter().filter(|c| !c.holds()).collect();
     let key = |c: &Check| c.torque_margin().unwrap_or(f64::INFINITY);

@@ -6,10 +6,10 @@
 //! | motor in the hollow of that link | outer diameter of the motor; the side of a square flange | the smaller clear width of the hollow; for a square in a round tube its diameter over √2 |
 //! | the same | length of the motor | length of the tubes from the joint to the next one |
 //! | cables along the axis | bore of the gear, and of a motor behind it | at least the bore that the study states |
-//! | space at the joint | length of the gear, plus that of a motor behind it | the length that the study states |
+//! | space at the joint | length of the gear, plus the length of a motor behind it | the length that the study states |
 //!
-//! A size that the catalog leaves blank is not checked and excludes nothing. Of component sets the catalog has no sizes
-//! at all. The limits of the first two checks follow from the link, so they are part of the
+//! A size that the catalog leaves blank is not checked and excludes nothing. For component sets the catalog has no
+//! sizes at all. The limits of the first two checks follow from the link, so they are part of the
 //! [demand](super::demand::JointDemand) on the joint. The other two checks exclude a drive whatever the arm. The places
 //! of the parts do not depend on these sizes, because the geometry of a chain is stated.
 
@@ -39,8 +39,8 @@ pub struct FitRequirement {
 /// Where the motor of a joint is mounted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum MotorPlace {
-    /// On the axis, behind the gear: cables pass through the motor, and the length of the motor adds to that of the
-    /// gear.
+    /// On the axis, behind the gear: cables pass through the motor, and the length of the motor adds to the length of
+    /// the gear.
     #[default]
     Behind,
     /// In the hollow of the link that the joint carries.

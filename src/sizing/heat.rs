@@ -14,19 +14,19 @@
 //! Losses of the gear add to the torque of the motor where the motor drives the load, and reduce it where the load
 //! drives the motor. The cycle is taken as a lift of the load. Lowering heats the motor less, provided that the cycle
 //! slows down no longer than it speeds up; [`MotionRequirement::validate`](super::MotionRequirement::validate)
-//! demands this. With s = T + T_lin, x = |T - T_lin| and q = J_in N α, the sum of the squares of both ramps of a lift
-//! exceeds that of a lowering by
+//! demands this. With s = T + T_lin, x = |T - T_lin| and q = J_in N α, the sum of the squared motor torques of the two
+//! ramps is larger in a lift than in a lowering by
 //!
-//! (s² ∓ x²)(1/η² - η²) / N² + 2 q (s - x)(1/η - η) / N ≥ 0,
+//! (s² ∓ x²)(1/η² - η²) / N² + 2 q (s - x)(1/η - η) / N ≥ 0.
 //!
-//! The sign is - where T_lin is larger than T, else +.
+//! The first sign is - where T_lin is larger than T, else +.
 //!
 //! *Monotonicity.* If the cycle slows down no longer than it speeds up, the mean square grows with T, with T_lin, and
-//! with each number of a [`MotorHeat`]: the phase of speeding up has the largest torque and rises at least as fast as
-//! that of slowing down falls. Two things follow. The least T and T_lin of a box of designs, together with the least
-//! numbers of a box of drives, give a lower bound for every member. And a drive that has no number larger than another
-//! drive passes wherever the other passes. The `tests` check this against random members, and against a motion
-//! simulated step by step.
+//! with each number of a [`MotorHeat`]. The reason: speeding up takes the largest torque, and its square rises at least
+//! as fast as the square of the torque of slowing down falls. Two things follow. The least T and T_lin of a box of
+//! designs, together with the least numbers of a box of drives, give a lower bound for every member. And a drive that
+//! has no number larger than another drive passes wherever the other passes. The `tests` check this against random
+//! members, and against a motion simulated step by step.
 //!
 //! *Continuous torque.* It is taken at the motor's speed while the joint cruises, see [`motor_curve`].
 //!
@@ -59,7 +59,8 @@ impl MotorHeat {
     pub const NONE: Self =
         Self { driving_per_nm: 0.0, driven_per_nm: 0.0, own_share: 0.0, stated_share_squared: 0.0 };
 
-    /// The numbers of `drive` in a joint with the motion `motion`, or the name of the rating that is blank.
+    /// The numbers of `drive` in a joint with the motion `motion`. The error is the name of a rating that is needed and
+    /// blank.
     pub(super) fn of(drive: &Drive, motion: &JointMotion) -> Result<Self, super::MissingRating> {
         if !motion.checks_motor_heat {
             return Ok(Self::NONE);

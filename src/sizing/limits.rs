@@ -3,7 +3,7 @@
 //! The study fixes speed, acceleration and duty cycle of a joint, so most checks of a drive compare one torque with
 //! one number. [`DriveLimits`] has these numbers. Three checks need more than one torque: the output bearing (see
 //! [`BearingLimits`]), motor heat, which compares a mean square with 1, and sizes ([`DriveWidths`]). A search
-//! compares these numbers and nothing else. The printed checks ([`checks`](super::checks)) use the same thresholds.
+//! compares these numbers and nothing else. The printed checks ([`checks`](mod@super::checks)) use the same thresholds.
 
 use super::bearing::BearingLimits;
 use super::check::CheckKind;
@@ -52,9 +52,9 @@ pub struct DriveLimits {
     pub mean_torque_cubed_nm3: f64,
     /// Limits of the output bearing.
     pub bearing: BearingLimits,
-    /// Outer diameters of the parts.
+    /// Widths of gear and motor, as far as the study limits them.
     pub widths: DriveWidths,
-    /// Ratios of the motor's torque to its continuous torque.
+    /// Numbers from which the motor's heat under a demand is computed.
     pub heat: MotorHeat,
 }
 
@@ -123,8 +123,8 @@ impl DriveLimits {
             & (self.heat.share_squared(demand) <= 1.0)
     }
 
-    /// For each limit the weaker of the values of this drive and of `other`: the larger one, but for heat and widths
-    /// the smaller one. If one of the two drives meets a demand, the demand is within these limits.
+    /// For each limit the weaker of the values of this drive and of `other`: the larger value, but for heat and widths
+    /// the smaller value. If one of the two drives meets a demand, the demand is within these limits.
     pub(crate) fn max(&self, other: &Self) -> Self {
         Self {
             static_torque_nm: self.static_torque_nm.max(other.static_torque_nm),
@@ -137,8 +137,8 @@ impl DriveLimits {
         }
     }
 
-    /// For each limit the stricter of the values of this drive and of `other`: the smaller one, but for heat and widths
-    /// the larger one. Both drives meet every demand that is within these limits.
+    /// For each limit the stricter of the values of this drive and of `other`: the smaller value, but for heat and
+    /// widths the larger value. Both drives meet every demand that is within these limits.
     pub(crate) fn min(&self, other: &Self) -> Self {
         Self {
             static_torque_nm: self.static_torque_nm.min(other.static_torque_nm),
@@ -199,7 +199,7 @@ pub(super) fn gear_average_speed_rpm(gear: &Gear) -> Rating {
 }
 
 /// Largest speed of a motor at the end of a ramp \[rpm\]: its stated largest speed, or its rated speed if only that
-/// is known, but never beyond the last point of its torque curve.
+/// is known. It is never beyond the last point of the motor's torque curve.
 pub(super) fn motor_max_speed_rpm(motor: &Motor) -> Rating {
     let of_curve = motor_curve::largest_speed_rpm(motor);
     let stated = motor.max_speed_rpm.or(motor.rated_speed_rpm);
@@ -255,8 +255,9 @@ fn gear_stop_nm(gear: &Gear) -> Rating {
     Ok(gear_momentary_nm(gear)?.min(gear_buckling_nm(gear).unwrap_or(unknown)).min(jumps_nm))
 }
 
-/// Torque at the joint in an emergency stop at which an actuator brakes with its peak torque \[N m\]: T_peak - s J_out
-/// α. Its motor brakes its own rotor too, s times as hard as it is accelerated in a ramp. Infinite for other drives,
+/// Largest torque at the joint in an emergency stop that an actuator can brake \[N m\]: T_peak - s J_out α. T_peak is
+/// the peak torque of the actuator. The factor s of the stop is the emergency deceleration over the acceleration α of a
+/// ramp. J_out is the inertia of the rotor at the output, which the motor must brake too. Infinite for other drives,
 /// whose rotor does not load the gear.
 pub(super) fn actuator_stop_nm(drive: &Drive, motion: &JointMotion) -> Rating {
     if drive.gear.kind != GearKind::Actuator {
@@ -270,8 +271,8 @@ pub(super) fn actuator_stop_of_rotor_nm(drive: &Drive, motion: &JointMotion) -> 
     Ok(motion.stop.factor * drive.rotary_torque_motor_nm(motion)? * drive.gain()?)
 }
 
-/// Number of emergency stops (momentary peaks) that a gear may see in its life: 1e4 / (2 n t / 60), with n the input
-/// speed in rpm and t the duration of a stop in seconds; never more than 1e4. The factor 2 is there because the wave
+/// Number of emergency stops (momentary peaks) that a gear may see in its life: 1e4 / (2 n t / 60), but at most 1e4.
+/// Here n is the input speed in rpm and t is the duration of a stop in seconds. The factor 2 is there because the wave
 /// generator deforms the flexspline twice in each turn. `None` if the gear is no strain-wave gear, for which alone
 /// the rule is made.
 ///

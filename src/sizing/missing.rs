@@ -44,7 +44,8 @@ impl DriveTable<'_> {
         (!groups.is_empty()).then(|| named.chain(more).collect::<Vec<_>>().join("; "))
     }
 
-    /// The parts that cannot be checked and would fit, those of the user's own catalogs first.
+    /// The parts that cannot be checked because they lack ratings, parts of the user's own catalogs first. Built-in
+    /// parts whose known sizes do not fit are left out if other parts fit.
     fn lacking_parts(&self) -> Vec<LackingPart<'_>> {
         let fit = &self.motion().fit;
         let no_size = Envelope::default();

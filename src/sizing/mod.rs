@@ -1,4 +1,4 @@
-//! Sizing: which drive each joint needs (Eqs 7-12).
+//! Sizing: which drive each joint needs (Eqs 7-12 of docs/model.md, from the paper named there).
 //!
 //! This module knows nothing of arms. For the demand on a joint it finds the pairs of gear and motor that pass every
 //! check. The walk over an arm from tip to base is in [`space`](crate::space), which uses this module.
@@ -16,20 +16,20 @@
 //!
 //! | symbol | meaning | unit |
 //! |---|---|---|
-//! | T, T_lin, T_rot | static, linear and rotary torque (7, 8, 11) | N m |
+//! | T, T_lin, T_rot | static, linear and rotary torque (Eqs 7, 8, 11) | N m |
 //! | t_a, a | ramp time; tip acceleration v / t_a | s; m/s² |
 //! | ω, α | speed and acceleration of the joint, output side | rad/s, rad/s² |
 //! | N, η | reduction ratio; efficiency of the gear | - |
-//! | J_in | rotor and wave generator, motor side (9) | kg m² |
+//! | J_in | rotor and wave generator, motor side (Eq 9) | kg m² |
 //!
 //! *Sides.* The paper's n_j is the speed of the motor, so its J θ̈ is a torque on the motor's side. Referred to the
 //! joint it is N times as large. Every name states its side: `input` and `motor` for the fast side, `output` or nothing
 //! for the joint.
 //!
 //! *Validity.* The efficiency is a single number of the catalog, for rated torque and 2000 rpm at the input. It is
-//! also used for holding at rest, where friction in reality helps the motor. Where the catalog has no torque-speed
-//! curve of a motor, its peak torque is taken as available up to the largest speed, and its continuous torque as
-//! falling with constant power beyond the rated speed.
+//! also used for holding at rest, where friction in reality helps the motor. A motor may have no torque-speed
+//! curve in the catalog. Its peak torque is then taken as available up to the largest speed. Its continuous torque is
+//! taken as falling with constant power beyond the rated speed.
 
 pub(crate) mod bearing;
 pub(crate) mod bearing_advice;

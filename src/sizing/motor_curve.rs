@@ -45,8 +45,9 @@ pub(super) fn largest_speed_rpm(motor: &Motor) -> Option<f64> {
     motor.curve.last().map(|point| point.speed_rpm)
 }
 
-/// The torque that the function `torque_nm` returns for the points of the motor's curve, interpolated at a speed \[N
-/// m\]: linear between the points that state it, constant outside of them. `None` if no point states it.
+/// The torque of the motor's curve at a speed \[N m\]. The function `torque_nm` returns the torque of a point. The
+/// result is interpolated linearly between the points that state a torque, and is constant outside of them. `None` if
+/// no point states a torque.
 fn at(motor: &Motor, torque_nm: impl Fn(&MotorCurvePoint) -> Option<f64>, speed_rpm: f64) -> Option<f64> {
     let points: Vec<[f64; 2]> =
         motor.curve.iter().filter_map(|point| Some([point.speed_rpm, torque_nm(point)?])).collect();

@@ -1,9 +1,9 @@
 //! Drives of prismatic joints: ball screws, and racks with their pinions, as gears.
 //!
 //! A screw of lead p turns the motor by `2π/p` radians per metre of travel. A pinion of radius r turns it by `1/r`,
-//! times the ratio of a gear at the pinion. With this ratio N every equation of a joint holds along a travel, with a
-//! force \[N\] in place of the torque, a speed \[m/s\] in place of the angular speed, and a stiffness \[N/m\]. The
-//! motor's torque is `F / (N η) + J N a` (Eqs 9 to 12). So a screw *is* a [`Gear`] whose ratings are forces.
+//! times the ratio of a gear at the pinion. With this ratio N, every equation of a joint holds along a travel. Torques
+//! are then forces \[N\], angular speeds are speeds \[m/s\], and stiffnesses are in N/m. The motor's torque is `F / (N
+//! η) + J N a` (Eqs 9 to 12 of docs/model.md). So a screw *is* a [`Gear`] whose ratings are forces.
 //!
 //! | of a screw | formula | source |
 //! |---|---|---|
@@ -14,10 +14,10 @@
 //!
 //! The factors depend on the ends of the shaft. In the order of [`Ends`], η₁ is 1/4, 1, 2, 4, and λ is 1.875, π, 3.927,
 //! 4.730, a root of the uniform beam. F_m is the cubic mean of the force over the way; the source gives the definition
-//! of C. The stiffness is that with the nut farthest from the supports of the shaft.
+//! of C. The stiffness is taken with the nut farthest from the supports of the shaft.
 //!
-//! I and A are those of the root of the thread. E = 206 GPa and ρ = 7850 kg/m³ are those of steel. The mass of the
-//! shaft turns with the motor and does not travel.
+//! I and A are the second moment and the area of the section at the root of the thread. E = 206 GPa and ρ = 7850 kg/m³
+//! are the values of steel. The mass of the shaft turns with the motor and does not travel.
 
 use super::bearing::RATED_TURNS;
 use crate::catalog::gear::{Gear, GearKind, LifeLaw};
@@ -55,7 +55,7 @@ impl Ends {
         ("fixed_fixed", Self::Fixed),
     ];
 
-    /// Euler's buckling load with these ends, divided by that with both ends supported.
+    /// Euler's buckling load with these ends, divided by Euler's buckling load with both ends supported.
     fn buckling(self) -> f64 {
         match self {
             Self::FixedFree => 0.25,
@@ -98,13 +98,14 @@ pub struct Screw {
     pub max_speed_rpm: Option<f64>,
     /// Turns of the motor per turn of the screw, by a belt or gear between them.
     pub ratio: f64,
-    /// Efficiency, that of a belt or gear included.
+    /// Efficiency of the screw, including the efficiency of a belt or gear.
     pub efficiency: f64,
     /// Stiffness of nut and end bearings in series \[N/m\]; `None` means rigid.
     pub series_n_per_m: Option<f64>,
-    /// Moment of inertia beyond that of the shaft, at the screw, such as a coupling's or a pulley's \[kg m²\].
+    /// Moment of inertia in addition to the shaft, referred to the screw \[kg m²\], such as the inertia of a coupling
+    /// or a pulley.
     pub further_inertia_kgm2: f64,
-    /// Mass beyond that of the shaft, which stays where the joint begins \[kg\].
+    /// Mass in addition to the shaft, which stays where the joint begins \[kg\].
     pub further_mass_kg: f64,
 }
 
@@ -149,7 +150,8 @@ impl Screw {
         at_screw / self.ratio.powi(2)
     }
 
-    /// The screw as a gear whose ratings are forces. Its input is the motor's shaft, so speeds are those of the motor.
+    /// The screw as a gear whose ratings are forces. Its input is the motor's shaft, so its speeds are speeds of the
+    /// motor.
     pub fn gear(&self) -> Gear {
         let turns_h = self.dynamic_load_rating_n.map(|_| RATED_TURNS / 60.0 * self.ratio);
         Gear {
@@ -203,7 +205,7 @@ impl Rack {
     }
 }
 
-/// A gear of a prismatic joint of which nothing but the ratio \[rad/m\] and the efficiency is known.
+/// A gear of a prismatic joint for which only the ratio \[rad/m\] and the efficiency are known.
 fn linear(kind: GearKind, name: &str, ratio: f64, efficiency: f64) -> Gear {
     let provenance = Provenance {
         source: "the study".into(),

@@ -21,9 +21,9 @@ pub struct MotionRequirement {
     pub duty_cycle: DutyCycle,
     /// Required life of the gear, L10 \[h\].
     pub life_h: f64,
-    /// Which interpretation of Eq 8 is used.
+    /// Which interpretation of Eq 8 of docs/model.md, the torque of linear acceleration, is used.
     pub linear_reading: LinearReading,
-    /// Gravity \[m/s²\], used by the paper's reading of Eq 8.
+    /// Gravity \[m/s²\], used by the interpretation [`LinearReading::Paper`] of Eq 8.
     pub gravity_m_s2: f64,
     /// Whether heating of the motors is checked: the root mean square of their torque over the cycle.
     pub checks_motor_heat: bool,

@@ -61,7 +61,7 @@ impl DriveFilter {
         }
     }
 
-    /// This filter, but with the gear and the motor of `drive` as the only ones that it allows.
+    /// This filter, but with the gear and the motor of `drive` as the only parts that it allows.
     pub(crate) fn only(&self, drive: &Drive) -> Self {
         let of_actuator = drive.gear.kind == GearKind::Actuator;
         let one = |id: &str, is_one: bool| Some(if is_one { vec![id.to_string()] } else { Vec::new() });
@@ -123,7 +123,7 @@ pub struct DriveTable<'c> {
     pairs: Vec<Pair>,
     masses_kg: Vec<f64>,
     limits: Vec<DriveLimits>,
-    /// Indices of the drives that can be the lightest one for some demand, lightest first. A drive is left out if a
+    /// Indices of the drives that can be the lightest for some demand, lightest first. A drive is left out if a
     /// lighter one has no stricter limit.
     ladder: Vec<u32>,
     ladder_limits: Vec<DriveLimits>,
@@ -138,7 +138,7 @@ pub struct DriveTable<'c> {
 /// limits do not meet a demand.
 const STEPS_OF_FLIGHT: usize = 8;
 
-/// The ladder: the drives that can be the lightest one for some demand, lightest first.
+/// The ladder: the drives that can be the lightest for some demand, lightest first.
 #[derive(Clone, Copy)]
 pub(super) struct Ladder<'t> {
     pub indices: &'t [u32],
@@ -239,7 +239,7 @@ impl<'c> DriveTable<'c> {
     fn raise_ladder(&mut self) {
         for index in 0..self.limits.len() {
             let limits = self.limits[index];
-            // whatever a covered drive holds, a lighter one holds too
+            // a lighter drive meets every demand that a covered drive meets
             if self.is_covered(&limits) {
                 continue;
             }
@@ -254,8 +254,8 @@ impl<'c> DriveTable<'c> {
         }
     }
 
-    /// Whether some step of the ladder has no limit that is stricter than the same one of `limits`. No step of a flight
-    /// is such a step if the weakest limits of the flight are not.
+    /// Whether some step of the ladder covers `limits`: none of its limits is stricter than the same limit of `limits`.
+    /// If the weakest limits of a flight do not cover `limits`, no step of the flight does, and the flight is skipped.
     fn is_covered(&self, limits: &DriveLimits) -> bool {
         let flights = self.ladder_flights.iter().zip(self.ladder_limits.chunks(STEPS_OF_FLIGHT));
         let mut near = flights.filter(|(most, _)| most.cover(limits)).flat_map(|(_, flight)| flight);
@@ -371,7 +371,7 @@ impl<'c> DriveTable<'c> {
         (0..self.len()).find(|&i| parts(&self.drive(i)) == (gear_id, motor_id))
     }
 
-    /// Indices of the drives that can be the lightest one for some demand, lightest first. A drive is left out if a
+    /// Indices of the drives that can be the lightest for some demand, lightest first. A drive is left out if a
     /// lighter one has no stricter limit.
     pub fn first_fit_candidates(&self) -> &[u32] {
         &self.ladder
@@ -385,7 +385,7 @@ impl<'c> DriveTable<'c> {
         Some(self.ladder[step] as usize)
     }
 
-    /// The drives that can be the lightest one for some demand, with their limits.
+    /// The drives that can be the lightest for some demand, with their limits.
     pub(super) fn ladder(&self) -> Ladder<'_> {
         Ladder {
             indices: &self.ladder,
@@ -395,8 +395,8 @@ impl<'c> DriveTable<'c> {
         }
     }
 
-    /// The first step of the ladder up to which some drive may meet `demand`. Most demands are met near the beginning,
-    /// so the stride is doubled until the step is passed, and then the interval is bisected.
+    /// The first step of the ladder for which some drive up to this step may meet `demand`. Most demands are met near
+    /// the beginning. Therefore the stride is doubled until the step is passed, and then the interval is bisected.
     #[inline]
     fn first_step_within_reach(&self, demand: &JointDemand) -> usize {
         let reach = &self.ladder_reach;

@@ -1,4 +1,5 @@
-//! The sizing table: one row of numbers for each joint, from the tip to the base.
+//! The sizing table: one row of numbers for each joint, from the tip to the base. Equation numbers refer to
+//! docs/model.md.
 
 use super::bearing_checks::{BlankRatings, RigidBearing, bearing_margin};
 use super::check::{Check, CheckKind, CheckState};
@@ -37,7 +38,7 @@ pub struct JointSizingRow {
     pub motor_rms_torque_nm: Option<f64>,
     /// Continuous torque of the motor at the cruising speed \[N m\]; `None` also if heating is not checked.
     pub motor_continuous_torque_nm: Option<f64>,
-    /// Continuous torque divided by root mean square torque of the motor. `None` also if the latter is 0.
+    /// Continuous torque divided by root mean square torque of the motor. `None` also if the root mean square is 0.
     pub motor_rms_margin: Option<f64>,
     /// Efficiency of the gear at the mean speed and torque of the cycle, from representative curves. For information
     /// only: the checks use the rated efficiency.
@@ -63,7 +64,8 @@ pub struct JointSizingRow {
     pub joint_speed_rpm: f64,
     /// Largest speed of the motor \[rpm\].
     pub motor_speed_rpm: f64,
-    /// Speed of the gear's input while the joint cruises \[rpm\]: that of the motor, unless a stage lies between.
+    /// Speed of the gear's input while the joint cruises \[rpm\]. It equals the speed of the motor, unless a stage lies
+    /// between motor and gear.
     pub input_speed_rpm: f64,
     /// Mean speed of the gear's input over the cycle, rests included \[rpm\].
     pub mean_input_speed_rpm: f64,
@@ -85,13 +87,14 @@ pub struct JointSizingRow {
     pub slides: bool,
     /// Mass of the drive \[kg\].
     pub mass_kg: Option<f64>,
-    /// Mass that the next joint inward carries from this joint outward: everything outboard of this joint, this drive
-    /// as far as it sits here, and what else is fixed to the joint, such as a half of a belt \[kg\].
+    /// Mass that this joint and everything outboard of it add to the load of the next joint inboard \[kg\]. It includes
+    /// the parts of the drive that sit at this joint, and other parts that are fixed to it, such as a half of a belt.
     pub mass_passed_inward_kg: f64,
-    /// Every check, including those that could not be made.
+    /// Every check, including the checks that could not be made.
     #[serde(skip)]
     pub checks: Vec<Check>,
-    /// Messages of the checks that fail. There are some only if the drive was fixed by the user.
+    /// Messages of the checks that fail. The list can have entries only if the user fixed the drive; a drive that the
+    /// program selects passes all checks.
     pub fails: Vec<String>,
     /// Checks that could not be made, and a bearing that is taken as rigid because its stiffness is unknown, in words.
     pub not_checked: Vec<String>,

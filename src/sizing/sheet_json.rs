@@ -7,8 +7,8 @@ use serde::ser::Error;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
 
-/// Torque keys of a joint that turns, each with the force key of a joint that slides. The value stays, because it is a
-/// force \[N\] already.
+/// Torque keys of a joint that turns, each with the force key of a joint that slides. Only the key is replaced: for a
+/// joint that slides, the value is a force \[N\] already.
 const OF_SLIDES: [(&str, &str); 6] = [
     ("static_torque_nm", "static_force_n"),
     ("linear_torque_nm", "linear_force_n"),
@@ -29,7 +29,7 @@ impl Serialize for JointSizingRow {
     }
 }
 
-/// A key and its value of a joint that turns, as those of a joint that slides.
+/// Converts a key and its value, as a joint that turns has them, to the key and value of a joint that slides.
 fn of_slide((key, value): (String, Value)) -> (String, Value) {
     match (OF_SLIDES.iter().find(|(turning, _)| *turning == key), key.as_str()) {
         (Some((_, sliding)), _) => (sliding.to_string(), value),

@@ -241,11 +241,10 @@ impl StatedDemand {
 /// torque to continuous torque for each newton metre at the joint, and c is this ratio for each rad/s² of the joint.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct StatedHeat {
-    /// Sum of w T² (w: fraction of the time; T: torque) \[(N m)²\]: first over the phases in which the motor drives,
-    /// then over those in which the load drives it.
+    /// Two sums of w T² (w: fraction of the time; T: torque) \[(N m)²\]. The first is over the phases in which the
+    /// motor drives the load, the second over the phases in which the load drives the motor.
     torque_nm2: [f64; 2],
-    /// Sum of w T α (α: acceleration of the joint) over the phases in which the motor drives, then over those in which
-    /// the load drives it \[N m rad/s²\].
+    /// Two sums of w T α (α: acceleration of the joint) \[N m rad/s²\], over the same two groups of phases.
     mixed_nm_rad_s2: [f64; 2],
     /// Sum of w α² over all phases \[rad²/s⁴\].
     acceleration_rad2_s4: f64,
@@ -261,8 +260,8 @@ impl StatedHeat {
         torque + 2.0 * inertia_s2 * mixed + inertia_s2 * inertia_s2 * self.acceleration_rad2_s4
     }
 
-    /// The sums of this duty at the input of `stage`, whose own inertia is left out: a duty in numbers states torques and
-    /// not what accelerates the stage. Where the load drives, the stage's losses help the motor.
+    /// The sums of this duty at the input of `stage`. The inertia of the stage is left out, because a duty in numbers
+    /// states torques and not what accelerates the stage. Where the load drives, the stage's losses help the motor.
     fn before(self, stage: &Stage) -> Self {
         let per_nm = [1.0 / (stage.ratio * stage.efficiency), stage.efficiency / stage.ratio];
         Self {

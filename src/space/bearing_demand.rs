@@ -8,7 +8,8 @@
 //!
 //! Forces are added as vectors before their norms are taken. The link attaches at some distance along the joint's axis
 //! from the face of the flange (the lever). The lever times the radial force is added to the moment, as in the vendor's
-//! `M = F_r (L_r + R) + F_a L_a`.
+//! `M = F_r (L_r + R) + F_a L_a`. There, `F_r` and `F_a` are the radial and the axial force, `L_r` and `L_a` are their
+//! levers, and `R` is the distance from the face of the flange to the centre of the bearing.
 
 use super::bearing_loads::{Components, PosedBearing};
 use super::problem::ArmProblem;
@@ -31,8 +32,8 @@ struct Largest {
 impl Largest {
     /// Raises the largest loads to the loads of a moving arm, where these are larger: the load `rest` at rest,
     /// combined with the load `ramp` that the acceleration of one joint adds. The acceleration may have either sign,
-    /// and in an emergency stop it is `stop_factor` times as large. The larger norm of `s ± d` is the root of
-    /// `|s|² + |d|² + 2 |s·d|`.
+    /// and in an emergency stop it is `stop_factor` times as large. For the vector `s` of a load at rest and the vector
+    /// `d` that the acceleration adds, the larger norm of `s ± d` is the root of `|s|² + |d|² + 2 |s·d|`.
     fn moving(&mut self, rest: &Components, ramp: &Components, stop_factor: f64) {
         let larger = |first: usize, times: f64| {
             let (s, d) = ([rest[first], rest[first + 1]], [ramp[first] * times, ramp[first + 1] * times]);
@@ -70,7 +71,8 @@ fn take(largest: &mut [f64; 3], load: [f64; 3]) {
 
 impl ArmProblem<'_> {
     /// Loads on the output bearing of the joint in `slot`: the largest over the cases with the indices `cases`. The arm
-    /// outboard of the joint has the states `states`, one for each case, and the options `options`, one for each slot.
+    /// outboard of the joint has the states `states`, one for each case, and the options `options`, one for each slot
+    /// (piece of the arm, tip first).
     /// The loads are zero if the joint has no bearing.
     pub(crate) fn bearing_demand(
         &self,
@@ -106,9 +108,9 @@ impl ArmProblem<'_> {
         }
     }
 
-    /// Stores in the state of each sizing case the wrench with which the joint in `slot` loads the bearings inboard of
-    /// it while it accelerates. The function is called just before the joint is added to the arm, when the state has
-    /// everything outboard of the joint.
+    /// Stores the wrench with which the joint in `slot` loads the bearings inboard of it while it accelerates. The
+    /// wrench is stored in the state of each sizing case, in which drives and stresses are checked. The function is
+    /// called just before the joint is added to the arm, when the state has everything outboard of the joint.
     pub(crate) fn keep_ramp(&self, slot: usize, states: &mut [StationState]) {
         let loads = self.bearing_loads();
         let Some(k) = loads.movers.iter().position(|mover| mover.slot == slot).filter(|_| loads.any()) else {

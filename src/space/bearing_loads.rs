@@ -19,8 +19,8 @@ use nalgebra::Vector3;
 pub(crate) struct BearingLoads {
     /// The driven joints of the chain, tip first.
     pub movers: Vec<Mover>,
-    /// For each slot, the lever of its joint: how far from the face of the flange the link attaches. `None` if the slot
-    /// has no joint with a bearing.
+    /// For each slot (piece of the arm, tip first), the lever of its joint: how far from the face of the flange the
+    /// link attaches. `None` if the slot has no joint with a bearing.
     pub levers: Vec<Option<Lever>>,
     /// Whether the bearing in each slot can exclude a design. A bearing whose ratings are unknown cannot.
     pub checked: Vec<bool>,

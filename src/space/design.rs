@@ -69,9 +69,9 @@ pub fn id_of(mut number: u128) -> String {
     digits.iter().rev().collect()
 }
 
-/// Number of the design with this name; `None` if the name is not that of a design. Names in results of earlier
-/// versions lack the `x` and are read as well. An earlier name that happens to begin with `x` must be read by
-/// [`number_of_earlier`] instead.
+/// Number of the design with this name; `None` if the name is not the name of a design. The name begins with `x`; names
+/// in results of earlier versions lack the `x` and are read as well. An earlier name that happens to begin with `x`
+/// must be read by [`number_of_earlier`] instead.
 pub fn number_of(id: &str) -> Option<u128> {
     number_of_earlier(id.strip_prefix(ID_PREFIX).unwrap_or(id))
 }
@@ -163,7 +163,7 @@ impl<'c> ArmProblem<'c> {
         Some(to_the_microgram(extras_kg.sum()))
     }
 
-    /// The judged cases of the study, as load cases of the full model.
+    /// The judged cases of the study (which count for deflection and lowest mode), as load cases of the full model.
     pub fn load_cases(&self) -> Vec<LoadCase> {
         let space = self.space();
         space.judged_cases.iter().map(|&i| space.load_case(&space.cases[i])).collect()

@@ -232,7 +232,8 @@ pub struct SpaceJoint {
     pub extras: ExtrasSource,
     /// Rigid bodies at the joint, in addition to drive, bearing and extras.
     pub bodies: JointBodies,
-    /// How the drive of the joint is found: given, by first fit, or chosen by the search.
+    /// How the drive of the joint is found: given, by first fit (the lightest that meets the demand), or chosen by the
+    /// search.
     pub drive: DriveChoice,
     /// Largest speed that the study asks of the joint \[rad/s\]; `None` if the speed follows from the speed of the
     /// tip.

@@ -1,8 +1,8 @@
 //! The arm of a study and its effects, as *layers*: what the search adds to the arm, step by step from the tip inward.
 //!
-//! An effect changes the joint law of a joint (its angle as a function of torque) or the tube of a link, or it adds
-//! an element to the chain: a spring that tilts, or a mass. The code that applies an effect to an arm file applies it
-//! here too, so that the search, `analyze` and `reconcile` compute the same thing. The code that evaluates designs
+//! An effect may change the joint law of a joint (its angle as a function of torque) or the tube of a link. It may also
+//! add an element to the chain: a spring that tilts, or a mass. The code that applies an effect to an arm file applies
+//! it here too, so that the search, `analyze` and `reconcile` compute the same thing. The code that evaluates designs
 //! knows only these elements, and nothing of effects.
 
 use super::design_space::{DesignSpace, MotorPlace, SpaceJoint, SpacePiece};
@@ -20,7 +20,7 @@ use crate::mechanics::across;
 use crate::mechanics::beam::section_frame;
 use nalgebra::{Rotation3, Vector3};
 
-/// A layer: what the search adds to an arm in one step. Each layer becomes one slot.
+/// A layer: what the search adds to an arm in one step. Each layer becomes one slot of the arm ([`slot`](super::slot)).
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Layer<'s> {
     /// A rotary joint, link or prismatic joint of the chain.
@@ -210,8 +210,8 @@ impl DesignSpace {
     ///
     /// All three springs of a joint (the torsion of its drive and two tilts of its bearing) turn about the same point,
     /// so their order does not change the mechanics. If the bearing of a joint is stated, its springs are added before
-    /// the torsion of the joint, because they can then be computed once and not once for each drive. If the bearing
-    /// comes with the gear, its springs are added after the gear is chosen.
+    /// the torsion of the joint. They are then computed once and not once for each drive. If the bearing comes with the
+    /// gear, its springs are added after the gear is chosen.
     pub(crate) fn layers(&self) -> Vec<(usize, Layer<'_>)> {
         let mut out = Vec::with_capacity(self.pieces.len());
         for (index, piece) in self.pieces.iter().enumerate().rev() {

@@ -79,7 +79,8 @@ impl DesignSpace {
         Some(out)
     }
 
-    /// The space with at most `most` options for each open link: the options in the middle of the order by mass.
+    /// The space with at most `most` options for each open link (a link whose section the search chooses): the options
+    /// in the middle of the order by mass.
     pub fn middle(&self, most: u32) -> DesignSpace {
         let mut out = self.clone();
         for piece in &mut out.pieces {

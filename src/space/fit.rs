@@ -22,7 +22,8 @@ pub(crate) struct RoomAtJoint {
 }
 
 impl RoomAtJoint {
-    /// The rooms at the joints in all slots; `None` for a slot where no limit refers to a link.
+    /// The rooms at the joints in all slots (pieces of the arm, tip first); `None` for a slot where no limit refers to
+    /// a link.
     pub(crate) fn all(pieces: &[SpacePiece], piece_slots: &[usize], slots: usize) -> Vec<Option<Self>> {
         let mut rooms: Vec<Option<Self>> = (0..slots).map(|_| None).collect();
         for (place, &slot) in piece_slots.iter().enumerate() {

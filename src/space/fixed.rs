@@ -20,8 +20,8 @@ pub struct FixedDrive<'c> {
     pub drive: Drive<'c>,
     /// Mass of the drive that the study states \[kg\]. The catalog may have another.
     pub mass_kg: f64,
-    /// The motion at the output of the gear: that which the study asks of the joint, times the ratio of the stages
-    /// between gear and joint if the gear sits at the motor.
+    /// The motion at the output of the gear. It is the motion that the study asks of the joint or, if stages lie
+    /// between gear and joint, this motion times their ratio.
     pub motion: JointMotion,
     /// The motion that the study asks of the joint.
     joint_motion: JointMotion,
@@ -30,8 +30,8 @@ pub struct FixedDrive<'c> {
 }
 
 impl FixedDrive<'_> {
-    /// Torque at the joint for each newton metre at the output of the gear: ratio times efficiency of the stages between
-    /// both.
+    /// Torque at the joint for each newton metre at the output of the gear: ratio times efficiency of the stages
+    /// between both.
     pub(crate) fn gain_after_gear(&self) -> f64 {
         self.after.ratio * self.after.efficiency
     }
@@ -74,8 +74,8 @@ impl ArmProblem<'_> {
         })
     }
 
-    /// Demand on the given drive of the joint in `slot`, at the output of its gear. `outboard` is the arm outboard of
-    /// the joint.
+    /// Demand on the given drive of the joint in `slot` (the number of its place in the arm), at the output of its
+    /// gear. `outboard` is the arm outboard of the joint.
     pub fn fixed_demand(&self, outboard: &Partial, slot: usize, fixed: &FixedDrive) -> JointDemand {
         self.fixed_demand_in(&self.space().sizing_cases, outboard, slot, fixed)
     }

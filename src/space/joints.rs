@@ -9,8 +9,8 @@ use super::station::reaches_m;
 use crate::catalog::Catalogs;
 use std::sync::Arc;
 
-/// One entry for each piece of a space, base to tip: the slot of a joint, with the table of its drives; `None` for a
-/// link.
+/// One entry for each piece of a space, base to tip: the slot (place in the arm, counted from the tip) of a joint, with
+/// the table of its drives; `None` for a link.
 #[derive(Clone)]
 pub(crate) struct TabulatedJoints<'c>(Arc<[Option<Slot<'c>>]>);
 

@@ -78,7 +78,7 @@ pub trait OutwardIn: Sync {
     /// the next level were added. Returns `false` if no design that begins in this way meets the limits.
     fn extend(&self, level: usize, option: u32, from: &Self::Partial, to: &mut Self::Partial) -> bool;
 
-    /// The level whose options form a row. By default it is the innermost level.
+    /// Index of the level whose options form a row, counted from the tip. By default it is the innermost level.
     fn row_level(&self) -> usize {
         self.level_sizes().len().saturating_sub(1)
     }

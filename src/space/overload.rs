@@ -8,9 +8,10 @@ use crate::sizing::checks::{binding, checks};
 
 impl ArmProblem<'_> {
     /// The first piece from the tip that is overloaded in one of `cases`, for an arm with these `options`, one for each
-    /// slot. Drives that the study gives by name count too, as far as their ratings in `catalogs` are known. `None` if no
-    /// piece is overloaded. Otherwise the number of the piece, and the check that its drive fails; there is no check for a
-    /// link whose stress is too high, and for a drive none of whose checks can be made.
+    /// slot (piece of the arm, tip first). Drives that the study gives by name count too, as far as their ratings in
+    /// `catalogs` are known. `None` if no piece is overloaded. Otherwise the number of the piece (base to tip) and the
+    /// check that its drive fails. The check is `None` for a link whose stress is too high, and for a drive of which no
+    /// check can be made.
     pub(crate) fn overload(
         &self,
         options: &[u32],
@@ -40,8 +41,8 @@ impl ArmProblem<'_> {
         None
     }
 
-    /// The check with the smallest margin that the given drive of the joint in `slot` fails in some of the cases; `None`
-    /// if it fails none, or if there is no such drive. A check that needs a blank rating is left out.
+    /// The check with the smallest margin that the given drive of the joint in `slot` fails in some of the cases;
+    /// `None` if it fails none, or if there is no such drive. A check that needs a blank rating is left out.
     pub(super) fn fixed_overload(
         &self,
         cases: &[usize],

@@ -1,5 +1,8 @@
 //! Computes the stations of a space, one for each case, slot by slot.
 //!
+//! A station is a case prepared for the search: everything about it that does not depend on the design. A slot is what
+//! the search adds to an arm in one step. A condensed link is a link reduced to the six motions of its end.
+//!
 //! A link may have a hundred thousand options, and the data of a condensed link take some kilobytes in each case.
 //! Options are therefore condensed a few at a time, converted for every case with the same surroundings, and dropped.
 //! What remains in memory are the stations, which grow with the number of options times the number of cases.

@@ -24,7 +24,7 @@ pub struct RailDrive {
 
 impl RailDrive {
     /// The motion of the joint, with metres in the place of radians. All masses that the joint moves have the same
-    /// acceleration, so the exact reading of Eq 8 gives mass times acceleration.
+    /// acceleration, so Eq 8 of docs/model.md (the force of linear acceleration) gives exactly mass times acceleration.
     pub(crate) fn motion(&self, asked: &MotionRequirement) -> JointMotion {
         let speed_m_s = self.max_speed_m_s.unwrap_or(asked.tip_speed_m_s);
         let motion = along_its_way(asked, speed_m_s).with_linear_reading(LinearReading::Exact);

@@ -1,8 +1,8 @@
 //! An arm as a tree of designs.
 //!
-//! The arm is built from the tip to the base. Each joint is sized when everything outboard of it is known (Eqs 7-12).
-//! With every piece that is added, the wrench, the inertia and the displacement of the tip are updated (Eqs 13-16),
-//! so that a partial arm has all the data that the next pieces need.
+//! The arm is built from the tip to the base. Each joint is sized when everything outboard of it is known (Eqs 7-12 of
+//! docs/model.md). Every piece that is added changes the wrench, the inertia and the displacement of the tip (Eqs
+//! 13-16). A partial arm therefore has all the data that the next pieces need.
 
 use super::attributes::OptionAttributes;
 use super::bearing_loads::BearingLoads;
@@ -34,7 +34,7 @@ use nalgebra::Vector3;
 /// [parts](ArmProblem::parts) and the [arm](ArmProblem::arm) of one design. [`DesignSpace`] has an example.
 pub struct ArmProblem<'c> {
     space: &'c DesignSpace,
-    /// The slots of the arm: what is added in each step, tip first.
+    /// The slots of the arm, which are the pieces that the search adds, one in each step, tip first.
     slots: Vec<Slot<'c>>,
     /// Slot of each piece, base to tip. The effects of a piece may have further slots.
     piece_slots: Vec<usize>,
@@ -195,7 +195,8 @@ impl<'c> ArmProblem<'c> {
         self.piece_slots.iter().map(|&slot| complete.options[slot])
     }
 
-    /// Demand on the joint in `slot` over the sizing cases. `partial` is the arm outboard of the joint.
+    /// Demand on the joint in `slot` over the sizing cases, in which drives and stresses are checked. `partial` is the
+    /// arm outboard of the joint.
     pub fn demand_at(&self, partial: &Partial, slot: usize) -> JointDemand {
         self.demand(partial, slot, self.slots[slot].motion())
     }
@@ -221,8 +222,9 @@ impl<'c> ArmProblem<'c> {
         Ok(partial)
     }
 
-    /// The arm with these `options`, one for each slot. For a sized joint the option is the index of its drive, and
-    /// this drive is taken even where first fit would take another one. `None` if the arm breaks a limit.
+    /// The arm with these `options`, one for each slot. For a sized joint the option is the index of its drive. This
+    /// drive is taken even where first fit (the lightest drive that meets the demand) would take another drive. `None`
+    /// if the arm breaks a limit.
     pub(crate) fn assemble(&self, options: &[u32]) -> Option<Partial> {
         let mut partial = self.empty();
         let mut adds = |(slot, &option): (usize, &u32)| match &self.slots[slot] {
@@ -361,7 +363,8 @@ impl<'c> ArmProblem<'c> {
 
     /// Demand on a joint over the sizing cases. It is made of the largest static torque (Eq 7, plus torque that acts
     /// on the joint in addition to weight and load) and of the largest inertia outboard. The motion turns both into
-    /// torques (Eqs 8-12). The two may come from different cases, so the demand is on the safe side. As in the paper,
+    /// torques (Eqs 8-12). The largest torque and the
+    /// largest inertia may come from different cases, so the demand is on the safe side. As in the paper,
     /// Eq 8 uses the torque of weight and load alone: a counterbalance does not reduce what must be accelerated.
     pub(crate) fn demand(
         &self,
@@ -453,7 +456,8 @@ impl<'c> ArmProblem<'c> {
         self.space.constraints.stress_safety_factor_min.is_none_or(|least| to.stress_ratio * least <= 1.0)
     }
 
-    /// The judged cases: the station of each, and the state of a complete arm in it.
+    /// The judged cases, which count for deflection and lowest mode: the station of each, and the state of a complete
+    /// arm in it.
     fn judged<'s>(
         &'s self,
         complete: &'s Partial,

@@ -3,14 +3,14 @@
 //! The couplings are the entries of the arm's mass matrix: `M_ij` is the inertia between the motions of the joints i
 //! and j. While joint j accelerates by `α_j` and all others stand still, the drive of joint i must hold `M_ij α_j` in
 //! addition to its static torque. Drives are sized for the acceleration of their own joint
-//! ([`demand`](crate::sizing::demand)), since the vendors' procedures size one axis at a time. So this torque is no part of
-//! their demand.
+//! ([`demand`](crate::sizing::demand)), since the vendors' procedures size one axis at a time. So this torque is no
+//! part of their demand.
 
 use super::design_space::SpacePiece;
 use super::problem::ArmProblem;
 use super::station::{StationJoint, StationSlot};
 
-/// The largest torque that a joint must hold while another one moves; of a prismatic joint, the largest force.
+/// The largest torque that a joint must hold while another joint moves. For a prismatic joint it is the largest force.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Reaction {
     /// Piece of the joint that stands still, counted from the base.
@@ -19,13 +19,16 @@ pub(crate) struct Reaction {
     pub ramps: usize,
     /// Piece of the joint whose emergency stop gives the largest torque in a stop.
     pub stops: usize,
-    /// Static torque plus that of the other joint's ramp \[N m\]; of a prismatic joint the force \[N\].
+    /// Static torque plus the torque due to the other joint's ramp \[N m\]. For a prismatic joint, these are forces
+    /// \[N\].
     pub in_ramp_nm: f64,
-    /// Static torque plus that of the other joint's emergency stop \[N m\]; of a prismatic joint the force \[N\].
+    /// Static torque plus the torque due to the other joint's emergency stop \[N m\]. For a prismatic joint, these are
+    /// forces \[N\].
     pub in_stop_nm: f64,
 }
 
-/// A joint that moves by itself: its slot and its acceleration \[rad/s²\], of a prismatic joint \[m/s²\].
+/// A joint that moves by itself: its slot (place in the arm, counted from the tip), and its acceleration in a ramp
+/// \[rad/s²\] (\[m/s²\] for a prismatic joint).
 struct Mover {
     slot: usize,
     acceleration: f64,
@@ -59,7 +62,8 @@ impl ArmProblem<'_> {
         })
         .ok()?;
         let largest = |here: usize| {
-            // the largest torque if accelerations are `times` those of the ramps, with the joint that moves
+            // the largest torque that joint `here` holds if accelerations are `times` as large as in ramps,
+            // with the index of the joint that moves
             let with_mover = |times: fn(&Mover) -> f64| {
                 let held = |other: usize| {
                     let acceleration = times(&movers[other]) * movers[other].acceleration;

@@ -39,8 +39,8 @@ pub struct SizedJoint<'c> {
     /// Compliance of the output bearing against tilt \[rad/(N m)\], one entry for each drive. It is the compliance of
     /// the gear's bearing plus the compliance that effects add.
     pub(crate) tilts_rad_per_nm: Vec<f64>,
-    /// For each drive of the table, the part of its mass that does not sit at the joint \[kg\], for example the mass
-    /// of a motor that is placed elsewhere; 0 if the whole drive sits at the joint.
+    /// For each drive of the table, the part of its mass that does not sit at the joint \[kg\]. An example is the mass
+    /// of a motor that is placed elsewhere. It is 0 if the whole drive sits at the joint.
     pub(crate) away_kg: Vec<f64>,
     /// Whether the search may choose every drive that meets the demand. If not, the joint gets the lightest drive that
     /// meets it.

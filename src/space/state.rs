@@ -1,10 +1,10 @@
-//! The state of a partial arm in one case, and how every slot that is added inboard changes it.
+//! The state of a partial arm in one case, and how every slot (piece of the arm) that is added inboard changes it.
 //!
 //! The torque on a driving joint includes the torques of its passive joints. A radian of the driving joint turns each
-//! passive joint by its factor `f`. By virtual work the torque on the driving joint is therefore `t_d·w + Σ f t_p·w_p`,
-//! with the twists (kinematic vectors) `t` and the outboard wrenches `w` of the driving joint (d) and of the passive
-//! joints (p). The inertia about the driving joint is found in the same way, with the motion `t_d + Σ f t_p` of
-//! everything outboard of all these joints.
+//! passive joint by its factor `f`. By virtual work the torque on the driving joint is therefore `t_d·w + Σ f t_p·w_p`.
+//! Here `t` are twists (velocities and angular velocities per unit of a joint's rotation) and `w` are outboard wrenches
+//! (forces and moments), of the driving joint (d) and of the passive joints (p). The inertia about the driving joint is
+//! found in the same way, with the motion `t_d + Σ f t_p` of everything outboard of all these joints.
 
 use super::station::{StationJoint, StationLink, Turned};
 use crate::arm::joint_law::JointLaw;
@@ -78,8 +78,9 @@ impl StationState {
         self.inertia_between(slot, joint, joint)
     }
 
-    /// Inertia between the motions of the joint that is to be added next in `slot` and of the joint `moving`, which is
-    /// this joint or one inboard of it \[kg m²\]: the torque about the first per unit of acceleration of the second.
+    /// Inertia between the motions of two joints \[kg m²\]: the torque about the first joint per unit of acceleration
+    /// of the second. The first is the joint that is to be added next in `slot`. The second is the joint `moving`,
+    /// which is the same joint or a joint inboard of it.
     pub(crate) fn inertia_between(&self, slot: usize, joint: &StationJoint, moving: &StationJoint) -> f64 {
         let momentum = self.momentum(slot, moving);
         // everything outboard of a passive joint moves with the rotation of that joint too

@@ -17,7 +17,7 @@ use crate::mechanics::lowest::BlockLink;
 use crate::mechanics::{Twist, Wrench, angular, body_inertia, force_wrench, linear, stack};
 use nalgebra::{Matrix3, Matrix3x6, Matrix6, Rotation3, SMatrix, SVector, Vector3, Vector6};
 
-/// One case (a pose with its load), prepared for the slots of an arm.
+/// One case (a pose with its load), prepared for the slots (pieces) of an arm.
 pub(crate) struct Station {
     /// The data of each slot in this pose, tip first.
     pub slots: Vec<StationSlot>,
@@ -172,7 +172,7 @@ pub(crate) struct StationLink {
     /// Displacement of the tip per unit of each end coordinate: one column for each.
     pub tip: Matrix3x6<f64>,
     /// Inertia of the link itself for a unit of each end coordinate (motion of the link's end). It is a term of
-    /// Dunkerley's sum \[s²\], because the stiffness of each end coordinate is 1.
+    /// Dunkerley's sum (of `1/λ` over all modes) \[s²\], because the stiffness of each end coordinate is 1.
     pub end_inertia: Vector6<f64>,
     /// Block to which each end coordinate belongs: 0 within the x-z plane, 1 across it.
     pub block: [usize; 6],
@@ -207,7 +207,7 @@ pub(crate) enum Modal {
     Spatial(Box<Block<6>>),
 }
 
-/// The slots, restricted to `N` of the six motions. These `N` motions do not couple with the remaining ones.
+/// The slots, restricted to `N` of the six motions. These `N` motions do not couple with the remaining motions.
 pub(crate) struct Block<const N: usize> {
     /// Inertia matrix of the payload.
     pub payload: SMatrix<f64, N, N>,
@@ -339,7 +339,8 @@ pub(crate) fn bodies_at(
 }
 
 /// Reach of each joint, base to tip \[m\]: the largest displacement of the tip per radian of the joint over the given
-/// cases. It is the distance of the tip from the joint's axis, unless the joint drives passive joints.
+/// cases. It is the distance of the tip from the joint's axis. If the joint turns passive joints (joints of a linkage),
+/// it differs from this distance, because the tip moves with these joints too.
 pub(crate) fn reaches_m<'a>(space: &DesignSpace, cases: impl Iterator<Item = &'a Case>) -> Vec<f64> {
     let joints: Vec<(usize, Vector3<f64>)> = space
         .pieces

@@ -5,12 +5,13 @@
 //! - *static safety*: `P₀ = F_r + 2 (M + R F_r) / d_p + 0.44 F_a` is at most `C₀ / 3` at rest (for high precision) and
 //!   at most `C₀ / 2` in a stop (because of shocks).
 //! - *life*: `10⁶ / (60 n) · (C / (f_w P_c))^(10/3)` is at least the hours that the study asks for, with
-//!   `P_c = X (F_r + 2 (M + R F_r) / d_p) + Y F_a`. The loads are those of the arm at rest: the life does not count
+//!   `P_c = X (F_r + 2 (M + R F_r) / d_p) + Y F_a`. The loads are the loads of the arm at rest: the life does not count
 //!   accelerations.
 //!
-//! `M`, `F_r` and `F_a` are the moment, the radial force and the axial force at the face of the flange, `R` is the
-//! distance from there to the centre of the bearing, and `d_p` is its pitch diameter. `C₀` and `C` are the static and
-//! the dynamic load rating, `n` is the mean speed \[rpm\], and `X`, `Y` and `f_w` are factors of the vendor.
+//! `M`, `F_r` and `F_a` are the moment, the radial force and the axial force at the face of the flange. `R` is the
+//! distance from there to the centre of the bearing, and `d_p` is the pitch diameter of the bearing. `C₀` and `C` are
+//! the static and the dynamic load rating, `n` is the mean speed of the joint \[rpm\], and `X`, `Y` and `f_w` are
+//! factors of the vendor.
 //!
 //! (Harmonic Drive LLC, FHA-C manual, pages 20 to 23; Harmonic Drive AG, engineering data 1021387, pages 23, 43
 //! and 45.)
@@ -33,8 +34,8 @@ pub(super) struct BearingLoad {
     pub axial_n: f64,
 }
 
-/// The largest loads that a study puts on the bearing of one joint over the sizing cases: at rest, while a joint ramps,
-/// and while a joint makes an emergency stop.
+/// The largest loads on the bearing of one joint: at rest, while a joint ramps, and while a joint makes an emergency
+/// stop. They are the largest over the sizing cases, in which drives and stresses are checked.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct BearingDemand {
     pub at_rest: BearingLoad,
@@ -44,16 +45,20 @@ pub(super) struct BearingDemand {
     pub in_stop: BearingLoad,
 }
 
-/// The limits of one bearing in its joint. An infinite limit is not checked.
+/// The limits of one bearing in its joint. An infinite limit limits nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct BearingRatings {
     /// Distance R along the axis from the centre of the bearing to the face of its flange \[m\].
     centre_m: f64,
     /// Radial force that is equivalent to a moment of 1 N m, `2 / d_p` for the pitch diameter `d_p` \[1/m\].
     per_moment_per_m: f64,
+    /// Greatest moment at the centre of the bearing in running \[N m\].
     running_nm: f64,
+    /// Greatest static equivalent load `P₀` at rest \[N\].
     at_rest_n: f64,
+    /// Greatest static equivalent load `P₀` in an emergency stop \[N\].
     in_stop_n: f64,
+    /// Greatest dynamic equivalent load `P_c` under which the bearing reaches the required life \[N\].
     life_n: f64,
 }
 
@@ -127,7 +132,7 @@ impl BearingRatings {
     pub(super) fn of(bearing: Option<&Bearing>, duty: [f64; 2]) -> Self {
         let Some(bearing) = bearing else { return Self::UNLIMITED };
         let printed = &bearing.ratings;
-        // a stated offset is measured from the centre of the bearing, so no further lever is added
+        // a lever that the study states is measured from the centre of the bearing, so no further distance is added
         let centre_m = bearing.offset_m.map_or(printed.offset_m.unwrap_or(0.0), |_| 0.0);
         let running_nm = bearing.permissible_moment_nm.unwrap_or(f64::INFINITY);
         let of_moment = Self { centre_m, running_nm, ..Self::UNLIMITED };

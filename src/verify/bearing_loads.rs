@@ -1,11 +1,12 @@
 //! Loads on the output bearings in a pose, as linear functions of the weights and inertias of parts.
 //!
-//! A bearing is loaded by the weight of everything outboard of its joint, and by the inertia forces that arise while
-//! one joint ramps or stops and the other joints are at rest. By virtual work, the component of an inertia force or
-//! moment along a direction is the coupling `Σ m (v · w)` of two motions: the motion of the joint that accelerates,
-//! and a *probe*. A probe is a virtual motion that shifts or tilts everything outboard of the bearing along that
-//! direction. Couplings are entries of the inertia matrix of [`super::pose`] with probes as further coordinates. Only
-//! mass outboard of both joints contributes, because all other mass is at rest in one of the two motions.
+//! A bearing is loaded by the weight of everything outboard of its joint, and by inertia forces. These arise while one
+//! joint ramps (changes its speed) or stops and the other joints are at rest. By virtual work, the component of an
+//! inertia force or moment along a direction is the coupling `Σ m (v · w)` of two motions: the motion of the joint that
+//! accelerates, and a *probe*. A probe is a virtual motion that shifts or tilts everything outboard of the bearing
+//! along that direction. Couplings are entries of the inertia matrix of [`super::pose`] with probes as further
+//! coordinates. Only mass outboard of both joints contributes, because all other mass is at rest in one of the two
+//! motions.
 
 use super::bearing::{BearingDemand, BearingLoad};
 use super::layout::{Coordinate, Point};
@@ -13,8 +14,8 @@ use super::pose::Builder;
 use super::span::{Linear, Span};
 use crate::arm::load::LoadCase;
 
-/// Components of the load on a bearing: the forces along two axes at right angles to the axis of the joint, the force
-/// along the axis of the joint, and the moments about the same two axes.
+/// Components of the load on a bearing, in this order: the forces along two axes at right angles to the axis of the
+/// joint, the force along the axis of the joint, and the moments about the first two axes.
 type Components<T> = [T; COMPONENTS];
 const COMPONENTS: usize = 5;
 

@@ -1,5 +1,8 @@
 //! Bounds for the members of a box: least mass, least deflection, and the ideal arm (every stiffness greatest,
 //! every inertia least).
+//!
+//! A box is a set of designs, its members. A region is the set of designs below a mass, below a deflection and above a
+//! frequency.
 
 use super::bearing::BearingDemand;
 use super::bearing_loads::Largest;
@@ -34,8 +37,8 @@ pub(super) struct Members<'w> {
 pub(super) struct IdealPoint {
     pub mass_kg: f64,
     pub tip_m: f64,
-    /// Index among the poses of the judged case that bounds the deflection, and the direction of the tip's displacement
-    /// in this case.
+    /// Index, among the poses, of the judged case that bounds the deflection, and the direction of the tip's
+    /// displacement in this case. A judged case counts for deflection and lowest mode.
     pub worst: usize,
     pub direction: Vector3<f64>,
 }
@@ -98,8 +101,8 @@ impl Skeleton {
         ]
     }
 
-    /// Lower and upper bound, over the members, of the largest loads on a joint's bearing in the sizing cases. The
-    /// moments are taken at the face of the joint's flange, or at the centre of the bearing if the study states the
+    /// Lower and upper bound, over the members, of the largest loads on a joint's bearing in the sizing cases (in which
+    /// drives and stresses are checked). The moments are taken at the face of the joint's flange, or at the centre of the bearing if the study states the
     /// lever. Zero if the bearing is not checked.
     fn bearing_demands(&self, joint: usize, members: &Members) -> [BearingDemand; 2] {
         let mut largest = Largest::default();

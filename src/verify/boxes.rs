@@ -1,5 +1,8 @@
-//! The search question prepared for boxes: the option trees of all levels, and the data from which boxes are
+//! The search question of a study prepared for boxes: the option trees of all levels, and the data from which boxes are
 //! bounded.
+//!
+//! A box is a set of designs. A level is the choice of one drive or one tube, and its options are halved again and
+//! again into a binary tree. A box has one node of the tree of each level; its designs have options below these nodes.
 
 use super::bound::Members;
 use super::drive_range::DriveRange;

@@ -1,4 +1,7 @@
 //! The choice of the level at which a box is divided.
+//!
+//! A box is a set of designs. Its ideal point has a mass, a deflection and a mode, each at least as good as in any
+//! design of the box. A level is the choice of one drive or one tube.
 
 use super::bound::{IdealPoint, Members, compliances};
 use super::boxes::Boxes;
@@ -11,8 +14,8 @@ use super::tubes::{DENSITIES, TubeRange};
 use crate::arm::joint_law::Windup;
 
 /// Scores the levels of a box by how much worse the ideal point becomes if a level has an average part instead of the
-/// best one. The level with the largest score is halved. Any rule gives a valid proof; this one makes boxes shrink
-/// fast.
+/// best part. The level with the largest score is halved. Any rule of choice gives a valid proof; this rule makes boxes
+/// shrink fast.
 pub(super) struct BranchScore<'a> {
     pub boxes: &'a Boxes,
     pub members: &'a Members<'a>,
@@ -39,8 +42,9 @@ impl BranchScore<'_> {
             + 0.5 * libm::log1p(slower)
     }
 
-    /// By how much the ideal point becomes worse if `joint` has an average drive and not the best one: the mass \[kg\],
-    /// the deflection \[m\] and the squared angular frequency `λ` of the lowest mode \[1/s²\]. `node` is the node of
+    /// By how much the ideal point becomes worse if `joint` has an average drive instead of the best drive. The three
+    /// numbers are changes of the mass \[kg\], of the deflection \[m\] and of the squared angular frequency `λ` of the
+    /// lowest mode \[1/s²\]. `node` is the node of
     /// the joint's tree in the box.
     fn of_joint(&self, joint: usize, node: u32) -> [f64; 3] {
         let (range, whole) = (&self.members.drives[joint], self.boxes.joints[joint].range(node));
@@ -72,8 +76,9 @@ impl BranchScore<'_> {
         if strain.is_finite() { strain } else { 0.0 }
     }
 
-    /// By how much the ideal point becomes worse if the link has an average tube and not the best one: the mass \[kg\],
-    /// the deflection \[m\] and the squared angular frequency `λ` of the lowest mode \[1/s²\].
+    /// By how much the ideal point becomes worse if the link has an average tube instead of the best tube. The three
+    /// numbers are changes of the mass \[kg\], of the deflection \[m\] and of the squared angular frequency `λ` of the
+    /// lowest mode \[1/s²\].
     fn of_tube(&self, tube: usize) -> [f64; 3] {
         let range: &TubeRange = self.members.tubes[tube];
         let pose = &self.boxes.skeleton.poses[self.ideal.worst];

@@ -7,9 +7,9 @@ use super::heat::HeatDemand;
 /// The four torques, taken on the output side of the gear, that are compared with ratings of the drive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Quantity {
-    /// Torque at rest in the worst pose (Eq 7, see docs/sizing.md) \[N m\].
+    /// Torque at rest in the worst pose (Eq 7 of docs/model.md) \[N m\].
     Static,
-    /// Torque during acceleration (Eqs 7 and 8, see docs/sizing.md) \[N m\].
+    /// Torque during acceleration (Eqs 7 and 8 of docs/model.md) \[N m\].
     Peak,
     /// Torque in an emergency stop \[N m\].
     Stop,

@@ -1,8 +1,8 @@
 //! The least and the greatest value of each number over a set of drives.
 //!
-//! A set of drives is bounded by two torsion curves, a stiff and a soft one. First the slopes of each member are made
-//! monotonic: *lifted* (each slope is raised to at least the slope before it) for the stiff bound, *lowered* (each
-//! slope is reduced to at most the slope after it) for the soft bound.
+//! A set of drives is bounded by two torsion curves, a stiff curve and a soft curve. First the slopes of each member
+//! are made monotonic: *lifted* (each slope is raised to at least the slope before it) for the stiff bound, *lowered*
+//! (each slope is reduced to at most the slope after it) for the soft bound.
 //!
 //! The stiff bound has the largest of the lifted slopes and the least of the break points. At every torque it is at
 //! least as steep as each member: the bound enters each segment no later than the member does, and its slope there

@@ -143,7 +143,7 @@ impl Drives {
         holding.map(|option| option.range).reduce(|a, b| a.with(&b))
     }
 
-    /// Least and greatest numbers of the drives that may be the lightest one to meet a demand. The demand lies between
+    /// Least and greatest numbers of the drives that may be the lightest to meet a demand. The demand lies between
     /// `least` and `most`. `None` if no drive meets the least demand.
     pub(super) fn first_fits(&self, least: &Demand, most: &Demand) -> Option<DriveRange> {
         let fits = first_fits(self.options.iter().map(|option| ((), option)), least, most);
@@ -162,7 +162,7 @@ impl Drives {
 }
 
 /// The drives that may be the lightest to meet a demand that lies between `least` and `most`. These are all drives
-/// that meet the least demand, up to the first one that also meets the greatest.
+/// that meet the least demand, up to the first drive that also meets the greatest demand.
 pub(super) fn first_fits<'o, T>(
     options: impl Iterator<Item = (T, &'o DriveOption)>,
     least: &Demand,
@@ -178,7 +178,7 @@ pub(super) fn first_fits<'o, T>(
 }
 
 /// The coordinates by which the tree puts similar drives together, each multiplied by a weight. Any weights give a
-/// valid proof; good ones make the bounds tight.
+/// valid proof; good weights make the bounds tight.
 fn keys(option: &DriveOption) -> Vec<f64> {
     let (drive, ratings) = (&option.range, option.ratings());
     let stiff = &drive.stiff;

@@ -1,4 +1,4 @@
-//! The motion of one joint, and the torques that its drive must provide (Eqs 8, 10; docs/sizing.md).
+//! The motion of one joint, and the torques that its drive must provide (Eqs 8 and 10 of docs/model.md).
 //!
 //! A `Duty` follows from the question and the geometry alone. Torque and inertia enter when a demand is computed
 //! from it.
@@ -24,9 +24,11 @@ pub(super) struct Duty {
     pub acceleration_rad_s2: f64,
     /// Required life of the gear \[h\].
     pub life_h: f64,
-    /// Torque of linear acceleration for each kg m² of inertia \[rad/s²\], and for each N m of static torque. One of
-    /// the two is zero: Eq 8 (see docs/sizing.md) can be read in either way, and the study states which one it takes.
+    /// Torque of linear acceleration for each kg m² of inertia \[rad/s²\]. It is zero if the study computes this torque
+    /// from the static torque: Eq 8 can be read in either way.
     linear_per_inertia: f64,
+    /// Torque of linear acceleration for each N m of static torque. It is zero if the study computes this torque from
+    /// the inertia.
     linear_per_static: f64,
     /// Torque of linear acceleration in an emergency stop, divided by the torque of linear acceleration in a ramp.
     pub stop_factor: f64,
@@ -150,8 +152,8 @@ impl Duty {
 
 /// Largest speed of a joint \[rad/s\]. It is the maximum that the study states for the joint, or else the speed of the
 /// tip divided by the lever `reach_m`. The lever is taken as at least `min_lever_m`, because a short lever would give a
-/// roll joint an absurd speed. If the study states a duty of the joint in numbers, the speed of the tip is not used,
-/// and the result is at least the largest speed of this duty.
+/// roll joint an absurd speed. If the study states a duty of the joint in numbers, the speed of the tip is not used.
+/// The result is then at least the largest speed of this duty.
 fn speed_rad_s(motion: &AskedMotion, reach_m: f64, joint: &AskedJoint) -> f64 {
     let fastest_rpm = joint.duty.iter().map(|phase| phase.speed_rpm).fold(0.0, f64::max);
     match (joint.max_speed_rad_s, joint.duty.is_empty()) {
@@ -181,11 +183,11 @@ impl AskedMotion {
         self.tip_speed_m_s / self.ramp_time_s
     }
 
-    /// Whether every torque of a demand and the motor's heat grow, or stay the same, if static torque or inertia
-    /// grows. The linear torque (due to linear acceleration) is subtracted from the static torque only while the joint
-    /// slows down. If the joint speeds up for at least as long as it slows down, speeding up outweighs this: the motor
-    /// then has its largest torque of the cycle while the joint speeds up, and that torque grows at least as fast as
-    /// any other decreases.
+    /// Whether every torque of a demand and the motor's heat grow, or stay the same, if static torque or inertia grows.
+    /// The linear torque (due to linear acceleration) is subtracted from the static torque only while the joint slows
+    /// down. If the joint speeds up for at least as long as it slows down, speeding up outweighs this decrease. The
+    /// motor then has its largest torque of the cycle while the joint speeds up. That torque grows at least as fast as
+    /// any other torque decreases.
     pub fn grows(&self) -> bool {
         let mean = self.mean_torque();
         mean.of_difference <= mean.of_sum

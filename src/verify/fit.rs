@@ -20,7 +20,7 @@ use crate::catalog::motor::{Motor, MotorKind};
 use crate::mechanics::beam::section_frame;
 use nalgebra::Vector3;
 
-/// Relative tolerance for comparing sizes. Sizes are products of decimal numbers, and equal ones may differ by
+/// Relative tolerance for comparing sizes. Sizes are products of decimal numbers, and equal sizes may differ by
 /// rounding.
 const SAME_SIZE: f64 = 1e-9;
 

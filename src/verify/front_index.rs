@@ -4,13 +4,14 @@ use crate::pareto::objectives::Objectives;
 
 /// Relative difference up to which two objectives count as equal.
 const EQUAL_WITHIN: f64 = 1e-9;
-/// A design of the front discards a box only if it is better by this margin in at least one objective (relative).
+/// Relative margin by which a design of the front must be better in at least one objective to dominate a design or a
+/// whole box of designs. With this margin, rounding cannot decide.
 const BETTER_BY: f64 = 1e-7;
 
 /// The designs of a front, sorted by mass, in a form in which the highest frequency among the designs up to a given
 /// mass and deflection is found quickly. `blocks` is a Fenwick tree with positions counted from 1. The block at
-/// position `i` consists of the last `i & -i` designs up to the `i`-th: their deflections in ascending order, each
-/// with the highest frequency among the designs of the block that deflect at most as far.
+/// position `i` consists of the last `i & -i` designs up to the `i`-th. It lists their deflections in ascending order.
+/// Each deflection is stored with the highest frequency among the designs of the block that deflect at most as far.
 pub(super) struct FrontIndex {
     masses_kg: Vec<f64>,
     blocks: Vec<Vec<(f64, f64)>>,

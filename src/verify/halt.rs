@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-/// The search stops when it has reached more single designs than this. The front that is checked is then far from
-/// complete.
+/// The search stops when more single designs than this are left to be judged. The front that is checked is then far
+/// from complete.
 const MOST_DESIGNS: usize = 200_000;
 
 /// Number of boxes that a search has bounded, and number of boxes that it left open.

@@ -106,7 +106,7 @@ impl MotorHeat {
         joint_nm * if joint_nm < 0.0 { self.driven } else { self.driving }
     }
 
-    /// For each number, the smaller one of these and of `other`. The result is at least as good as both.
+    /// For each number, the smaller number of these and of `other`. The result is at least as good as both.
     pub(super) fn min(&self, other: &Self) -> Self {
         Self {
             driving: self.driving.min(other.driving),
@@ -116,7 +116,7 @@ impl MotorHeat {
         }
     }
 
-    /// Whether each number is at most the same number of `other`, so that this motor passes whenever the other one
+    /// Whether each number is at most the same number of `other`, so that this motor passes whenever the other motor
     /// does.
     pub(super) fn covers(&self, other: &Self) -> bool {
         self.driving <= other.driving

@@ -22,7 +22,7 @@ use std::sync::Arc;
 /// The part that a design has at one piece of the chain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Pick {
-    /// The part that the question gives, or the drive that the first-fit rule determines: the lightest one that meets
+    /// The part that the question gives, or the drive that the first-fit rule determines: the lightest drive that meets
     /// the demand.
     Given,
     /// A drive of the catalogs, given by the indices of its gear and motor.
@@ -71,8 +71,8 @@ impl<'q> Judge<'q> {
         self.question
     }
 
-    /// Judges a design. `None` if it fails a check or a limit, if it is not a design of the question, or if `picks`
-    /// names a drive for a joint with the first-fit rule that is not the lightest drive that passes.
+    /// Judges a design. `None` if it fails a check or a limit, or if it is not a design of the question. The result is
+    /// also `None` if a joint with the first-fit rule has another drive in `picks` than the lightest drive that passes.
     ///
     /// A torque that exceeds a rating by less than 1e-9 (relative) still passes, and so does a stress that close to
     /// its limit.

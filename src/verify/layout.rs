@@ -1,9 +1,10 @@
 //! Where joints, tubes and masses are in a pose, and how each coordinate moves a point.
 //!
-//! The coordinates are the angle of torsion of each joint, its tilts about two axes at right angles to the joint's
-//! axis, the springs of effects and of prismatic joints and, for each tube, constant and linear curvature in both
-//! planes, and constant shear, torsion and stretch. The full model has all of these, and more. A model with fewer ways
-//! to deform is stiffer, so its lowest mode is at least as high as the lowest mode of the full model.
+//! The coordinates of a joint are its angle of torsion and its tilts about two axes at right angles to its axis.
+//! Springs of effects and of prismatic joints are coordinates too. The coordinates of a tube are constant and linear
+//! curvature in both planes, and constant shear, torsion and stretch. The full model has all of these, and more. A
+//! model with fewer ways to deform is stiffer, so its lowest mode is at least as high as the lowest mode of the full
+//! model.
 
 use crate::arm::LinkModel;
 use crate::arm::body::RigidBody;
@@ -353,7 +354,7 @@ pub(super) enum Coordinate {
     /// Tilt of a joint's bearing about one of two axes at right angles to the joint's axis.
     Tilt(usize, usize),
     /// Displacement of everything outboard of a joint along one of two axes at right angles to the joint's axis, or
-    /// along the joint's axis (index 2). The arm does not deform in this way: the motion is a virtual one, from which
+    /// along the joint's axis (index 2). The arm does not deform in this way: the motion is virtual, and from it
     /// forces follow.
     Shift(usize, usize),
     /// Deformation of a tube in one shape.

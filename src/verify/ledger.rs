@@ -1,8 +1,9 @@
 //! The finished branches of a search, so that a later process need not search them again.
 //!
-//! The search divides its boxes and regions into halves. A branch is what lies below one such half, and is named by the
-//! halves that lead to it. The result of a branch does not depend on the other branches. So a search that is continued
-//! has the same result as one that was never stopped.
+//! The search divides its boxes (sets of designs) and regions (designs below a mass, below a deflection and above a
+//! frequency) into halves. A branch is one such half with everything into which it is divided further. It is named by
+//! the halves that lead to it. The result of a branch does not depend on the other branches. So a search that is
+//! continued has the same result as one that was never stopped.
 
 use super::halt::{Found, Halt};
 use super::parts_box::Design;
@@ -10,8 +11,8 @@ use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Greatest number of halvings after which a branch is still recorded by itself. Deeper branches are recorded only as
-/// parts of these.
+/// Greatest number of halvings after which a branch is still recorded by itself. A deeper branch is recorded only as a
+/// part of the branch that contains it.
 const MOST_HALVINGS: u32 = 16;
 
 /// A function that saves the state of a search, if a save is due. It gets a function that makes the state, and calls it

@@ -1,4 +1,5 @@
-//! Search for designs that belong on a front and are missing from it.
+//! Search for designs that belong on a front and are missing from it. A design belongs on the front if it meets all
+//! checks and limits and no design of the front dominates it.
 
 use super::boxes::Boxes;
 use super::drives::Ties;
@@ -42,7 +43,8 @@ pub struct Looked {
 
 /// Checks whether the verifier's bounds are valid for a question.
 ///
-/// If they are not valid, a sentence that names what the bounds do not take into account.
+/// # Errors
+/// A sentence that names what the bounds do not take into account, if they are not valid.
 pub fn conditions(question: &Question) -> Result<(), String> {
     match question.motion.grows() {
         true => Ok(()),
@@ -145,7 +147,7 @@ impl Judge<'_> {
 
 /// The options of each single design, in ascending order, and a flag that tells whether all ties are listed. If there
 /// are too many, one design of each set of ties is listed. A level at which no option surely passes its checks keeps
-/// all of its options, because the first one may fail.
+/// all of its options, because its first option may fail.
 fn one_by_one(designs: &BTreeSet<Design>) -> (Vec<Vec<u32>>, bool) {
     let count = |design: &Design| design.iter().map(|choice| choice.options.len() as f64).product::<f64>();
     let is_one = |design: &Design| count(design) == 1.0;

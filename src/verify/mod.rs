@@ -11,19 +11,20 @@
 //! - *mass*: the sum of the least masses;
 //! - *demand on joints*: torques by lever arms, loads on bearings by couplings of two motions (`bearing_loads`). Every
 //!   weight and every inertia is an interval that enters each sum once (`span`, `pose`). A box is discarded if none of
-//!   its drives meets the least demand. The first drive that fits meets the least demand, and does not come after the
-//!   first drive that meets the greatest (`drives`);
+//!   its drives meets the least demand. The first drive that fits meets the least demand. It does not come after the
+//!   first drive that meets the greatest demand (`drives`);
 //! - *deflection*: the method of the unit load along a fixed direction. A displacement is at least as long
 //!   as its component along any direction (`bound`);
 //! - *lowest mode*: the lowest mode of an ideal arm, which has every stiffness of the box at its greatest and every
 //!   inertia at its least. It has fewer coordinates than the full model, so its lowest mode is no lower (`pencil`,
 //!   `layout`).
 //!
-//! A box is discarded if no member meets its checks and limits, or if a design of the front dominates every member:
-//! this design is no worse in all three objectives and better in one (`front_index`). Otherwise one level of the box
-//! is halved (`search`), until single designs are left. The full model judges these single designs (`judge`). A design
-//! belongs on the front if it meets all limits and no design of the front dominates it. So every design of the
-//! question is accounted for. Either it was judged by itself, or it was in a discarded box and is dominated or fails.
+//! A box is discarded if no member meets its checks and limits, or if a design of the front dominates every member. To
+//! dominate a member is to be no worse in all three objectives and better in at least one (`front_index`). Otherwise
+//! one level of the box is halved (`search`), until single designs are left. The full model judges these single designs
+//! (`judge`). A design belongs on the front if it meets all limits and no design of the front dominates it. So every
+//! design of the question is accounted for. Either it was judged by itself, or it was in a discarded box and is
+//! dominated or fails.
 //!
 //! Very large spaces are searched region by region (`region`).
 

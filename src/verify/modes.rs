@@ -1,5 +1,5 @@
 //! The judged case in which the ideal arm of a box (every stiffness greatest, every inertia least) vibrates
-//! slowest.
+//! slowest. A judged case counts for deflection and lowest mode.
 
 use super::bound::{Members, ROUNDING};
 use super::pencil::{Factor, Pencil};

@@ -189,7 +189,7 @@ fn torsion_curve(gear: &Gear, joint: &AskedJoint) -> Option<Windup> {
 }
 
 impl CatalogOffers {
-    /// Indices of the drives that can be the lightest one to meet some demand. A drive is left out if a lighter drive
+    /// Indices of the drives that can be the lightest to meet some demand. A drive is left out if a lighter drive
     /// has ratings at least as large in every quantity.
     pub(super) fn first_fits(&self) -> Vec<u32> {
         let mut kept: Vec<u32> = Vec::new();

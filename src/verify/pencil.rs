@@ -3,9 +3,9 @@
 //!
 //! `K - λ M` is positive definite exactly if `λ` is below every eigenvalue `λ_i` of `K x = λ_i M x`, so one
 //! Cholesky factorization decides. For a box, `K` has every stiffness at its greatest and `M` every inertia at its
-//! least. Compared with any member, `K` is then at least and `M` at most as large (in the order of positive
-//! semidefinite differences), so no Rayleigh quotient is smaller, and by Courant and Fischer `λ_1` is no smaller
-//! either.
+//! least. Compared with any member, `K` is then at least as large and `M` at most as large (in the order of
+//! positive semidefinite differences). So no Rayleigh quotient `xᵀKx / xᵀMx` is smaller. By the principle of Courant
+//! and Fischer, `λ_1` is no smaller either.
 
 /// The matrix pencil of an arm in a pose: diagonal stiffness matrix `K` and inertia matrix `M` over its
 /// coordinates.

@@ -7,7 +7,7 @@
 //! *Deflection* follows from the method of the unit load. The displacement of the tip along `e` is the work of the real
 //! internal loads, divided by the stiffness, on the internal loads of a unit force `e` at the tip:
 //! `Σ θ_j (a_j · (r_j x e)) + Σ ∫ (N n/EA + V·v/κGA + T t/GJ + M_y m_y/EI_y + M_z m_z/EI_z) dx`. Real loads are at most
-//! quadratic in `x` and virtual ones linear, so the quadrature is exact.
+//! quadratic in `x` and virtual loads are linear, so the quadrature is exact.
 //!
 //! *Inertia* is the kinetic energy of the coordinates of [`super::layout`], a sum over the masses of drives
 //! and the inertias of tubes per length.

@@ -63,7 +63,7 @@ pub enum AskedPiece {
 pub struct AskedJoint {
     /// Name of the joint.
     pub name: String,
-    /// Axis of the joint in the carried frame.
+    /// Axis of the joint in the carried frame, which turns with the joints inboard.
     pub axis: Unit<Vector3<f64>>,
     /// Where the output bearing of the joint comes from.
     pub bearing: BearingSource,
@@ -227,7 +227,7 @@ pub struct AskedMotion {
     pub emergency_stops: Option<f64>,
 }
 
-/// The two ways in which Eq 8, the torque of linear acceleration (see docs/sizing.md), can be read.
+/// The two ways in which Eq 8, the torque of linear acceleration (see docs/model.md), can be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LinearTorque {
     /// Inertia of everything outboard about the joint's axis, times the joint's acceleration.

@@ -1,4 +1,5 @@
-//! The loads that a drive can bear, computed from its catalog rows (Eqs 7-12; docs/sizing.md, "The checks").
+//! The loads that a drive can bear, computed from its catalog rows (Eqs 7-12 of docs/model.md; docs/sizing.md, "The
+//! checks").
 //!
 //! Speed and duty cycle of a joint are fixed, so every check of a drive compares one torque with one number. The
 //! torques are listed in [`Quantity`]. Each check is an entry of [`CHECKS`], which says which quantity it limits and
@@ -159,8 +160,8 @@ fn breaks_nm(gear: &Gear) -> f64 {
     [gear.buckling_torque_nm, gear.ratcheting_torque_nm].into_iter().flatten().fold(f64::INFINITY, f64::min)
 }
 
-/// Torque at the joint in an emergency stop that an actuator's peak torque leaves after braking its own rotor \[N m\];
-/// infinite for other drives, whose gear does not carry the rotor's torque.
+/// Largest torque of an emergency stop at the joint \[N m\]: the peak torque of an actuator, minus the torque that
+/// brakes the actuator's own rotor. It is infinite for other drives, whose gear does not carry the torque of the rotor.
 fn actuator_stop_nm(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<f64> {
     if gear.kind != GearKind::Actuator {
         return Some(f64::INFINITY);

@@ -1,4 +1,5 @@
-//! The search through the boxes: each box is discarded, halved, or a single design.
+//! The search through the boxes (sets of designs). A box is discarded if it is proved to have no missing design;
+//! otherwise it is halved. A box of a single design that is not discarded is stored, to be judged by the full model.
 
 use super::boxes::Boxes;
 use super::branch_score::BranchScore;

@@ -21,7 +21,7 @@ impl Span {
         Self { least: self.least + other.least, most: self.most + other.most }
     }
 
-    /// The smallest interval that contains this one and `other`.
+    /// The smallest interval that contains this interval and `other`.
     pub(super) fn with(self, other: Self) -> Self {
         Self { least: self.least.min(other.least), most: self.most.max(other.most) }
     }

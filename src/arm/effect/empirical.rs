@@ -142,9 +142,9 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
     }
 }
 
-/// Makes the compliance of the joint `at` change in the course of the static and of the modal tests. The `numbers` are
-/// change and number of rows for the static tests, the same two for the modal tests, and the part of the static change
-/// that is present when references are read.
+/// Makes the compliance of the joint `at` change in the course of the static and of the modal tests. The five
+/// `numbers` are change and number of rows for the static tests, change and number of rows for the modal tests, and the
+/// part of the static change that is present when references are read.
 fn soften(numbers: &[f64], at: &str, subject: &mut Subject) {
     let [static_change, static_rows, modal_change, modal_rows, reference] = *numbers else { return };
     for (channel, change, rows) in

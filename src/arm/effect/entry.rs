@@ -68,8 +68,8 @@ impl Effect {
 }
 
 impl Subject {
-    /// Applies an effect to the arm under test. The effect has been checked for faults before; one with an unknown name
-    /// does nothing.
+    /// Applies an effect to the arm under test. The effect has been checked for faults before; an effect with an
+    /// unknown name does nothing.
     pub fn apply(&mut self, effect: &Effect) {
         let Some(kind) = effect.kind() else { return };
         let place = self.structure.place(&effect.at, kind.places).unwrap_or(kind.places[0]);

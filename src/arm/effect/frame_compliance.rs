@@ -1,6 +1,6 @@
 //! `frame_compliance`: a structure rotates elastically about three axes, with a different compliance about each and
-//! with coupling between them. It is the ground under the arm, or the structure between a joint and the link outboard
-//! of it.
+//! with coupling between them. The structure is the ground under the arm, or the part between a joint and the link
+//! outboard of it.
 
 use super::kind::{ElasticRotation, Kind, Parameter, Place, Scope, Traits};
 use super::subject::Subject;
@@ -53,8 +53,8 @@ fn contradiction(numbers: &[f64]) -> Option<(&'static str, &'static str)> {
     ))
 }
 
-/// Whether the compliance matrix is that of a spring, which means that it has no negative eigenvalue: no moment does
-/// negative work.
+/// Whether the compliance matrix belongs to a spring. A spring has no negative eigenvalue, so no moment does negative
+/// work on it.
 fn is_spring(numbers: &[f64]) -> bool {
     let eigenvalues = SymmetricEigen::new(matrix(numbers)).eigenvalues;
     eigenvalues.min() >= -1e-9 * eigenvalues.max().abs()

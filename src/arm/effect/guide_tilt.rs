@@ -1,5 +1,5 @@
-//! `guide_tilt`: the guide of a prismatic joint tilts more than its stated stiffnesses allow. The effect is three
-//! equal rotational springs about its axes, in series with the stated ones.
+//! `guide_tilt`: the guide of a prismatic joint tilts more than its stated stiffnesses allow. The effect adds
+//! three equal rotational springs about the axes of the guide, in series with the stated springs.
 
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
 use super::subject::Subject;

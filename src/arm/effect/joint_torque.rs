@@ -1,5 +1,6 @@
-//! `joint_torque`: an undeclared torque on a joint, `a + b sin q + c cos q` with the joint angle q, such as that of a
-//! counterbalance, a cable or a spring. It moves the working point on the torsion curve of the gear.
+//! `joint_torque`: an undeclared torque on a joint, `a + b sin q + c cos q` with the joint angle q, such as the torque
+//! of a counterbalance, a cable or a spring. It moves the working point of the gear, which is the torque at which its
+//! torsion curve is evaluated.
 
 use super::kind::{Absent, Kind, Needs, Parameter, Place, RARE_PRIOR, Scale, Scope, Setting, Traits};
 use super::subject::Subject;

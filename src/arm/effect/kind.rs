@@ -94,9 +94,9 @@ pub struct Parameter {
     /// A typical value. With the scale [`Scale::Linear`] it is the value at `u = 1`.
     pub typical: f64,
     /// Range in which a fit expects the parameter, with equal probability everywhere in it. The ends of the range are
-    /// values of the parameter, except for three scales ([`Scale`]): a stiffness is given as its compliance divided by
-    /// that of the joint, a factor on a stiffness as its reciprocal, and a torque as a fraction of the largest torque
-    /// on the joint.
+    /// values of the parameter, except for three scales ([`Scale`]). For a stiffness they are compliances, divided by
+    /// the compliance of the joint. For a factor on a stiffness they are reciprocals of the factor. For a torque they
+    /// are fractions of the largest torque on the joint.
     pub prior: (f64, f64),
     /// How a fit varies the parameter.
     pub scale: Scale,
@@ -107,7 +107,7 @@ pub struct Parameter {
     pub default: Option<f64>,
     /// Whether the value is a channel. Files write the word of the channel; here it is the index of the channel.
     pub is_channel: bool,
-    /// Name of another parameter that is a lower limit of this one; `None` if there is none.
+    /// Name of another parameter that is a lower limit of this parameter; `None` if there is none.
     pub not_below: Option<&'static str>,
     /// A property of the arm or its readings to which the expected size of this parameter is proportional, and the
     /// factor of proportionality.
@@ -220,8 +220,8 @@ pub enum Removes {
 }
 
 /// Class of the elastic rotation that an effect adds under gravity, as readings of absolute positions show it. A search
-/// of positions tries the classes in this order, because an effect of a later class can imitate those of the classes
-/// before it.
+/// of positions tries the classes in this order, because an effect of a later class can explain the same
+/// readings as an effect of a class before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ElasticRotation {
     /// Rotation of a joint about its axis.
@@ -245,7 +245,8 @@ pub(super) const EVERY_CHANNEL: &[Place] = &[
     Place::Channel(Channel::Positions),
 ];
 
-/// Prior probability of an effect that is seldom met, relative to a usual one, before any reading is considered.
+/// Prior probability of a rare effect divided by the prior probability of a usual effect. A prior probability is the
+/// probability before any reading is considered.
 pub const RARE_PRIOR: f64 = 0.3;
 
 /// Properties of a joint in a campaign, from which an effect at this joint derives the starting points of a fit.
@@ -280,8 +281,8 @@ pub struct Traits {
     /// Whether the readings depend on the parameters so nonlinearly that a confidence interval must be computed from
     /// the profile of the objective.
     pub is_nonlinear: bool,
-    /// Whether screening, which is a linear fit, leaves some parameters at their starting points: those that say how
-    /// the effect acts, not how large it is. Far from the starting points the linear model is wrong.
+    /// Whether screening, which is a linear fit, leaves some parameters at their starting points. These parameters say
+    /// how the effect acts, and not how large it is. Far from the starting points the linear model is wrong.
     pub screens_at_starts: bool,
     /// Whether the effect replaces the torsion curve of a gear. Natural frequencies jump at its break points.
     pub is_gear_curve: bool,
@@ -304,8 +305,8 @@ pub struct Traits {
     /// Finds a contradiction between the values of all parameters, each of which is within its limits. Returns the
     /// problem and the advice; `None` if there is no contradiction.
     pub contradiction: fn(&[f64]) -> Option<(&'static str, &'static str)>,
-    /// Changes fitted numbers that no arm can have, such as amplitudes whose sum is too large, to the nearest that one can
-    /// have.
+    /// Changes fitted numbers that no arm can have, such as amplitudes whose sum is too large. The result is the
+    /// nearest numbers that an arm can have.
     pub bounded: fn(&mut [f64]),
 }
 

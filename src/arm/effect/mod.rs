@@ -1,11 +1,12 @@
-//! Effects: physics that an arm has beyond its nominal model. An effect changes the
+//! Effects: physics that the nominal model of an arm leaves out. An effect changes the
 //! [`Structure`](super::structure::Structure) on which the mechanics works, so statics, modes and search all include
 //! it.
 //!
-//! Each effect has a file here with its [`Kind`]: its name, the places where it can be, its parameters with unit,
-//! limits and typical values, how it changes a [`Subject`], and properties for the search for effects. [`KINDS`]
-//! lists them all; no other module has a list of effects. Effects of the payload or of a measuring channel describe a
-//! test and not the product. Only `predict` and `reconcile` use them.
+//! Each effect has a file here with its [`Kind`]. A kind states the name of the effect, the places where it can be, and
+//! its parameters with unit, limits and typical values. It also states how the effect changes a [`Subject`] (an arm
+//! under test), and properties for the search for effects. [`KINDS`] lists all kinds; no other module has a list of
+//! effects. Effects of the payload or of a measuring channel describe a test and not the product. Only `predict` and
+//! `reconcile` use them.
 
 pub(crate) mod base_compliance;
 pub(crate) mod base_lift;

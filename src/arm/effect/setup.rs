@@ -1,6 +1,6 @@
 //! Setups: differences between the arm in the tests of one channel and the arm by itself. Instruments may hang on the
-//! arm in one kind of test only, and a servo that holds a joint in one kind of test may be softer than a brake in
-//! another.
+//! arm in one kind of test only. A joint may be held by its servo in one kind of test and by its brake in another, and
+//! the servo may be softer than the brake.
 
 use super::warming::Softening;
 use crate::arm::structure::{FrameCompliance, LinkPiece, Piece, Structure};

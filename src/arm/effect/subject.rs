@@ -15,7 +15,7 @@ pub struct Subject {
     pub structure: Structure,
     /// Actual mass minus stated mass of the payload, in every load case with a payload \[kg\].
     pub payload_delta_kg: f64,
-    /// Actual centre of gravity of the payload minus the stated one, in the last frame \[m\].
+    /// Actual centre of gravity of the payload minus its stated centre of gravity, in the last frame \[m\].
     pub payload_offset_m: Vector3<f64>,
     /// Transmission errors: the name of the joint, and the amplitudes \[rad\] of sine and cosine of the angle and of
     /// twice the angle.

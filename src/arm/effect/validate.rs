@@ -1,4 +1,4 @@
-//! Checks the effects of a file, and lists those that a calculation leaves out.
+//! Checks the effects of a file, and lists the effects that a calculation leaves out.
 
 use super::catalogue::{KINDS, kind};
 use super::entry::Effect;
@@ -95,8 +95,8 @@ impl Effect {
         Some(EffectFault { field: format!("parameters.{}", parameter.name), problem, hint })
     }
 
-    /// If the value of `parameter` is below that of another parameter that is its lower limit: name and value of the
-    /// other parameter. Otherwise `None`.
+    /// Name and value of the parameter that is the lower limit of `parameter`, if `value` is below this limit.
+    /// Otherwise `None`.
     fn is_below_another(&self, parameter: &Parameter, value: f64) -> Option<(&str, f64)> {
         let (name, numbers) =
             self.parameters.iter().find(|(name, _)| Some(name.as_str()) == parameter.not_below)?;
@@ -110,9 +110,9 @@ impl Arm {
         self.effects.iter().filter(|e| e.is_of_test()).collect()
     }
 
-    /// The arm under test with all of its effects, including those of the payload and of the channels. If an effect
-    /// brings a new torsion curve, this curve is simplified to the model `joints` in the same way as the curve of the
-    /// arm itself.
+    /// The arm under test with all of its effects, including the effects of the payload and of the channels. If an
+    /// effect brings a new torsion curve, this curve is simplified to the model `joints` in the same way as the curve
+    /// of the arm itself.
     pub fn subject(&self, joints: JointModel) -> Subject {
         let mut subject = Subject::new(self.nominal_structure(joints));
         self.effects.iter().for_each(|effect| subject.apply(effect));

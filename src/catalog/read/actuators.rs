@@ -68,7 +68,7 @@ pub(crate) fn motor(row: &Row) -> Option<Motor> {
         mass_kg: Some(0.0),
         curve: Vec::new(),
         rated_power_w: None,
-        // the actuator's size is that of its gear: the motor adds no length, and the passage is the same
+        // the size of the actuator is given to its gear: the motor adds no length, and the passage is the same
         envelope: Envelope {
             outer_diameter_m: None,
             length_m: Some(0.0),

@@ -33,7 +33,7 @@ fn unidirectional(row: &Row) -> bool {
 
 fn check(row: &Row) {
     let class = MaterialClass::from_word(row.text("class"));
-    // ranges for metals and fibre composites are narrower than those for other classes
+    // ranges for metals and fibre composites are narrower than ranges for other classes
     let (moduli_pa, shear_moduli_pa, densities, expansions) = match class.and_then(MaterialClass::caution) {
         None => ([1e10, 1e12], [1e9, 2e11], [1000.0, 9000.0], [-6e-6, 3e-5]),
         Some(caution) => {

@@ -49,8 +49,8 @@ fn actuator_ratio(catalogs: &Catalogs, model: &str) -> f64 {
     catalogs.gears.iter().find(is_own).map_or(1.0, |gear| gear.ratio)
 }
 
-/// The points of a curve converted from the output of an actuator to its motor's shaft, without losses, as the ratings
-/// of `actuators.csv` are.
+/// The points of a curve converted from the output of an actuator to its motor's shaft, without losses. The
+/// ratings of `actuators.csv` are converted in the same way.
 fn at_shaft(curve: Vec<MotorCurvePoint>, ratio: f64) -> Vec<MotorCurvePoint> {
     let converted = |point: MotorCurvePoint| MotorCurvePoint {
         speed_rpm: point.speed_rpm * ratio,
@@ -85,7 +85,7 @@ mod tests {
     use crate::catalog::CatalogFile;
     use crate::catalog::read::table::rows;
 
-    /// The figures of an actuator are those of its output, in its curve as in its row.
+    /// The figures of an actuator hold at its output, in its curve as in its row.
     #[test]
     fn the_curve_of_an_actuator_is_that_of_its_output() {
         let (log, mut catalogs) = (Log::default(), Catalogs::builtin());

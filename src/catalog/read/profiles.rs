@@ -56,14 +56,14 @@ fn check(row: &Row) {
     }
 }
 
-/// Checks that the printed area, second moment of area and mass of a profile agree with those computed from its
-/// outline.
+/// Checks that the printed area, second moment of area and mass of a profile agree with the values that follow from
+/// its outline.
 fn printed_properties(row: &Row, shape: ProfileShape, outline: Outline) {
     let area_m2 = row.number("area_m2");
     if let Some(printed) = area_m2 {
         let computed = area(shape, outline, corner_radii(row, outline.t));
         // Without the corner radius only the area with sharp corners can be computed, which is larger than the real
-        // one.
+        // area.
         let known = shape == ProfileShape::Round || row.number("corner_radius_outer_m").is_some();
         row.agrees("area_m2", printed, computed, "the outline", 0.025, if known { 0.025 } else { 0.12 });
     }

@@ -165,9 +165,9 @@ impl<'a> Row<'a> {
         }
     }
 
-    /// Compares `printed`, a number in the column `column`, with `computed`, the same number computed from others of
-    /// the row, which `from` names. A relative deviation of more than `warn` gives a warning, of more than `refuse` a
-    /// fault.
+    /// Compares `printed`, a number in the column `column`, with `computed`, the same number computed from other
+    /// numbers of the row. `from` names these numbers in the message. A relative deviation of more than `warn` gives a
+    /// warning, and a deviation of more than `refuse` gives a fault.
     pub(crate) fn agrees(
         &self,
         column: &str,

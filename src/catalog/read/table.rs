@@ -7,8 +7,7 @@ use crate::input::csv::{Csv, Record, is_repeated, other_separators};
 use crate::input::json::closest;
 use std::collections::BTreeMap;
 
-/// The rows of a catalog file. A row whose number of fields differs from that of the header is reported and left
-/// out.
+/// The rows of a catalog file. A row that has not as many fields as the header is reported and left out.
 pub(crate) fn rows<'a>(file: CatalogFile, name: &'a str, bytes: &[u8], log: &'a Log) -> Vec<Row<'a>> {
     let mut records = records(name, bytes, log).into_iter();
     let Some(Record { line, cells: header }) = records.next() else {

@@ -1,5 +1,5 @@
 //! Checks that compare the rows of a catalog: ratings grow with size and with ratio, and efficiency curves agree
-//! with the rated point. Deviations are only warnings, because vendors print some.
+//! with the rated point. Deviations are only warnings, because the documents of vendors contain some.
 
 use super::log::Log;
 use super::row::Order;

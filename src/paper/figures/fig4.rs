@@ -1,8 +1,8 @@
 //! `fig4-composites`: boron, kevlar and silicon-carbide composites against aluminium.
 //!
-//! A link that is loaded in torsion needs a quasi-isotropic laminate. Curves of unidirectional laminates are dashed
-//! and marked "axial". Their modulus along the fibre matters in bending only, and the effect of their small shear
-//! modulus is seen in the deflection with shear.
+//! A link that is loaded in torsion needs a quasi-isotropic laminate, whose fibres run in several directions. In a
+//! unidirectional laminate all fibres run along the link. Its curve is dashed and marked "axial". Its large modulus
+//! along the fibres matters in bending only. The deflection with shear shows the effect of its small shear modulus.
 
 use super::beam::{BeamPoint, WALL_M, sizes};
 use super::figure::{Figure, deflection_plot};

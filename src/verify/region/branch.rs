@@ -1,9 +1,15 @@
 //! Where to branch a subproblem below a single upper bound: at the options of a level, or at a torque.
 //!
-//! When no weights refute the subproblem, a mixture of its cheapest members satisfies all rows, although no single
-//! design need do so. The search branches where this mixture differs most from a design. This may be a level whose
-//! mixed options differ in what they add to the rows. It may also be the torque on a joint, if the gears of the mixture
-//! twist less, or are stiffer, than they would under the torque that the mixture's own weights cause.
+//! An upper bound is a mass, a deflection and a frequency; a design is below it if it is no heavier, deflects no
+//! further and has no lower mode. A subproblem has the options that such a design may have. The rows are linear
+//! inequalities that every such design satisfies. Weights of the rows *refute* the subproblem if they prove that it has
+//! no design below the upper bound.
+//!
+//! When no weights refute the subproblem, a mixture (a weighted mean) of the designs that are cheapest under some
+//! weights satisfies all rows, although no single design need do so. The search branches where this mixture differs
+//! most from a design. This may be a level whose mixed options differ in what they add to the rows. It may also be the
+//! torque on a joint: the gears of the mixture may twist less, or be stiffer, than under the torque that the mixture's
+//! own weights cause.
 
 use super::super::bound::{Members, compliances};
 use super::super::pose::Pose;
@@ -13,8 +19,8 @@ use super::rows::Rows;
 use super::subproblem::{Subproblem, TorqueInterval};
 use super::weights::{Member, Reduced};
 
-/// Smallest score for which a level or torque is branched, as a fraction of what the upper bound allows. If no
-/// score is larger, the level with the most options is branched.
+/// Smallest score for which a level or torque is branched. Rows are divided by about what the upper bound allows, so
+/// the score is a fraction of this. If no score is larger, the level with the most options is branched.
 const WORTH_IT: f64 = 1e-4;
 /// If a row's value for the mixture is within this distance of zero (its limit), [`EXTRA_WEIGHT`] is added to the
 /// weight of the row in the score.
@@ -174,7 +180,8 @@ impl Rows<'_> {
         works.map(|(which, (work, compliance))| Product { number: number(which), work, compliance }).collect()
     }
 
-    /// Ways to divide a subproblem at the torques of a judged case, each with its score. The score is positive if the
+    /// Ways to divide a subproblem at the torques of a judged case, each with its score. A judged case counts for
+    /// deflection and lowest mode. The score is positive if the
     /// gears of the mixture twist less, or are stiffer, than they are under the torques that the mixture's own masses
     /// cause. `between` are the numbers of the mixture.
     fn by_torques(&self, case: usize, between: &[f64], left: &Reduced) -> Vec<(f64, Branching)> {
@@ -308,7 +315,7 @@ impl Subproblem {
     }
 }
 
-/// Divides `options` into two lists: the options whose `value` is at most `at`, and the remaining ones. If one list
+/// Divides `options` into two lists: the options whose `value` is at most `at`, and the remaining options. If one list
 /// would be empty, the options are sorted by their value and divided into equal halves. `None` if there is only one
 /// option.
 fn halved(options: &[u32], value: impl Fn(&u32) -> f64, at: Option<f64>) -> Option<[Vec<u32>; 2]> {

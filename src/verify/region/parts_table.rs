@@ -1,4 +1,5 @@
-//! All parts of a space, as lists of numbers that can have prices.
+//! All parts of a space, as lists of numbers that can have prices. The price of a number is what each unit of it adds
+//! to a weighted sum of inequalities ([`rows`](super::rows)).
 //!
 //! The list of a tube has its mass; for each of the study's surroundings its weight and its inertias per length;
 //! its stiffnesses and its compliances. The tubes of a link are in a tree whose nodes store the least and the
@@ -20,9 +21,10 @@ pub(super) struct PartsTable {
     pub tubes: Vec<TubeTable>,
 }
 
-/// The numbers of each torsion curve that the drives of a joint have: its twist in every judged case, then its slope in
-/// every judged case, then compliance and stiffness of the output bearing that belongs to it. `None` for a curve that
-/// no drive of the subproblem has.
+/// The numbers of each torsion curve that the drives of a joint have. The numbers are, in this order: the twist in
+/// every judged case (a case that counts for deflection and lowest mode), the slope in every judged case, and
+/// compliance and stiffness of the output bearing that goes with the curve. `None` for a curve that no drive of the
+/// subproblem has.
 pub(super) type Numbers = Vec<Option<Vec<f64>>>;
 
 /// The drives that a joint may have, each with the index of its torsion curve and bearing.

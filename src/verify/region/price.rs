@@ -1,4 +1,6 @@
-//! The cheapest part when every number of it has a price, and the parts whose price is within a limit.
+//! The cheapest tube when every number of a tube has a price, and the tubes whose price is within a limit.
+//!
+//! The price of a number is what each unit of it adds to a weighted sum of inequalities ([`rows`](super::rows)).
 
 use super::parts_table::TubeTable;
 use std::cmp::Reverse;

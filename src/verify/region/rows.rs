@@ -1,11 +1,17 @@
 //! Linear inequalities that every member of a subproblem below an upper bound satisfies, as sums over the parts.
 //!
+//! The upper bound is a mass, a deflection and a frequency. A design is below it if it is no heavier, deflects no
+//! further and has no lower mode. A subproblem has the options that such a design may have, and its members are the
+//! designs that these options make.
+//!
 //! | sum over the parts | upper limit |
-//! |---|---|---|
+//! |---|---|
 //! | mass: the sum of the parts' masses | mass of the upper bound |
 //! | in a judged case, displacement of the tip along a direction `e` | deflection of the upper bound |
 //! | in a judged case, for a shape `x`: `λ xᵀMx - xᵀKx`, `λ` of the upper bound | 0 |
 //! | a torque that has an interval, and its negative | the end of the interval |
+//!
+//! A judged case counts for deflection and lowest mode.
 //!
 //! *Tip displacement.* With force `F`, a sum over the loads, and compliance `c` of a tube, `(F - F₀)(c - c₀) >= 0`
 //! gives `F c >= F₀ c + c₀ (F - F₀)`. Under a torque `T`, in the sense that moves the tip along `e`, a gear twists
@@ -63,7 +69,8 @@ pub(super) struct Rows<'a> {
     pub rows: Vec<Row>,
     /// Index of the first row of a torque interval.
     pub first_interval: usize,
-    /// Index of the first row of a mode. `modes` has the case and the trial shape of each row of a mode.
+    /// Index of the first row of a mode. `modes` has the case and the trial shape (the motion
+    /// that bounds the mode) of each row of a mode.
     pub first_mode: usize,
     pub modes: Vec<(usize, Vec<f64>)>,
     /// For each joint, the twists, slopes and bearing numbers of its torsion curves. `None` for a curve that no
@@ -77,7 +84,7 @@ pub(super) struct Rows<'a> {
     /// For each row on a tip displacement: the index of the row, its judged case, and the direction along which the
     /// displacement is taken.
     pub tips: Vec<(usize, usize, Vector3<f64>)>,
-    /// For each judged case and each strain coordinate, whether the coordinate may be rigid in some member of the
+    /// For each judged case and each elastic coordinate, whether the coordinate may be rigid in some member of the
     /// subproblem.
     rigid: Vec<Vec<bool>>,
 }
@@ -263,8 +270,9 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// Adds to `row`, which bounds the tip's displacement along `direction`, a linear lower bound of one displacement: force
-    /// times compliance. `number` is the position of the compliance in the list of numbers, and `least` its least value.
+    /// Adds to `row`, which bounds the tip's displacement along `direction`, a linear lower bound of one displacement:
+    /// force times compliance. `number` is the position of the compliance in the list of numbers, and `least` its least
+    /// value.
     fn add_product(&self, row: &mut Row, number: usize, least: f64, force: &Force, direction: &Vector3<f64>) {
         row.per_number[number] += force.least;
         let per_load = force.work.per_load.iter().map(|per| least * per.dot(direction));

@@ -1,4 +1,7 @@
 //! The search through the local upper bounds that a front leaves open.
+//!
+//! A local upper bound is a mass, a deflection and a frequency such that a design below it would be new to the front. A
+//! subproblem has the options that such a design may have.
 
 use super::super::bound::{Members, ROUNDING};
 use super::super::boxes::Boxes;
@@ -44,8 +47,11 @@ pub(in super::super) struct RegionSearch<'s> {
 enum Narrowed {
     /// The subproblem is done: it is proved that no member is below the upper bound.
     Refuted,
+    /// So few designs are left that they are searched box by box.
     Few,
+    /// Many designs are left. The subproblem is divided in one of these ways.
     Many(Branchings),
+    /// The search was stopped.
     Stopped,
 }
 
@@ -152,9 +158,10 @@ impl RegionSearch<'_> {
         Some(Branchings { branchings, curves })
     }
 
-    /// Adds a trial shape to `subproblem` in each judged case in which it has none: the lowest mode of the ideal arm
-    /// (every stiffness greatest, every inertia least). `None` if this arm has a frequency of at most `hz` in some
-    /// case, so that no member has a higher lowest mode.
+    /// Adds a trial shape (a motion that bounds the lowest mode) to `subproblem` in each judged case in which it has
+    /// none. A judged case counts for deflection and lowest mode. The shape is the lowest mode of the ideal arm (every
+    /// stiffness greatest, every inertia least). `None` if this arm has a frequency of at most `hz` in some case, so
+    /// that no member has a higher lowest mode.
     fn stiffest_shapes(&self, subproblem: &mut Subproblem, members: &Members, hz: f64) -> Option<()> {
         let eigenvalue = eigenvalue_of(hz);
         if !eigenvalue.is_finite() {

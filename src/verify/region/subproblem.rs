@@ -1,4 +1,7 @@
-//! A subproblem: the options of each part that members below an upper bound may have.
+//! A subproblem: the options of each part that designs below an upper bound may have.
+//!
+//! An upper bound is a mass, a deflection and a frequency. The members of a subproblem are the designs that its options
+//! make.
 
 use super::super::bound::Members;
 use super::super::drive_range::DriveRange;
@@ -9,10 +12,12 @@ use super::super::span::Span;
 use super::super::tubes::TubeRange;
 use super::parts_table::PartsTable;
 
-/// A trial shape whose row has at most this weight is not passed on to the halves of a subproblem.
+/// A trial shape (motion that bounds the lowest mode) whose row has at most this weight is not passed on to the halves
+/// of a subproblem.
 const NO_SAY: f64 = 0.01;
 
-/// Limits the torque on a joint in a judged case to an interval. Such limits come from branching.
+/// Limits the torque on a joint in a judged case to an interval. Such limits come from branching. A judged case counts
+/// for deflection and lowest mode.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct TorqueInterval {
     pub case: usize,
@@ -35,7 +40,7 @@ pub(super) struct Subproblem {
     pub shapes: Vec<Shape>,
 }
 
-/// A trial shape (motion that bounds the lowest mode) in a judged case, with the weight of its row.
+/// A trial shape in a judged case, with the weight of its row.
 #[derive(Clone)]
 pub(super) struct Shape {
     pub case: usize,
@@ -59,7 +64,8 @@ impl Subproblem {
         })
     }
 
-    /// Number of designs that the options make. A joint with the first-fit rule is counted as having one option.
+    /// Number of designs that the options make. A joint with the first-fit rule (it gets the lightest drive that meets
+    /// the demand) is counted as having one option.
     pub(super) fn designs(&self, table: &PartsTable) -> f64 {
         let joints = self.joints.iter().zip(&table.joints);
         let joints = joints.map(|(kept, joint)| if joint.drives.level.is_some() { kept.len() } else { 1 });

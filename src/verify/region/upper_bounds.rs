@@ -1,9 +1,9 @@
 //! All local upper bounds of a front, in a tree.
 //!
-//! A design that no design of the front dominates lies below some upper bound: its mass and its deflection are at
-//! most, and its lowest mode is at least, the values of the bound. The bounds are updated with one design of the front
-//! after another. A bound above a design is replaced by three bounds, one for each objective, that are not above it.
-//! Bounds within another bound are removed.
+//! A design that no design of the front dominates lies below some upper bound. *Below* means that its mass and its
+//! deflection are at most the values of the bound, and its lowest mode is at least the value of the bound. The bounds
+//! are updated with one design of the front after another. A bound above a design is replaced by three bounds, one for
+//! each objective, that are not above it. Bounds within another bound are removed.
 
 use super::super::upper_bound::UpperBound;
 use crate::pareto::objectives::Objectives;

@@ -1,5 +1,8 @@
 //! Weighted sums of a subproblem's rows (surrogate constraints).
 //!
+//! A subproblem has the options that designs below an upper bound (a mass, a deflection and a frequency) may have; its
+//! members are the designs that these options make. The rows are linear inequalities ([`rows`](super::rows)).
+//!
 //! With non-negative weights, a weighted sum of the rows is at most zero for every member below the upper bound. The
 //! least value of this sum over all members is found part by part. If it is positive, no member lies below the upper
 //! bound. Otherwise the distance of this least value from zero tells which options are too expensive for any member
@@ -13,7 +16,7 @@ use std::ops::Range;
 
 /// Largest number of weightings that are tried for a subproblem.
 const MOST_SURROGATES: usize = 24;
-/// Largest number of times that trial shapes are added to the rows.
+/// Largest number of times that rows of new trial shapes (motions that bound the lowest mode) are added.
 const MOST_SHAPES: usize = 3;
 /// Number of further weightings after it is clear that no weighting refutes the subproblem. They are worth the time
 /// because better weights exclude more options.
@@ -39,7 +42,7 @@ struct Surrogate {
 }
 
 /// The cheapest member under a weighting, as the numbers of its parts. It need not be a design, because the twist of a
-/// gear may belong to a torque other than the one that the masses cause.
+/// gear may belong to another torque than the masses cause.
 pub(super) struct Member {
     pub numbers: Vec<f64>,
     /// Index of the drive of each joint.
