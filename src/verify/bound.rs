@@ -102,8 +102,8 @@ impl Skeleton {
     }
 
     /// Lower and upper bound, over the members, of the largest loads on a joint's bearing in the sizing cases (in which
-    /// drives and stresses are checked). The moments are taken at the face of the joint's flange, or at the centre of the bearing if the study states the
-    /// lever. Zero if the bearing is not checked.
+    /// drives and stresses are checked). The moments are taken at the face of the joint's flange, or at the centre of
+    /// the bearing if the study states the lever. Zero if the bearing is not checked.
     fn bearing_demands(&self, joint: usize, members: &Members) -> [BearingDemand; 2] {
         let mut largest = Largest::default();
         for (pose, bearings) in self.poses.iter().zip(&self.bearings) {
