@@ -29,6 +29,11 @@ impl ExtraFiles {
         made.map_err(|panic| self.missing.push(format!("{what}: {}", words_of(&*panic)))).ok()
     }
 
+    /// What could not be made, and what could not be written because a name is `taken` by a file of someone else.
+    pub(super) fn missing_with(&self, taken: &[String]) -> Vec<String> {
+        self.missing.iter().cloned().chain(taken.iter().map(|name| another_stands(name))).collect()
+    }
+
     /// Adds the file `name` with the contents that `make` computes. If `make` panics, the file is recorded in `missing`
     /// instead.
     pub(super) fn file(&mut self, name: &str, make: impl FnOnce() -> Vec<u8>) {

@@ -152,10 +152,12 @@ fn a_stated_duty_heats_the_motor_phase_by_phase() {
 #[test]
 fn a_stated_duty_sets_speed_ramp_mean_and_peak_and_the_arm_may_ask_for_more() {
     let phase = |torque_nm, time_s, speed_rpm| StatedPhase { torque_nm, time_s, speed_rpm };
-    let duty = StatedDuty { phases: vec![phase(40.0, 0.3, 7.0), phase(30.0, 3.0, 14.0)] };
+    let phases =
+        vec![phase(40.0, 0.3, 7.0), phase(30.0, 3.0, 14.0), phase(20.0, 0.4, 7.0), phase(0.0, 0.2, 0.0)];
+    let duty = StatedDuty { phases };
     let motion = motion().of_joint(None, false, Some(&duty));
     assert!((motion.speed_rad_s * 30.0 / std::f64::consts::PI - 14.0).abs() < 1e-12);
-    assert_eq!((motion.ramp_time_s, motion.stop_time_s()), (0.3, 0.15));
+    assert!((motion.ramp_time_s - 0.3).abs() < 1e-12 && (motion.stop_time_s() - 0.15).abs() < 1e-12);
     let (light, heavy) = (motion.demand_of_torques(10.0, 2.0), motion.demand_of_torques(100.0, 2.0));
     assert_eq!((light.peak_torque_nm(), heavy.peak_torque_nm()), (40.0, 102.0));
     assert_eq!((light.stop_torque_nm, heavy.stop_torque_nm), (40.0, 104.0));

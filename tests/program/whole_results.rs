@@ -278,6 +278,12 @@ fn symbolic_links_are_not_followed() {
     let (code, text) = said(&mut command(here.path(), &["run", "fig2-metals", "--out", "out"]));
     assert_eq!(code, 0, "{text}");
     assert!(text.contains("warning: not written: plots/"), "{text}");
+    let run: Value =
+        serde_json::from_str(&fs::read_to_string(at("out/run.json")).expect("a run")).expect("JSON");
+    let not_written = run["not_written"].as_array().expect("a list");
+    assert!(not_written.iter().any(|what| what.as_str().is_some_and(|s| s.starts_with("plots/"))), "{run}");
+    let (code, text) = said(&mut command(here.path(), &["check", "out"]));
+    assert!(code == 9 && text.contains("not written: plots/"), "{code} {text}");
     // in a log of JSON a warning is an object as everything else
     let words = ["run", "fig2-metals", "--out", "out", "--log", "json"];
     let logged = command(here.path(), &words).output().expect("it runs");
