@@ -56,8 +56,8 @@ const LEAST_HOUSING_KG: f64 = 0.35;
 const FLANGE_KG_PER_M3: f64 = 170.0;
 /// Mass of cables and connectors of one joint \[kg\].
 const CABLE_KG: f64 = 0.05;
-/// Outer diameter of a housed gear divided by its size \[m\], for gears without a diameter in the catalog. A gear of
-/// size 20 has 0.093 m.
+/// Estimated outer diameter of a housed strain-wave gear per unit of its size \[m\], for gears without a diameter in the
+/// catalog. There HFUC gears of size 20 have 0.093 m.
 const DIAMETER_PER_SIZE_M: f64 = 0.0046;
 
 /// Outer diameter of a gear \[m\]. If the catalog has none, as for every component set, the diameter of a strain-wave

@@ -180,7 +180,8 @@ impl Document {
         &self.file
     }
 
-    /// Records a fault at a path. It is used directly for faults that concern several fields.
+    /// Records a fault of the field at `path`, which is its place in the document, such as `chain[2].mass_kg`. A fault that
+    /// is recorded already is not repeated.
     pub fn fault(&self, path: &str, problem: String, hint: &str) {
         let fault = Fault {
             file: self.file.clone(),

@@ -434,7 +434,8 @@ impl Analysis<'_> {
         if blind.is_empty() { Vec::new() } else { vec![text] }
     }
 
-    /// Whether the poses of one fold alone show an effect, so that held-out poses cannot confirm it.
+    /// Whether some effect shows in the poses of one fold alone. Even a right model then leaves more than
+    /// [`SHOWN_BY_ONE_FOLD`] standard deviations on held-out poses, so that these cannot confirm it.
     fn shows_in_one_fold(&self) -> bool {
         self.expected_rms > SHOWN_BY_ONE_FOLD
     }

@@ -72,8 +72,8 @@ struct Source {
     fixed: Components,
     /// For each inner drive that is chosen or sized: its inner slot, and the load per kilogram of the drive.
     per_kg: Vec<(usize, Components)>,
-    /// Load from the row's link. Each entry is for a chunk: five components, each with one value for each of the
-    /// chunk's eight options. Empty if the row level is not a link.
+    /// Load on the bearing from the row's link, one entry for each chunk of eight options: the five [`Components`] (three
+    /// forces \[N\], two moments \[N m\]), each with one value for each option. Empty if the row level is not a link.
     link: Vec<[Eight; 5]>,
 }
 

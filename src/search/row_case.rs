@@ -19,8 +19,8 @@ pub(crate) struct Hinge {
     pub end: Option<usize>,
 }
 
-/// Torque and inertia about the axis of a joint. Both are caused by some piece, or by several pieces, outboard of the
-/// joint.
+/// Static torque about a hinge from the loads on pieces outboard of it, and the inertia of these pieces about it. The
+/// units are those of a joint that turns.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct AtJoint {
     /// Torque about the joint's axis that these pieces make \[N m\].

@@ -91,7 +91,8 @@ impl JointMotion {
     ///
     /// A stated duty replaces the duty cycle of the study: mean torque, mean speed and motor heat follow from its
     /// phases. Its steepest ramp sets the acceleration. The speed of the joint is the largest speed of the duty, or
-    /// `max_speed_rad_s` \[rad/s\] if that is larger. An emergency stop that the study states keeps its deceleration.
+    /// `max_speed_rad_s` \[rad/s\] if that is larger; without a duty this number has no effect here. With a brake the motor
+    /// needs no torque at rest. An emergency stop that the study states keeps its deceleration.
     pub fn of_joint(self, max_speed_rad_s: Option<f64>, has_brake: bool, duty: Option<&StatedDuty>) -> Self {
         let mut motion = Self { has_brake, ..self };
         if has_brake {

@@ -209,8 +209,9 @@ impl<'c> DriveTable<'c> {
         table
     }
 
-    /// Fills the table with the legal pairs of gear and motor (fast enough, and with all ratings that a check needs),
-    /// sorted by mass.
+    /// Fills the table with the pairs of gear and motor that may be chosen, the one with the least mass (extras included)
+    /// first. Their mass is known, their torsion too if it is needed, no rating that a check needs is blank, and speeds,
+    /// emergency stops and sizes are allowed.
     fn fill(&mut self) {
         let mut legal = Vec::new();
         for (drive, pair) in self.all_pairs().filter(|(drive, _)| self.knows_torsion(drive.gear)) {

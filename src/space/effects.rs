@@ -201,7 +201,7 @@ impl Tilt<'_> {
 enum Stands {
     /// It moves with the piece.
     MovingWith,
-    /// It stands where the piece begins.
+    /// The motor stands where the piece begins, and does not move with it.
     AtStartOf,
 }
 

@@ -174,8 +174,8 @@ impl Settling<'_> {
 
     /// Renumbers the modes of frequency lists from which a mode is missing, and returns the result of the search that
     /// follows. Missing modes are first sought with calibration alone, if it fits most readings. Then they are sought
-    /// with the first effects found, and last with effects that were found without the suspect lists. `remarks` gets a
-    /// sentence for each list.
+    /// with the first effects found, and last with effects that were found without suspect lists (more than one of
+    /// their frequencies is far off). `remarks` gets a sentence for each list that is renumbered.
     fn count_missed_modes(&mut self, remarks: &mut Vec<String>) -> Round {
         let (baseline, _) = self.baseline();
         if Noise::is_close(self.forward, &baseline) {

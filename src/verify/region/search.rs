@@ -49,7 +49,8 @@ enum Narrowed {
     Refuted,
     /// So few designs are left that they are searched box by box.
     Few,
-    /// Many designs are left. The subproblem is divided in one of these ways.
+    /// More designs are left than may be judged one by one, and the last step removed few of them. The subproblem is divided
+    /// in one of these ways, unless its local upper bounds can be divided first.
     Many(Branchings),
     /// The search was stopped.
     Stopped,

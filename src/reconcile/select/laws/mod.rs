@@ -86,8 +86,8 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    /// The readings of the nominal arm of another campaign, which differs from this one in poses, loads or geometry and
-    /// has the same rows, in the units of the file.
+    /// Predicted readings of the nominal arm of `campaign`, in the units of the files. The campaign has the rows of this one,
+    /// one for one; their poses and loads, or the arm's geometry, may differ. Modes are numbered as in this campaign.
     fn nominal_readings(&self, campaign: &Campaign) -> Vec<f64> {
         let mut forward = Forward::of_the_nominal_arm(campaign);
         // modes that were put in order, or found to be missed, stay as they are
