@@ -61,10 +61,6 @@ fn a_stiffness_that_varies_with_the_angle_is_found_with_its_phase() {
     let once = only(&outcome, "stiffness_waves@q3", "once")[0];
     let phase = only(&outcome, "stiffness_waves@q3", "phases_rad")[0];
     assert!(holds(once, WAVE) && holds(phase, WAVE_PHASE_RAD), "{once:?} {phase:?}");
-    // the amplitude is in parts of the mean compliance, which is no better known
-    let part = |(value, low, high): Size| (high.expect("an end") - low.expect("an end")) / value;
-    let mean = only(&outcome, "joint_compliance@q3", "stiffness_nm_per_rad")[0];
-    println!("once {:.4}, phase {:.4}, mean {:.4}", part(once), part(phase) * phase.0, part(mean));
 }
 
 #[test]
