@@ -1,5 +1,5 @@
 //! Made positions of a six-axis arm of which every joint yields about its axis and some bearings tilt, most of them too
-//! little to be named. Small rotations of rigid bodies, independent of the library.
+//! little to be named. Rotations of rigid bodies as the arm hangs, independent of the library.
 
 use crate::generator::Dice;
 use nalgebra::{Rotation3, Unit, Vector3};
@@ -18,6 +18,8 @@ const PAYLOAD_CG_M: [f64; 3] = [0.1, 0.0, 0.0];
 const GRAVITY_M_S2: f64 = 9.81;
 const SIGMA_MM: f64 = 0.05;
 const POSES: usize = 120;
+/// Number of times that the joints' turning is computed anew. Each time the error falls to a thirtieth or less.
+const HANGING: usize = 6;
 
 /// The true compliances \[rad/(N m)\].
 pub struct Truth {
@@ -67,35 +69,50 @@ impl Built {
         Self { axes, links_m, zeros_rad, truth }
     }
 
-    /// Where the point of the tool is, with what gravity does to it \[m\].
+    /// Where the point of the tool is as the arm hangs: each joint has turned by what the weights do with the levers that
+    /// they then have \[m\].
     fn point_m(&self, pose_rad: &[f64; 6], payload_kg: f64) -> Vector3<f64> {
+        let mut turned_rad = [Vector3::zeros(); 6];
+        for _ in 0..HANGING {
+            turned_rad = self.hung(pose_rad, payload_kg, &turned_rad).turned_rad;
+        }
+        self.hung(pose_rad, payload_kg, &turned_rad).point_m
+    }
+
+    /// The arm with joints that the weights have turned by `turned_rad`, and by how much the weights then turn them.
+    fn hung(&self, pose_rad: &[f64; 6], payload_kg: f64, turned_rad: &[Vector3<f64>; 6]) -> Hung {
         let (mut turn, mut at_m) = (Rotation3::identity(), Vector3::zeros());
         let (mut joints, mut bodies) = (Vec::new(), Vec::new());
         for j in 0..6 {
             bodies.push((JOINTS_KG[j], at_m));
             joints.push((at_m, turn * self.axes[j], bodies.len()));
-            turn *= Rotation3::from_axis_angle(
-                &Unit::new_normalize(self.axes[j]),
-                pose_rad[j] + self.zeros_rad[j],
-            );
+            let axis = Unit::new_normalize(self.axes[j]);
+            let own = Rotation3::from_axis_angle(&axis, pose_rad[j] + self.zeros_rad[j]);
+            turn = Rotation3::new(turned_rad[j]) * turn * own;
             let link_m = turn * self.links_m[j];
             bodies.push((LINKS_KG[j], at_m + link_m / 2.0));
             at_m += link_m;
         }
         bodies.push((payload_kg, at_m + turn * Vector3::from(PAYLOAD_CG_M)));
-        let point_m = at_m + turn * Vector3::from(TOOL_M);
-        let mut moved_m = Vector3::zeros();
-        for (j, (joint_m, axis, inboard)) in joints.into_iter().enumerate() {
-            let weight = |kg: f64| Vector3::new(0.0, 0.0, -GRAVITY_M_S2 * kg);
+        let weight = |kg: f64| Vector3::new(0.0, 0.0, -GRAVITY_M_S2 * kg);
+        let turned_rad = std::array::from_fn(|j| {
+            let (joint_m, axis, inboard) = joints[j];
             let moments = bodies[inboard..].iter().map(|(kg, at_m)| (at_m - joint_m).cross(&weight(*kg)));
             let moment_nm: Vector3<f64> = moments.sum();
             let about_nm = axis * axis.dot(&moment_nm);
             let tilt = self.truth.tilt.get(j).copied().unwrap_or(0.0);
-            let turned = about_nm * self.truth.about_axis[j] + (moment_nm - about_nm) * tilt;
-            moved_m += turned.cross(&(point_m - joint_m));
-        }
-        point_m + moved_m
+            about_nm * self.truth.about_axis[j] + (moment_nm - about_nm) * tilt
+        });
+        Hung { turned_rad, point_m: at_m + turn * Vector3::from(TOOL_M) }
     }
+}
+
+/// An arm in a pose, with joints that have turned a little.
+struct Hung {
+    /// By how much the weights turn each joint \[rad\].
+    turned_rad: [Vector3<f64>; 6],
+    /// Where the point of the tool is \[m\].
+    point_m: Vector3<f64>,
 }
 
 /// Writes a campaign of positions, of whose arm the drawing has rigid joints.
