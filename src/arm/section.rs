@@ -14,6 +14,7 @@
 //! A solid bar is treated as a tube whose wall is half its smaller side: the same formulas of `A` and `I` apply.
 
 use super::torsion;
+use crate::catalog::material::MaterialClass;
 use std::f64::consts::PI;
 
 /// A size of a section in millimetres, rounded to a nanometre: 48.3 for a tube of 48.3 mm, whose metres times 1000 are
@@ -33,6 +34,9 @@ pub struct LinkMaterial {
     pub density_kg_m3: f64,
     /// Poisson's ratio. It is used only in Cowper's shear factor. It is never derived from E and G.
     pub poisson: f64,
+    /// Class of the material, from which a report knows whether it creeps. `None` if it is not stated. No number depends
+    /// on it.
+    pub class: Option<MaterialClass>,
 }
 
 impl LinkMaterial {
@@ -134,6 +138,7 @@ impl StatedSection {
             shear_modulus_pa: STATED_PA,
             density_kg_m3: 1.0,
             poisson: 0.0,
+            class: None,
         }
     }
 

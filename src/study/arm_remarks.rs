@@ -3,6 +3,7 @@
 use super::creep::creep_sentence;
 use crate::arm::effect::entry::Effect;
 use crate::arm::pieces::factors_sentence;
+use crate::arm::section::LinkMaterial;
 use crate::arm::{Arm, Element, Link, LinkBody};
 use crate::catalog::Catalogs;
 
@@ -28,12 +29,57 @@ pub fn ignored_words(arm: &Arm) -> Option<String> {
 
 fn creep_sentences(arm: &Arm, catalogs: &Catalogs) -> Vec<String> {
     let tubes = arm.chain.iter().filter_map(|element| match element {
-        Element::Link(Link { name, body: LinkBody::Tube { material_name, .. }, .. }) => {
-            Some((material_name.as_str(), name.as_str()))
+        Element::Link(Link { name, body: LinkBody::Tube { material_name, material, .. }, .. }) => {
+            Some(((material_name.as_str(), material), name.as_str()))
         }
         _ => None,
     });
-    let tubes: Vec<(&str, &str)> = tubes.collect();
-    let creep = tubes.iter().filter_map(|(material, link)| creep_sentence(catalogs, material, link));
-    creep.chain(factors_sentence(tubes.iter().copied())).collect()
+    let tubes: Vec<((&str, &LinkMaterial), &str)> = tubes.collect();
+    let creep = tubes.iter().filter_map(|(material, link)| creep_sentence(catalogs, *material, link));
+    creep.chain(factors_sentence(tubes.iter().map(|((material, _), link)| (*material, *link)))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::file::read_arm_document;
+    use crate::input::json::Document;
+
+    /// The remarks on an arm with one link of this material, read with these catalogs; and the arm as it is written.
+    fn remarks(materials: &str, name: &str, catalogs: &Catalogs) -> (String, String) {
+        let text = format!(
+            r#"{{"name": "a", "materials": {materials}, "chain": [
+            {{"type": "joint", "name": "j", "axis": [0,1,0], "stiffness_nm_per_rad": 1e4}},
+            {{"type": "link", "name": "l", "vector_m": [0.3,0,0], "material": "{name}",
+              "section": {{"shape": "i_beam", "width_m": 0.05, "height_m": 0.1, "web_m": 0.004, "flange_m": 0.006}}}}]}}"#
+        );
+        read(&text, catalogs)
+    }
+
+    fn read(text: &str, catalogs: &Catalogs) -> (String, String) {
+        let arm = read_arm_document(Document::parse("a.json", text).expect("JSON"), catalogs).expect("sound");
+        (arm_remarks(&arm, catalogs).join(" "), arm.to_json().to_string())
+    }
+
+    #[test]
+    fn an_arm_that_was_written_keeps_the_class_of_its_materials() {
+        let folder = tempfile::tempdir().unwrap();
+        let rows = "name,class,e_pa,g_pa,density_kg_m3,source,confidence\n\
+            Birch,wood,8.5e9,0.62e9,680,a test,third party\n";
+        std::fs::write(folder.path().join("materials.csv"), rows).unwrap();
+        let own = Catalogs::load(Some(folder.path())).unwrap();
+        let (said, written) = remarks("{}", "Birch", &own);
+        assert!(said.contains("Birch (wood) in l: it creeps"), "{said}");
+        let (again, written_again) = read(&written, &Catalogs::builtin());
+        assert!(again.contains("Birch (wood) in l: it creeps"), "{again}");
+        assert!(again.contains("the stated modulus of 8.500 GPa"), "{again}");
+        assert_eq!(written, written_again);
+    }
+
+    #[test]
+    fn an_arm_file_without_classes_is_read_as_before() {
+        let numbers = r#"{"X": {"youngs_modulus_pa": 2e9, "shear_modulus_pa": 7e8, "density_kg_m3": 1200}}"#;
+        let (said, written) = remarks(numbers, "X", &Catalogs::builtin());
+        assert!(!said.contains("creeps") && !written.contains("class"), "{said} {written}");
+    }
 }
