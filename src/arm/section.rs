@@ -5,6 +5,8 @@
 //! | `I` rectangular | `(b h³ - (b-2t)(h-2t)³)/12` | Eq 5 |
 //! | `A` rectangular | `b h - (b-2t)(h-2t)` | Eq 6 |
 //! | `J` rectangular | Bredt for thin walls; thick ones and bars after Saint-Venant | `torsion.rs` |
+//! | `J` I | two flanges, web and junctions; free to warp | `torsion.rs` |
+//! | `Cw` I | `Iz (h-t)²/4`, t the flange | warping constant, Vlasov's thin-walled beams |
 //! | `J` round | `2 I` | exact for a circular tube |
 //! | shear factor, rectangular | `20(1+nu)/(48+39nu)` | Cowper 1966, thin square tube |
 //! | shear factor, round | `2(1+nu)/(4+3nu)` | Cowper 1966, thin round tube |
@@ -201,6 +203,18 @@ impl Section {
         }
     }
 
+    /// Warping constant Cw \[m⁶\] of a section whose twist depends much on whether its ends can warp; `None` for sections
+    /// whose ends hardly warp. The mechanics does not use it.
+    pub fn warping_constant_m6(&self) -> Option<f64> {
+        match *self {
+            Section::IBeam { height_m, flange_m, .. } => {
+                let middles_m = height_m - flange_m;
+                Some(self.properties(0.0).second_moment_z_m4 * middles_m * middles_m / 4.0)
+            }
+            _ => None,
+        }
+    }
+
     /// Whether the outer contour is a circle.
     pub fn is_round(&self) -> bool {
         matches!(self, Section::RoundTube { .. } | Section::RoundBar { .. })
@@ -311,7 +325,7 @@ fn rectangular_bar(b: f64, h: f64, nu: f64) -> SectionProperties {
 fn i_beam([b, h, web, flange]: [f64; 4], nu: f64) -> SectionProperties {
     let clear = h - 2.0 * flange;
     let middles = h - flange;
-    let torsion_constant_m4 = (2.0 * b * flange.powi(3) + middles * web.powi(3)) / 3.0;
+    let torsion_constant_m4 = torsion::i_constant(b, h, web, flange);
     let (m, n) = (2.0 * b * flange / (middles * web), b / middles);
     let shear_factor = 10.0 * (1.0 + nu) * (1.0 + 3.0 * m).powi(2)
         / ((12.0 + 72.0 * m + 150.0 * m * m + 90.0 * m.powi(3))

@@ -1,6 +1,7 @@
 //! What a reader should know of the analysis of an arm besides its numbers.
 
 use super::creep::creep_sentence;
+use super::warping;
 use crate::arm::effect::entry::Effect;
 use crate::arm::pieces::factors_sentence;
 use crate::arm::section::LinkMaterial;
@@ -11,12 +12,12 @@ use crate::catalog::Catalogs;
 const LEFT_OUT: &str = "Left out of every number, unless the file states it: the compliance of the connections between links and \
     joints, and the cables along the links. Also temperature, and whether the parts fit into each other.";
 
-/// Remarks on the analysis of an arm, in sentences: on links of materials that creep, on links with stated factors, and
-/// on what is left out of every number.
+/// Remarks on the analysis of an arm, in sentences: on links of materials that creep, on links with stated factors, on I
+/// sections, and on what is left out of every number.
 pub fn arm_remarks(arm: &Arm, catalogs: &Catalogs) -> Vec<String> {
     let has_gear = |element: &Element| matches!(element, Element::Joint(joint) if joint.gear.is_some());
     let left_out = arm.chain.iter().any(has_gear).then(|| LEFT_OUT.to_string());
-    creep_sentences(arm, catalogs).into_iter().chain(left_out).collect()
+    creep_sentences(arm, catalogs).into_iter().chain(warping::of_arm(arm)).chain(left_out).collect()
 }
 
 /// The names of the effects that an analysis ignores because they describe a test and not the arm, in words; `None` if
@@ -81,5 +82,14 @@ mod tests {
         let numbers = r#"{"X": {"youngs_modulus_pa": 2e9, "shear_modulus_pa": 7e8, "density_kg_m3": 1200}}"#;
         let (said, written) = remarks(numbers, "X", &Catalogs::builtin());
         assert!(!said.contains("creeps") && !written.contains("class"), "{said} {written}");
+    }
+
+    #[test]
+    fn an_i_section_is_said_to_be_taken_as_free_to_warp() {
+        let (said, _) = remarks("{}", "Structural steel S355", &Catalogs::builtin());
+        assert!(
+            said.contains("l is an I section, 0.300 m long, whose ends are taken as free to warp"),
+            "{said}"
+        );
     }
 }
