@@ -24,6 +24,7 @@ use super::transmission::{Seen, Transmission, gear_is_at_motor, read_turns_with}
 use super::transmissions::{Driven, place_all};
 use super::{Arm, Element, GRAVITY_M_S2, Joint};
 use crate::catalog::gear::{Gear, GearMass};
+use crate::catalog::material::MaterialClass;
 use crate::catalog::{Catalogs, PartError};
 use crate::input::json::{Document, Faults, InputError, Node, Object};
 use nalgebra::{Unit, Vector3};
@@ -138,11 +139,24 @@ fn read_material(node: &Node) -> Option<LinkMaterial> {
         nu if (-1.0..=0.5).contains(&nu) => Some(nu),
         nu => n.fault(format!("= {nu} is not a Poisson's ratio"), "give a number from -1 to 0.5"),
     });
+    let class = object.optional("class").map(|n| read_class(&n));
     Some(LinkMaterial {
         youngs_modulus_pa: youngs?,
         shear_modulus_pa: shear?,
         density_kg_m3: density?,
         poisson: poisson?,
+        class: class.map_or(Some(None), |read| read.map(Some))?,
+    })
+}
+
+/// Reads the class of a material. Returns `None` after recording a fault.
+fn read_class(node: &Node) -> Option<MaterialClass> {
+    let word = node.string()?;
+    MaterialClass::from_word(word).or_else(|| {
+        node.fault(
+            format!("\"{word}\" is no class of materials"),
+            &format!("choose one of: {}", MaterialClass::WORDS.join(", ")),
+        )
     })
 }
 

@@ -10,6 +10,7 @@ use super::shared_keys::{
     AXIS, BODIES_OF_JOINT, BODIES_OF_LINK, COUPLED, GEAR, IS_JOINT, IS_LINK, LINK_MASS, LINK_PIECES,
     LINK_SECTION, LINK_VECTOR, MOTOR, NAME, OUTPUT_BEARING, STIFFNESS, TORSION_CURVE, WHICH_GEAR_MASS,
 };
+use crate::catalog::material::MaterialClass;
 use crate::input::key::{Kind, Rule, SCHEMA_ADDRESS, Shape, optional, required};
 use crate::input::schema::FileKind;
 
@@ -66,6 +67,13 @@ pub(crate) static MATERIAL: Shape = Shape::new(
             "-",
             "0.3",
             "Poisson's ratio, used in the shear factor only.",
+        ),
+        optional(
+            "class",
+            Kind::Word(&MaterialClass::WORDS),
+            "-",
+            "that of the catalog's material of this name",
+            "Class of the material; a report says which classes creep. No number depends on it.",
         ),
     ],
     &[],

@@ -8,7 +8,7 @@ use super::section::{LinkMaterial, Section};
 use super::section_file::{read_i_beam, read_stated_section};
 use super::{Link, LinkBody};
 use crate::catalog::Catalogs;
-use crate::catalog::material::Material;
+use crate::catalog::material::{Material, MaterialClass};
 use crate::input::json::{Node, Object};
 use nalgebra::Vector3;
 
@@ -98,8 +98,8 @@ fn find_material(
         );
     };
     let Some(material) = material_of(row) else {
-        return node
-            .fault(format!("material \"{name}\" has no shear modulus"), "add the material to the file");
+        let hint = format!("{}; or add the material to the file", shear_modulus_hint(row));
+        return node.fault(format!("material \"{name}\" has no shear modulus"), &hint);
     };
     Some(material)
 }
@@ -111,7 +111,38 @@ pub(crate) fn material_of(row: &Material) -> Option<LinkMaterial> {
         shear_modulus_pa: row.shear_modulus_pa?,
         density_kg_m3: row.density_kg_m3,
         poisson: row.poisson.unwrap_or(DEFAULT_POISSON),
+        class: Some(row.class),
     })
+}
+
+/// What to do about a row of the catalog that states no shear modulus. It is not computed for the user, because it enters
+/// every number, and because the relation to Young's modulus holds for isotropic materials only.
+pub(crate) fn shear_modulus_hint(row: &Material) -> String {
+    let from = match (&row.provenance.file, row.provenance.line) {
+        (file, line) if !row.provenance.is_built_in() => format!(" ({file}:{line})"),
+        _ => String::new(),
+    };
+    let isotropic_pa = row.poisson.map(|nu| row.youngs_modulus_pa / (2.0 * (1.0 + nu)));
+    let number = match (row.class, isotropic_pa) {
+        (MaterialClass::Metal | MaterialClass::MetalMatrix, Some(g_pa)) => {
+            format!(": for this isotropic material G = E/2(1+nu) = {g_pa:.3e} Pa")
+        }
+        (MaterialClass::Polymer, Some(g_pa)) => {
+            format!(
+                ": G = E/2(1+nu) = {g_pa:.3e} Pa if the part is isotropic, as a moulded one is; of a printed one it is \
+                 measured"
+            )
+        }
+        (MaterialClass::Metal | MaterialClass::MetalMatrix | MaterialClass::Polymer, None) => {
+            ", or the column poisson, from which G = E/2(1+nu) follows for an isotropic material".into()
+        }
+        (class, _) => {
+            format!(
+                " as it is measured: of a material of class {class} it does not follow from e_pa and poisson"
+            )
+        }
+    };
+    format!("fill the column g_pa of its row{from}{number}")
 }
 
 /// Reads a cross-section from its object in the file. Returns `None` after recording a fault.
@@ -158,4 +189,36 @@ pub(crate) fn read_section(node: &Node) -> Option<Section> {
         );
     }
     Some(section.closed())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_blank_shear_modulus_is_named_with_its_column_and_with_the_number_of_an_isotropic_material() {
+        let folder = tempfile::tempdir().unwrap();
+        let rows = "name,class,e_pa,density_kg_m3,poisson,source,confidence\n\
+            A,metal,7e10,2700,0.33,a test,verified\n\
+            B,polymer,2e9,1200,0.38,a test,verified\n\
+            C,wood,1e10,600,0.3,a test,verified\n\
+            D,metal,7e10,2700,,a test,verified\n";
+        std::fs::write(folder.path().join("materials.csv"), rows).unwrap();
+        let catalogs = Catalogs::load(Some(folder.path())).unwrap();
+        let hint = |name: &str| {
+            let row = catalogs.materials.iter().find(|row| row.name == name).unwrap();
+            assert!(material_of(row).is_none());
+            shear_modulus_hint(row)
+        };
+        // 7e10 / 2.66 and 2e9 / 2.76
+        assert!(
+            hint("A").contains("the column g_pa of its row") && hint("A").contains("= 2.632e10 Pa"),
+            "{}",
+            hint("A")
+        );
+        assert!(hint("A").contains("materials.csv:2"), "{}", hint("A"));
+        assert!(hint("B").contains("= 7.246e8 Pa if the part is isotropic"), "{}", hint("B"));
+        assert!(hint("C").contains("does not follow from e_pa and poisson"), "{}", hint("C"));
+        assert!(hint("D").contains("or the column poisson"), "{}", hint("D"));
+    }
 }

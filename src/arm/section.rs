@@ -5,6 +5,8 @@
 //! | `I` rectangular | `(b h³ - (b-2t)(h-2t)³)/12` | Eq 5 of docs/model.md |
 //! | `A` rectangular | `b h - (b-2t)(h-2t)` | Eq 6 of docs/model.md |
 //! | `J` rectangular | Bredt for thin walls; thick walls and bars after Saint-Venant | `torsion.rs` |
+//! | `J` I | two flanges, web and junctions; free to warp | `torsion.rs` |
+//! | `Cw` I | `Iz (h-t)²/4`, t the flange | warping constant, Vlasov's thin-walled beams |
 //! | `J` round | `2 I` | exact for a circular tube |
 //! | shear factor, rectangular | `20(1+nu)/(48+39nu)` | Cowper 1966, thin square tube |
 //! | shear factor, round | `2(1+nu)/(4+3nu)` | Cowper 1966, thin round tube |
@@ -14,6 +16,7 @@
 //! A solid bar is treated as a tube whose wall is half its smaller side: the same formulas of `A` and `I` apply.
 
 use super::torsion;
+use crate::catalog::material::MaterialClass;
 use std::f64::consts::PI;
 
 /// A size of a section in millimetres, rounded to a nanometre: 48.3 for a tube of 48.3 mm, whose metres times 1000 are
@@ -33,6 +36,9 @@ pub struct LinkMaterial {
     pub density_kg_m3: f64,
     /// Poisson's ratio. It is used only in Cowper's shear factor. It is never derived from E and G.
     pub poisson: f64,
+    /// Class of the material, from which a report knows whether it creeps. `None` if it is not stated. No number depends
+    /// on it.
+    pub class: Option<MaterialClass>,
 }
 
 impl LinkMaterial {
@@ -134,6 +140,7 @@ impl StatedSection {
             shear_modulus_pa: STATED_PA,
             density_kg_m3: 1.0,
             poisson: 0.0,
+            class: None,
         }
     }
 
@@ -193,6 +200,18 @@ impl Section {
             | Section::IBeam { width_m, height_m, .. }
             | Section::Stated(StatedSection { width_m, height_m, .. }) => width_m.min(height_m) / 2.0,
             Section::RoundBar { diameter_m } => diameter_m / 2.0,
+        }
+    }
+
+    /// Warping constant Cw \[m⁶\] of a section whose twist depends much on whether its ends can warp; `None` for sections
+    /// whose ends hardly warp. The mechanics does not use it.
+    pub fn warping_constant_m6(&self) -> Option<f64> {
+        match *self {
+            Section::IBeam { height_m, flange_m, .. } => {
+                let middles_m = height_m - flange_m;
+                Some(self.properties(0.0).second_moment_z_m4 * middles_m * middles_m / 4.0)
+            }
+            _ => None,
         }
     }
 
@@ -306,7 +325,7 @@ fn rectangular_bar(b: f64, h: f64, nu: f64) -> SectionProperties {
 fn i_beam([b, h, web, flange]: [f64; 4], nu: f64) -> SectionProperties {
     let clear = h - 2.0 * flange;
     let middles = h - flange;
-    let torsion_constant_m4 = (2.0 * b * flange.powi(3) + middles * web.powi(3)) / 3.0;
+    let torsion_constant_m4 = torsion::i_constant(b, h, web, flange);
     let (m, n) = (2.0 * b * flange / (middles * web), b / middles);
     let shear_factor = 10.0 * (1.0 + nu) * (1.0 + 3.0 * m).powi(2)
         / ((12.0 + 72.0 * m + 150.0 * m * m + 90.0 * m.powi(3))

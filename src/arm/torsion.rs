@@ -1,4 +1,4 @@
-//! Torsion of rectangles, hollow and solid, after Saint-Venant.
+//! Torsion of rectangles, hollow and solid, and of I sections, after Saint-Venant.
 //!
 //! | symbol | formula | source |
 //! |---|---|---|
@@ -6,6 +6,8 @@
 //! | `τ/M` thin tube | `1 / (2 t (b-t)(h-t))` | Bredt: the mean over the wall |
 //! | `J` thick tube | `Bredt + c (2/3) t³ ((b-t)+(h-t))` | term of the open section; `c` gives the bar at full wall |
 //! | `J` bar | `h b³ (1/3 - (64/π⁵)(b/h) Σ tanh(nπh/2b)/n⁵)`, n odd, b ≤ h | Saint-Venant's series |
+//! | `J` I, web t ≤ flange T | `2 J_bar(b, T) + (h-2T) t³/3 + 2 t² T² (0.21 + 0.085 t/T)` | flanges, clear web and junctions |
+//! | `J` I, web t > flange T | `J_bar(h, t) + 4 (c T³/3 - 0.105 T⁴ + 0.2 t T³)`, c = (b-t)/2 | web over the whole height, outstands |
 //! | `τ J/M` bar | `b (1 - (8/π²) Σ 1/(n² cosh(nπh/2b)))`, n odd, b ≤ h | the same series, middle of the long side |
 //!
 //! Bredt's formula is used up to a wall of 0.15 of the smaller side. At this wall its `J` is 9.0 % too low for a square
@@ -13,6 +15,14 @@
 //! because a step of `J` would disturb derivatives with respect to the wall. From a wall of 0.155 on, `J` is within 7.0
 //! % of the exact solution up to the solid bar (sides 1:1 to 1:4), and it never falls as the wall grows. Bredt's shear
 //! stress is the mean over the wall; at the outside of a wall of 0.15 the stress is up to 29 % higher.
+
+//!
+//! The two numbers 0.21 and 0.085 of the junctions of an I section, and the 0.2 of its outstands, are fitted to Prandtl's
+//! stress function on a grid, for sharp inner edges; both formulas agree at t = T. `J` is within 1.3 % of the grid if the
+//! flanges stand out by at least their thickness and the clear web is at least as high as it is thick. For flanges that
+//! stand out by half their thickness it is up to 5.5 % too large. The usual sum `(2 b T³ + (h-T) t³)/3` counts the
+//! junctions twice and has no free ends: it is 4 % too large for 100 x 200 x 6 x 10 mm and 7 % for 60 x 80 x 20 x 20
+//! mm. A rolled section has more, by the fillets that are left out here.
 
 use std::f64::consts::PI;
 
@@ -53,6 +63,21 @@ pub(super) fn tube(b: f64, h: f64, t: f64) -> Torsion {
 pub(super) fn bar(b: f64, h: f64) -> Torsion {
     let constant_m4 = bar_constant(b, h);
     Torsion { constant_m4, shear_per_m3: bar_shear_m(b, h) / constant_m4 }
+}
+
+/// Torsion constant `J` of an I section with sharp edges \[m⁴\]: width b, height h, thickness of the web and of the
+/// flanges \[m\].
+pub(super) fn i_constant(b: f64, h: f64, web: f64, flange: f64) -> f64 {
+    let sum = if web <= flange {
+        let junction = web.powi(2) * flange.powi(2) * (0.21 + 0.085 * web / flange);
+        2.0 * (bar_constant(b, flange) + junction) + (h - 2.0 * flange) * web.powi(3) / 3.0
+    } else {
+        let free_end = 0.105 * flange.powi(4);
+        let outstand = (b - web) / 2.0 * flange.powi(3) / 3.0 - free_end + 0.2 * web * flange.powi(3);
+        bar_constant(h, web) + 4.0 * outstand
+    };
+    // no section is stiffer than the bar that contains it
+    sum.min(bar_constant(b, h))
 }
 
 /// Torsion constant `J` of a thin closed wall by Bredt's formula \[m⁴\]: outer sides b, h and wall t \[m\].
@@ -181,6 +206,67 @@ mod tests {
             load[here] += 2.0 * width(i) * width(j);
             edges.push((here, unknown(i + 1, j), width(j)));
             edges.push((here, unknown(i, j + 1), width(i)));
+        }
+        4.0 * load.dot(&conjugate_gradients(&edges, &load))
+    }
+
+    /// Compares with Prandtl's stress function by finite differences. The sides are given in cells of the coarse grid.
+    #[test]
+    fn an_i_section_is_within_2_percent_of_saint_venant() {
+        let of = |[b, h, web, flange]: [usize; 4]| {
+            let [coarse, fine] = [1, 2]
+                .map(|n| i_stress_function_volume([b * n, h * n, web * n, flange * n]) / (n as f64).powi(4));
+            // the re-entrant edges limit the order of convergence to 4/3
+            let exact = fine + (fine - coarse) / (libm::pow(2f64, 4.0 / 3.0) - 1.0);
+            let [b, h, web, flange] = [b, h, web, flange].map(|cells| cells as f64);
+            let double = (2.0 * b * flange.powi(3) + (h - flange) * web.powi(3)) / 3.0;
+            [i_constant(b, h, web, flange) / exact - 1.0, double / exact - 1.0]
+        };
+        // 100 x 200 x 6 x 10 mm, 60 x 80 x 20 x 20 mm, a thick web, a thin one, the shortest outstands and webs
+        let sections = [
+            [100, 200, 6, 10],
+            [36, 48, 12, 12],
+            [68, 96, 20, 8],
+            [100, 100, 10, 20],
+            [34, 34, 14, 10],
+            [36, 36, 20, 8],
+            [48, 48, 8, 20],
+        ];
+        for section in sections {
+            let [ours, double] = of(section);
+            assert!(ours.abs() < 0.02, "{section:?}: {ours}");
+            assert!(double > ours && double > 0.02, "{section:?}: {double}");
+        }
+        let narrow = of([40, 60, 20, 20])[0];
+        assert!((0.0..0.055).contains(&narrow), "outstands of half the thickness: {narrow}");
+        assert_eq!(i_constant(3.0, 5.0, 3.0, 1.0), bar(3.0, 5.0).constant_m4, "a web as wide as the flanges");
+        let at_equal = [0.999_999, 1.000_001].map(|web| i_constant(6.0, 8.0, web, 1.0));
+        assert!((at_equal[1] / at_equal[0] - 1.0).abs() < 1e-5, "{at_equal:?}");
+    }
+
+    /// Twice the volume under the stress function of an I section whose width, height, web and flange are given in unit
+    /// cells. By symmetry only a quarter is solved.
+    fn i_stress_function_volume([b, h, web, flange]: [usize; 4]) -> f64 {
+        let (half_b, half_h) = (b / 2, h / 2);
+        let unknown = |i: usize, j: usize| {
+            let is_inside = i < half_b && j < half_h && (i < web / 2 || j > half_h - flange);
+            is_inside.then_some(i * half_h + j)
+        };
+        let width = |k: usize| if k == 0 { 0.5 } else { 1.0 };
+        let mut edges = Vec::new();
+        let mut load = DVector::zeros(half_b * half_h);
+        for (i, j) in (0..half_b).flat_map(|i| (0..half_h).map(move |j| (i, j))) {
+            let Some(here) = unknown(i, j) else { continue };
+            load[here] += 2.0 * width(i) * width(j);
+            edges.push((here, unknown(i + 1, j), width(j)));
+            edges.push((here, unknown(i, j + 1), width(i)));
+            // a node of the outline has no unknown, so its edges are those of its neighbours inside
+            let outline = [(i.checked_sub(1), Some(j), width(j)), (Some(i), j.checked_sub(1), width(i))];
+            for (i, j, stiffness) in outline {
+                if i.zip(j).is_some_and(|(i, j)| unknown(i, j).is_none()) {
+                    edges.push((here, None, stiffness));
+                }
+            }
         }
         4.0 * load.dot(&conjugate_gradients(&edges, &load))
     }

@@ -39,15 +39,16 @@ impl Arm {
         let mut map = Map::new();
         for link in self.links() {
             if let LinkBody::Tube { material_name, material, .. } = &link.body {
-                map.insert(
-                    material_name.clone(),
-                    json!({
-                        "youngs_modulus_pa": material.youngs_modulus_pa,
-                        "shear_modulus_pa": material.shear_modulus_pa,
-                        "density_kg_m3": material.density_kg_m3,
-                        "poisson": material.poisson,
-                    }),
-                );
+                let mut keys = json!({
+                    "youngs_modulus_pa": material.youngs_modulus_pa,
+                    "shear_modulus_pa": material.shear_modulus_pa,
+                    "density_kg_m3": material.density_kg_m3,
+                    "poisson": material.poisson,
+                });
+                if let Some(class) = material.class {
+                    keys["class"] = json!(class.to_string());
+                }
+                map.insert(material_name.clone(), keys);
             }
         }
         Value::Object(map)

@@ -57,17 +57,33 @@ impl Gear {
         lacks
     }
 
+    /// The missing limits of torque and speed. For each blank limit of a belt stands the next lower one of its row, so the
+    /// rated torque and the largest speed of a belt suffice.
+    fn lacking_limits(&self) -> Vec<Lack> {
+        let is_belt = self.kind == GearKind::Belt;
+        let mut lacks = match is_belt && self.average_torque_limit_nm.is_none() {
+            true => blank(&[(None, "rated_torque_nm", "mean, peak and stop")]),
+            false => blank(&[
+                (self.repeated_peak_torque_nm, "repeated_peak_torque_nm", "peak"),
+                (self.average_torque_limit_nm, "average_torque_limit_nm", "mean"),
+                (self.momentary_peak_torque_nm, "momentary_peak_torque_nm", "stop"),
+            ]),
+        };
+        let mean_speed_rpm = self.average_input_speed_limit_rpm;
+        lacks.extend(blank(&[(self.max_input_speed_rpm, "max_input_speed_rpm", "input speed")]));
+        if !is_belt || self.max_input_speed_rpm.is_some() {
+            lacks.extend(blank(&[(mean_speed_rpm, "average_input_speed_limit_rpm", "mean input speed")]));
+        }
+        lacks
+    }
+
     /// The missing ratings that the checks of a gear with teeth, or of a belt, need.
     fn lacking_ratings(&self) -> Vec<Lack> {
-        let mut lacks = blank(&[
-            (self.repeated_peak_torque_nm, "repeated_peak_torque_nm", "peak"),
-            (self.average_torque_limit_nm, "average_torque_limit_nm", "mean"),
-            (self.momentary_peak_torque_nm, "momentary_peak_torque_nm", "stop"),
-            (self.max_input_speed_rpm, "max_input_speed_rpm", "input speed"),
-            (self.average_input_speed_limit_rpm, "average_input_speed_limit_rpm", "mean input speed"),
+        let mut lacks = self.lacking_limits();
+        lacks.extend(blank(&[
             (self.inertia_input_kgm2, "inertia_input_kgm2", "motor peak"),
             (self.efficiency, "efficiency_rated_2000rpm", "motor torque"),
-        ]);
+        ]));
         if self.kind.wears_out() || self.life.rated_h.is_some() {
             lacks.extend(blank(&[
                 (self.rated_torque_nm, "rated_torque_nm", "life"),

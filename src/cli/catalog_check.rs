@@ -3,7 +3,7 @@
 
 use super::catalog_table::{TextTable, cell, provenances};
 use crate::arm::bearing::BearingSource;
-use crate::catalog::gear::{GearKind, GearMass};
+use crate::catalog::gear::{Gear, GearKind, GearMass};
 use crate::catalog::load::Loaded;
 use crate::catalog::lookup::first_names;
 use crate::catalog::needs::{Lack, words};
@@ -26,6 +26,7 @@ pub(crate) fn check(overlay: Option<&Path>) -> Result<String, InputError> {
     out.push_str(&blanks_table(&catalogs));
     out.push_str(&unchoosable(&catalogs));
     out.push_str(&by_usual_life(&catalogs));
+    out.push_str(&belts(&catalogs));
     out.push_str(&rigid_bearings(&catalogs));
     match catalogs.warnings.as_slice() {
         [] => out.push_str("\nNo faults, no warnings.\n"),
@@ -196,6 +197,40 @@ fn rigid_bearings(catalogs: &Catalogs) -> String {
         false => {
             format!("\nOutput bearings that count as rigid (the tip deflects more than printed):\n{lines}")
         }
+    }
+}
+
+/// Ratings that a row of a belt may leave blank, each with the number that stands for it.
+const OF_BELTS: [(&str, fn(&Gear) -> Option<f64>); 4] = [
+    ("average_torque_limit_nm", |gear| gear.average_torque_limit_nm),
+    ("repeated_peak_torque_nm", |gear| gear.repeated_peak_torque_nm),
+    ("momentary_peak_torque_nm", |gear| gear.momentary_peak_torque_nm),
+    ("average_input_speed_limit_rpm", |gear| gear.average_input_speed_limit_rpm),
+];
+
+/// A list of the belts with their blank ratings, the numbers that stand for them, and what no check of a belt sees.
+fn belts(catalogs: &Catalogs) -> String {
+    let mut out = String::new();
+    // a belt without a rated torque is listed with the parts that cannot be used
+    let is_rated = |gear: &&Gear| gear.kind == GearKind::Belt && gear.average_torque_limit_nm.is_some();
+    for gear in catalogs.gears.iter().filter(is_rated) {
+        let Provenance { file, line, .. } = &gear.provenance;
+        let printed = catalogs.printed_row(&gear.provenance);
+        let stands = OF_BELTS.iter().filter(|(column, _)| cell(printed, column).is_empty());
+        let stands: Vec<String> =
+            stands.filter_map(|(column, rating)| Some(format!("{column} {}", rating(gear)?))).collect();
+        let words = match stands.as_slice() {
+            [] => "all ratings stated".to_string(),
+            stands => format!("blank, so the next lower rating stands for it: {}", stands.join(", ")),
+        };
+        let _ = writeln!(out, "  {file}:{line} {}: {words}", gear.id);
+    }
+    match out.is_empty() {
+        true => out,
+        false => format!(
+            "\nBelts (not checked: pretension, its load on the shafts, teeth in mesh, and that the rated torque falls with \
+             speed: state the torque rated at the largest speed, divided by the maker's service factor):\n{out}"
+        ),
     }
 }
 

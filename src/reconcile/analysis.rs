@@ -27,7 +27,7 @@ use super::verdict::judgement::{TOO_FAR_OFF, does_not_predict, shows_in_few_pose
 use super::verdict::next_test;
 use super::verdict::outcome::{Calibrated, Evidence, Law, Located, Outcome, ReadingResidual, Verdict};
 use super::verdict::too_little::{rows, too_little};
-use super::verdict::{caution, correct, corrected_model, fitted, locate};
+use super::verdict::{caution, correct, corrected_model, fitted, locate, unit_words};
 use crate::arm::Arm;
 use serde_json::Value;
 use std::cell::OnceCell;
@@ -219,6 +219,8 @@ impl Analysis<'_> {
         if verdict == Verdict::Explained {
             reasons.extend(caution::unbounded(&self.best, self.ends()));
         }
+        let mut next_tests = next_test::propose(&self.next_question(verdict));
+        reasons.extend(unit_words::note(self.forward, &effects, &mut next_tests));
         if matches!(verdict, Verdict::Explained | Verdict::NoGap) {
             let shown = if verdict == Verdict::NoGap { &self.baseline } else { &self.best };
             if let Some(text) = caution::beyond_tolerance(fitted::tolerances(shown), &calibrated) {
@@ -232,7 +234,7 @@ impl Analysis<'_> {
             hash: self.campaign.hash.clone(),
             verdict,
             reasons,
-            next_tests: next_test::propose(&self.next_question(verdict)),
+            next_tests,
             effects,
             suspects,
             empirical,
@@ -381,7 +383,7 @@ impl Analysis<'_> {
 
     /// Sentences on the structure that the best model leaves in the residuals. They name no effect of the library.
     fn left_over(&self) -> Vec<String> {
-        let mut out = units::other_signs(self.forward);
+        let mut out = units::other_conventions(self.forward);
         let beyond = self.lack_of_fit.sentences_beyond_scatter();
         let declared = self.lack_of_fit.sentences();
         if beyond.is_empty() && !declared.is_empty() {

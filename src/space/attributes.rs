@@ -97,6 +97,7 @@ mod tests {
             shear_modulus_pa: 8.1e10,
             density_kg_m3: 7850.0,
             poisson: 0.3,
+            class: None,
         };
         let section = Section::RoundTube { diameter_m: 0.06, wall_m: 0.012 };
         let option = LinkOption { strength_pa: Some(355e6), ..LinkOption::given(material, section) };

@@ -49,6 +49,7 @@ use std::sync::Arc;
 ///     shear_modulus_pa: 8.1e10,
 ///     density_kg_m3: 7850.0,
 ///     poisson: 0.3,
+///     class: None,
 /// };
 /// let tube = |wall_m: f64| LinkOption {
 ///     material_index: 0,

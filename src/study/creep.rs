@@ -1,6 +1,7 @@
 //! Remarks on links of materials that creep.
 
 use crate::arm::pieces::{factors_sentence, without_factors};
+use crate::arm::section::LinkMaterial;
 use crate::arm::{Link, LinkBody};
 use crate::catalog::Catalogs;
 use crate::space::design_space::{DesignSpace, SpacePiece};
@@ -8,27 +9,29 @@ use crate::space::design_space::{DesignSpace, SpacePiece};
 /// Remarks: one sentence for each material that creeps and that a link has or may have, and one for links whose
 /// stiffness or mass the study multiplies by a factor.
 pub(super) fn creep_remarks(space: &DesignSpace, catalogs: &Catalogs) -> Vec<String> {
-    let mut links_of: Vec<(&str, Vec<&str>)> = Vec::new();
-    let mut add = |material, link| match links_of.iter_mut().find(|(known, _)| *known == material) {
-        Some((_, links)) if links.contains(&link) => {}
-        Some((_, links)) => links.push(link),
-        None => links_of.push((material, vec![link])),
+    let mut links_of: Vec<(&str, LinkMaterial, Vec<&str>)> = Vec::new();
+    let mut add = |name, material, link| match links_of.iter_mut().find(|(known, ..)| *known == name) {
+        Some((_, _, links)) if links.contains(&link) => {}
+        Some((_, _, links)) => links.push(link),
+        None => links_of.push((name, material, vec![link])),
     };
     for piece in &space.pieces {
         match piece {
             SpacePiece::Joint(_) | SpacePiece::Prismatic(_) => {}
             SpacePiece::Link(link) => {
-                if let LinkBody::Tube { material_name, .. } = &link.body {
-                    add(material_name.as_str(), link.name.as_str());
+                if let LinkBody::Tube { material_name, material, .. } = &link.body {
+                    add(material_name.as_str(), *material, link.name.as_str());
                 }
             }
             SpacePiece::Choice(choice) => {
-                choice.options.iter().for_each(|option| add(&option.material_name, &choice.name));
+                let options = choice.options.iter();
+                options.for_each(|option| add(&option.material_name, option.material, &choice.name));
             }
         }
     }
-    let sentence =
-        |(material, links): (&str, Vec<&str>)| creep_sentence(catalogs, material, &links.join(", "));
+    let sentence = |(name, material, links): (&str, LinkMaterial, Vec<&str>)| {
+        creep_sentence(catalogs, (name, &material), &links.join(", "))
+    };
     let given = space.pieces.iter().filter_map(|piece| match piece {
         SpacePiece::Link(Link { name, body: LinkBody::Tube { material_name, .. }, .. }) => {
             Some((material_name.as_str(), name.as_str()))
@@ -39,17 +42,25 @@ pub(super) fn creep_remarks(space: &DesignSpace, catalogs: &Catalogs) -> Vec<Str
     links_of.into_iter().filter_map(sentence).chain(factors).collect()
 }
 
-/// A remark on the links named in `links`, whose material creeps; `None` if the material does not creep or is in no
-/// catalog.
-pub(crate) fn creep_sentence(catalogs: &Catalogs, material: &str, links: &str) -> Option<String> {
-    let material = without_factors(material);
-    let row = catalogs.materials.iter().find(|row| row.name == material)?;
-    row.class.caution().map(|caution| {
+/// A remark on the links named in `links`, whose material creeps; `None` if the material does not creep. Its class is
+/// that of the link's material, or that of the catalog's material of the same name; `None` too if neither is known.
+pub(crate) fn creep_sentence(
+    catalogs: &Catalogs,
+    (name, material): (&str, &LinkMaterial),
+    links: &str,
+) -> Option<String> {
+    let name = without_factors(name);
+    let row = catalogs.materials.iter().find(|row| row.name == name);
+    let class = material.class.or(row.map(|row| row.class))?;
+    let (whose, modulus_pa) = match row {
+        Some(row) => ("the catalog's modulus", row.youngs_modulus_pa),
+        None => ("the stated modulus", material.youngs_modulus_pa),
+    };
+    class.caution().map(|caution| {
         format!(
-            "{material} ({}) in {links}: {caution}. Deflections, stresses and frequencies are those of a short load with \
-             the catalog's modulus of {:.3} GPa; give a creep modulus for a load that stays.",
-            row.class,
-            row.youngs_modulus_pa / 1e9
+            "{name} ({class}) in {links}: {caution}. Deflections, stresses and frequencies are those of a short load with \
+             {whose} of {:.3} GPa; give a creep modulus for a load that stays.",
+            modulus_pa / 1e9
         )
     })
 }

@@ -69,6 +69,7 @@ pub(crate) mod table;
 pub(crate) mod ties;
 pub(crate) mod tolerance;
 mod transmissions;
+mod warping;
 pub(crate) mod window;
 pub(crate) mod worst_pose;
 

@@ -25,6 +25,7 @@ use super::rails::read_rail_drive;
 use super::range::{check_poses, read_range};
 use super::sections::{Aside, MOST_OPTIONS, cost_remark, read_materials, read_sections};
 use super::transmissions::{of_joint, place_transmissions, with_stages};
+use super::warping;
 use crate::arm::MOST_ELEMENTS;
 use crate::arm::bearing::{BearingSource, Stated, read_bearing};
 use crate::arm::body::{read_joint_bodies, read_link_bodies};
@@ -183,6 +184,7 @@ fn remarks_on(space: &DesignSpace, harness_kg_per_m: f64, catalogs: &Catalogs) -
     out.extend(unchecked_remark(space, catalogs));
     out.extend(cost_remark(space));
     out.extend(creep_remarks(space, catalogs));
+    out.extend(warping::of_space(space));
     out.extend(impossible_bodies_remark(space));
     out.extend(balance_remarks(space));
     out

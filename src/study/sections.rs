@@ -3,7 +3,7 @@
 use super::choose_keys::{
     GRID, PROFILE_FILTER, PROFILES, RECTANGULAR_BARS, RECTANGULAR_TUBES, ROUND_BARS, ROUND_TUBES,
 };
-use crate::arm::link_file::material_of;
+use crate::arm::link_file::{material_of, shear_modulus_hint};
 use crate::arm::section::Section;
 use crate::arm::{Link, LinkBody};
 use crate::catalog::Catalogs;
@@ -72,7 +72,7 @@ pub(super) fn read_materials<'c>(node: &Node, catalogs: &'c Catalogs) -> Option<
                 Some(_) => Some(material),
                 None => n.fault(
                     format!("material \"{name}\" has no shear modulus"),
-                    "add it in a catalog of your own",
+                    &shear_modulus_hint(material),
                 ),
             }
         })

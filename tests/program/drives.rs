@@ -32,6 +32,43 @@ pub fn folder(study: &Value, files: &[(&str, &str)]) -> tempfile::TempDir {
     here
 }
 
+/// A toothed belt as its makers rate it: one torque and a largest speed.
+#[test]
+fn a_belt_with_one_rated_torque_and_one_largest_speed_is_sized() {
+    let belts = format!(
+        "{GEARS}\nbelt,GTX,60,12,300,,,,6000,,1e-4,1.2,,,200000,,,0.97,,,,a belt maker,representative\n\
+         belt,GTZ,60,12,,,,,6000,,1e-4,1.2,,,200000,,,0.97,,,,a belt maker,representative\n"
+    );
+    let here = folder(&one_joint(json!({"gears": ["GTX-60-12"]})), &[("gears.csv", &belts)]);
+    let row = sized(here.path());
+    assert_eq!(row["gear"], "GTX-60-12", "{row}");
+    let (code, said) = armwright(here.path(), &["catalog", "check", "--catalogs", "parts"]);
+    assert_eq!(code, 0, "{said}");
+    let stands = "GTX-60-12: blank, so the next lower rating stands for it: average_torque_limit_nm 300, \
+                  repeated_peak_torque_nm 300, momentary_peak_torque_nm 300, average_input_speed_limit_rpm 6000";
+    assert!(said.contains(stands) && said.contains("not checked: pretension"), "{said}");
+    let lacks = "GTZ-60-12: cannot be chosen by size and run: no rated_torque_nm (mean, peak and stop)\n";
+    assert!(said.contains(lacks), "{said}");
+}
+
+/// A stiffness in N m/arcmin, an inertia in kg cm2 and a pitch diameter in mm, as data sheets print them.
+#[test]
+fn stiffnesses_in_newton_metres_per_arcmin_are_refused() {
+    let sheet = format!(
+        "{GEARS}\nplanetary,AFX,75,50,110,110,198,330,8000,4000,0.16,1.7,,,7,,,0.92,20000,3000,3,own sheet,third party\n"
+    );
+    let here = folder(&one_joint(json!({})), &[("gears.csv", &sheet)]);
+    let (code, said) = armwright(here.path(), &["catalog", "check", "--catalogs", "parts"]);
+    assert_eq!(code, 3, "{said}");
+    assert!(said.contains("k1_nm_per_rad") && said.contains("1 N m/arcmin = 3438 N m/rad"), "{said}");
+    let per_degree = sheet.replace(",,,7,,,", ",,,420,,,");
+    std::fs::write(here.path().join("parts/gears.csv"), per_degree).expect("written");
+    let (code, said) = armwright(here.path(), &["catalog", "check", "--catalogs", "parts"]);
+    assert_eq!(code, 0, "{said}");
+    assert!(said.contains("gives 9.004e2 arcmin under rated_torque_nm = 110"), "{said}");
+    assert!(said.contains("inertia_input_kgm2 = 0.16 gives sqrt(J/m)"), "{said}");
+}
+
 fn own_gears() -> String {
     format!("{GEARS}\n{}\n", OWN_GEARS.join("\n"))
 }

@@ -66,6 +66,37 @@ fn a_column_in_another_unit_has_its_noise_in_it_too() {
     is_explained("column-in-another-unit");
 }
 
+/// Loads in another unit: a stiffness within its tolerance makes up for the 2 % between 9.81 and 10, and a gain of the
+/// instrument has the same effect.
+#[test]
+fn loads_in_another_unit_are_named_with_their_unit() {
+    let said = [
+        ("forces-in-kgf", 9.80665, "forces in kgf in a column of N (9.807)"),
+        ("payloads-in-pounds", 0.453_592_37, "payloads in pounds in a column of kg (0.4536)"),
+        ("payloads-in-grams", 1e-3, "payloads in grams in a column of kg (0.001000)"),
+    ];
+    for (name, factor, cause) in said {
+        let outcome = outcome(name);
+        assert_eq!(outcome.verdict, Verdict::Explained, "{}", outcome.to_text());
+        assert!(outcome.reasons.iter().any(|reason| reason.contains(cause)), "{}", outcome.to_text());
+        let [found] = outcome.effects.as_slice() else { panic!("{}", outcome.to_text()) };
+        assert_eq!(found.label(), "wrong_unit@static", "{}", outcome.to_text());
+        let value = found.parameters[0].1[0].value;
+        assert!((value / factor - 1.0).abs() < 1e-6, "{value}: {}", outcome.to_text());
+        let next = &outcome.next_tests[0].description;
+        assert!(next.contains("the loads are in the unit of the campaign's columns"), "{next}");
+    }
+}
+
+#[test]
+fn one_component_in_another_unit_gets_a_hint() {
+    let outcome = outcome("one-component-in-inches");
+    assert_eq!(outcome.verdict, Verdict::Unexplained, "{}", outcome.to_text());
+    let hint = "dy_mm is about 0.03937 times what the arm as given says: inches in a column of mm? It was taken as it is";
+    assert!(outcome.reasons.iter().any(|reason| reason == hint), "{}", outcome.to_text());
+    assert!(!outcome.reasons.iter().any(|reason| reason.starts_with("dz_mm")), "{}", outcome.to_text());
+}
+
 #[test]
 fn readings_a_third_noisier_than_declared_are_explained_all_the_same() {
     is_explained("a-third-noisier");

@@ -59,4 +59,4 @@ pub use subject::Subject;
 pub use validate::{EffectFault, fits_nominal};
 pub use warming::{Moment, Softening, Warming};
 pub use waves::{transmission_rad, transmission_waves};
-pub use wrong_unit::{SLIPS as UNIT_SLIPS, UnitSlip};
+pub use wrong_unit::{SLIPS as UNIT_SLIPS, UnitColumn, UnitSlip};

@@ -1,4 +1,5 @@
-//! `wrong_unit`: a channel is written in another unit than its column states, such as inches, metres or degrees.
+//! `wrong_unit`: a channel is written in another unit than its column states, such as inches, metres or degrees, or the
+//! loads in its file are, such as forces in kgf.
 
 use super::channel::Channel;
 use super::kind::{EVERY_CHANNEL, Kind, Parameter, Scale, Scope, Traits};
@@ -23,11 +24,24 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
     }
 }
 
+/// The column of a channel's file that is written in another unit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum UnitColumn {
+    /// The column of the readings.
+    Reading,
+    /// The columns of forces or torques. The readings are then those of another load, so they seem to have a factor.
+    Force,
+    /// The column of payloads.
+    Payload,
+}
+
 /// A unit that is mistaken for another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UnitSlip {
-    /// Factor by which the column is then wrong.
+    /// Factor by which the readings then differ from what the columns say.
     pub factor: f64,
+    /// The column that is written in another unit.
+    pub column: UnitColumn,
     /// The cause in words.
     pub cause: &'static str,
     /// The channels whose quantity has these units; all if the list is empty.
@@ -41,12 +55,29 @@ impl UnitSlip {
     }
 }
 
+/// Standard acceleration of gravity \[m/s²\], which is also one kgf in N.
+const KGF_N: f64 = 9.806_65;
+/// One pound in kg.
+const POUND_KG: f64 = 0.453_592_37;
+/// One pound-force in N.
+const LBF_N: f64 = POUND_KG * KGF_N;
+
 const LENGTHS: &[Channel] = &[Channel::Static, Channel::Positions];
 const FREQUENCIES: &[Channel] = &[Channel::Modal];
 const ANGLES: &[Channel] = &[Channel::Windup];
+/// The channel whose readings are proportional to forces and payloads at the tip.
+const TIP_LOADS: &[Channel] = &[Channel::Static];
 
 const fn slip(factor: f64, cause: &'static str, channels: &'static [Channel]) -> UnitSlip {
-    UnitSlip { factor, cause, channels }
+    UnitSlip { factor, column: UnitColumn::Reading, cause, channels }
+}
+
+const fn force(factor: f64, cause: &'static str, channels: &'static [Channel]) -> UnitSlip {
+    UnitSlip { factor, column: UnitColumn::Force, cause, channels }
+}
+
+const fn payload(factor: f64, cause: &'static str) -> UnitSlip {
+    UnitSlip { factor, column: UnitColumn::Payload, cause, channels: TIP_LOADS }
 }
 
 /// The units that are mistaken for each other.
@@ -67,6 +98,17 @@ pub const SLIPS: &[UnitSlip] = &[
     slip(1.0 / std::f64::consts::TAU, "a frequency divided by 2 pi twice", FREQUENCIES),
     slip(std::f64::consts::PI / 10800.0, "radians in a column of arcmin", ANGLES),
     slip(0.1 * std::f64::consts::PI / 10.8, "milliradians in a column of arcmin", ANGLES),
+    force(KGF_N, "forces in kgf in a column of N", TIP_LOADS),
+    force(1.0 / KGF_N, "forces multiplied by g although they were in N", TIP_LOADS),
+    force(LBF_N, "forces in lbf in a column of N", TIP_LOADS),
+    force(1.0 / LBF_N, "forces multiplied by 4.448 although they were in N", TIP_LOADS),
+    force(1e3, "forces in kN in a column of N", TIP_LOADS),
+    force(KGF_N, "torques in kgf m in a column of N m", ANGLES),
+    force(1.0 / KGF_N, "torques multiplied by g although they were in N m", ANGLES),
+    payload(POUND_KG, "payloads in pounds in a column of kg"),
+    payload(1.0 / POUND_KG, "payloads multiplied by 0.4536 although they were in kg"),
+    payload(1.0 / KGF_N, "payloads as weights in N in a column of kg"),
+    payload(1e-3, "payloads in grams in a column of kg"),
 ];
 
 #[cfg(test)]
@@ -83,6 +125,27 @@ mod tests {
             SLIPS.iter().filter(|slip| slip.is_of(Channel::Static)).map(|slip| slip.factor).collect();
         assert!(of_lengths.contains(&(1000.0 / 25.4)) && !of_lengths.contains(&60.0), "{of_lengths:?}");
         assert!(SLIPS.iter().any(|slip| slip.is_of(Channel::Modal) && slip.factor == 60.0));
+    }
+
+    #[test]
+    fn the_units_of_loads_are_among_those_of_the_readings_of_the_tip() {
+        let of = |channel: Channel, column: UnitColumn| {
+            let own = SLIPS.iter().filter(move |slip| slip.is_of(channel) && slip.column == column);
+            own.map(|slip| slip.factor).collect::<Vec<_>>()
+        };
+        // NIST SP 811: 1 kgf = 9.80665 N, 1 lbf = 4.448 222 N, 1 lb = 0.453 592 37 kg
+        for factor in [9.80665, 4.448_222, 1.0 / 9.80665, 1.0 / 4.448_222] {
+            let forces = of(Channel::Static, UnitColumn::Force);
+            assert!(forces.iter().any(|f| (f / factor - 1.0).abs() < 1e-6), "{factor}");
+        }
+        for factor in [0.453_592_37, 1.0 / 0.453_592_37, 1e-3] {
+            let payloads = of(Channel::Static, UnitColumn::Payload);
+            assert!(payloads.iter().any(|f| (f / factor - 1.0).abs() < 1e-9), "{factor}");
+        }
+        assert!(
+            of(Channel::Modal, UnitColumn::Payload).is_empty(),
+            "a frequency is not proportional to a payload"
+        );
     }
 
     #[test]

@@ -8,6 +8,7 @@
 use super::envelope::envelope;
 use super::gears::bearing;
 use super::row::{Order, Row};
+use super::usual;
 use crate::catalog::envelope::Envelope;
 use crate::catalog::gear::{Gear, GearKind, LifeLaw};
 use crate::catalog::motor::{Motor, MotorKind};
@@ -107,6 +108,7 @@ fn check(row: &Row) {
         let hint = "speeds are the output's; the motor's are the ratio times as large";
         row.warn("max_speed_rpm", format!("= {speed} is fast for a joint"), hint);
     }
+    usual::of_actuator(row);
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::envelope::envelope;
 use super::row::{Order, Row};
+use super::usual;
 use crate::catalog::gear::{BearingRatings, Gear, GearKind, LifeLaw};
 
 /// The gear that a row describes; `None` if its name or source is blank or not valid.
@@ -9,6 +10,7 @@ pub(crate) fn gear(row: &Row) -> Option<Gear> {
     check(row);
     let (series, size, ratio) = (row.filled("series")?.to_string(), row.count("size")?, row.number("ratio")?);
     let kind = kind(row);
+    let ratings = if kind == GearKind::Belt { Ratings::of_belt(row) } else { Ratings::of_gear(row) };
     Some(Gear {
         id: format!("{series}-{size}-{ratio}"),
         series,
@@ -17,11 +19,11 @@ pub(crate) fn gear(row: &Row) -> Option<Gear> {
         ratio,
         life: life(row, kind),
         rated_torque_nm: row.number("rated_torque_nm"),
-        repeated_peak_torque_nm: row.number("repeated_peak_torque_nm"),
-        average_torque_limit_nm: row.number("average_torque_limit_nm"),
-        momentary_peak_torque_nm: row.number("momentary_peak_torque_nm"),
+        repeated_peak_torque_nm: ratings.repeated_peak_nm,
+        average_torque_limit_nm: ratings.average_nm,
+        momentary_peak_torque_nm: ratings.momentary_peak_nm,
         max_input_speed_rpm: row.number("max_input_speed_rpm"),
-        average_input_speed_limit_rpm: row.number("average_input_speed_limit_rpm"),
+        average_input_speed_limit_rpm: ratings.average_speed_rpm,
         inertia_input_kgm2: row.number("inertia_input_kgm2"),
         mass_component_set_kg: row.number("mass_component_set_kg"),
         mass_housed_unit_kg: row.number("mass_housed_unit_kg"),
@@ -43,6 +45,41 @@ pub(crate) fn gear(row: &Row) -> Option<Gear> {
         efficiency: row.number("efficiency_rated_2000rpm"),
         provenance: row.provenance()?,
     })
+}
+
+/// The ratings of a gear that another rating of its row may stand for.
+struct Ratings {
+    average_nm: Option<f64>,
+    repeated_peak_nm: Option<f64>,
+    momentary_peak_nm: Option<f64>,
+    average_speed_rpm: Option<f64>,
+}
+
+impl Ratings {
+    /// The ratings as the row states them.
+    fn of_gear(row: &Row) -> Self {
+        Self {
+            average_nm: row.number("average_torque_limit_nm"),
+            repeated_peak_nm: row.number("repeated_peak_torque_nm"),
+            momentary_peak_nm: row.number("momentary_peak_torque_nm"),
+            average_speed_rpm: row.number("average_input_speed_limit_rpm"),
+        }
+    }
+
+    /// The ratings of a toothed belt. Its makers rate one torque, which holds at a speed and for any duration, and a
+    /// largest speed; peaks are divided by a service factor, and not rated. So a blank rating is the next lower one of
+    /// the row, with which every check is made and none is too mild.
+    fn of_belt(row: &Row) -> Self {
+        let stated = Self::of_gear(row);
+        let average_nm = stated.average_nm.or(row.number("rated_torque_nm"));
+        let repeated_peak_nm = stated.repeated_peak_nm.or(average_nm);
+        Self {
+            average_nm,
+            repeated_peak_nm,
+            momentary_peak_nm: stated.momentary_peak_nm.or(repeated_peak_nm),
+            average_speed_rpm: stated.average_speed_rpm.or(row.number("max_input_speed_rpm")),
+        }
+    }
 }
 
 /// The kind of gear that a row describes. A blank cell means a strain-wave gear.
@@ -140,6 +177,7 @@ fn check(row: &Row) {
     if kind(row) == GearKind::StrainWave {
         usual_figures(row);
     }
+    usual::of_gear(row, kind(row) == GearKind::Direct);
 }
 
 fn order(row: &Row, columns: &[&'static str], order: Order, hint: &str) {

@@ -1,7 +1,7 @@
 //! From the text of a catalog file to parts, with a list of all faults.
 //!
 //! [`table`] divides the text into rows, [`row`] checks single cells, and one module for each file has the checks
-//! within a row. [`trend`] compares rows with each other.
+//! within a row. [`usual`] compares the numbers of a row with each other, [`trend`] rows with each other.
 
 pub(crate) mod actuators;
 pub(crate) mod efficiency;
@@ -15,3 +15,4 @@ pub(crate) mod profiles;
 pub(crate) mod row;
 pub(crate) mod table;
 pub(crate) mod trend;
+pub(crate) mod usual;

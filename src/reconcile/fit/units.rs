@@ -7,9 +7,11 @@
 
 use super::stats::median;
 use crate::arm::effect::channel::Channel;
-use crate::arm::effect::wrong_unit;
+use crate::arm::effect::wrong_unit::{self, UnitColumn, UnitSlip};
 use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::prepared::Forward;
+use crate::reconcile::forward::statics::StaticPose;
+use crate::reconcile::model::candidates::possible_slips;
 use crate::reconcile::model::parameters::Candidate;
 use crate::reconcile::readings::components::{DISPLACEMENT, FEWEST_ALIKE};
 
@@ -58,7 +60,9 @@ pub(crate) fn stretches(forward: &Forward, best: &Coefficients) -> Vec<Stretch> 
             .fold((0.0, 0.0), |(both, square), (d, model)| (both + d.value * model, square + model * model));
         // least-squares factor between readings and nominal model
         let ratio = both / square;
-        let units = wrong_unit::SLIPS.iter().filter(|unit| unit.is_of(channel));
+        // the noise of readings under a load in another unit is that of the stated unit
+        let is_of = |unit: &&UnitSlip| unit.is_of(channel) && unit.column == UnitColumn::Reading;
+        let units = wrong_unit::SLIPS.iter().filter(is_of);
         let slips = units.map(|unit| unit.factor).filter(|factor| *factor > 1.0);
         let factor = slips.min_by(|a, b| {
             let apart = |factor: &f64| libm::log(ratio / factor).abs();
@@ -78,9 +82,15 @@ const OPPOSITE_COSINE: f64 = -0.9;
 /// and the nominal arm by at least this factor.
 const LEAST_IMPROVEMENT: f64 = 3.0;
 
+/// Sentences on static readings that seem to follow another convention than the columns state: another sign, or another
+/// unit.
+pub(crate) fn other_conventions(forward: &Forward) -> Vec<String> {
+    [other_signs(forward), other_units(forward)].concat()
+}
+
 /// One sentence for each component of the displacement whose readings seem to have the opposite sign. An example is a
 /// dial gauge that reads positive when its plunger is pushed in.
-pub(crate) fn other_signs(forward: &Forward) -> Vec<String> {
+fn other_signs(forward: &Forward) -> Vec<String> {
     let nominal = forward.predict(&forward.coefficients(&forward.nominal));
     let range = forward.range(Channel::Static);
     let of_component = |c: usize| {
@@ -99,6 +109,62 @@ pub(crate) fn other_signs(forward: &Forward) -> Vec<String> {
         })
     };
     (0..3).filter_map(of_component).collect()
+}
+
+/// The factor between two units by which readings seem to be off, of the units `slips`. Each of the `pairs` is a reading
+/// and its prediction for the nominal arm. `None` if there is none, or if it does not bring the readings at
+/// least [`LEAST_IMPROVEMENT`] times nearer to the nominal arm.
+fn seeming_slip<'s>(pairs: &[(f64, f64)], slips: &[&'s UnitSlip]) -> Option<&'s UnitSlip> {
+    let sum = |of: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>();
+    let (both, square) = (sum(&|(d, m)| d * m), sum(&|(_, m)| m * m));
+    if pairs.len() < FEWEST_ALIKE || square == 0.0 || both <= 0.0 {
+        return None;
+    }
+    let apart = |unit: &UnitSlip| libm::log(both / square / unit.factor).abs();
+    let nearest = slips.iter().copied().min_by(|a, b| apart(a).total_cmp(&apart(b)))?;
+    let misfit = |factor: f64| sum(&|(d, m)| (d - factor * m).powi(2)).sqrt();
+    let is_near = apart(nearest) < UNIT_TOLERANCE && misfit(1.0) > LEAST_IMPROVEMENT * misfit(nearest.factor);
+    is_near.then_some(nearest)
+}
+
+/// One sentence for each component of the displacement, and for each kind of load, whose readings seem to be in another
+/// unit while the other static readings are not. If all of them are, that is the effect `wrong_unit`.
+fn other_units(forward: &Forward) -> Vec<String> {
+    let nominal = forward.predict(&forward.coefficients(&forward.nominal));
+    let pairs = |own: &[usize]| -> Vec<(f64, f64)> {
+        own.iter().map(|&i| (forward.data[i].value, nominal[i])).collect()
+    };
+    let possible = possible_slips(forward, Channel::Static);
+    let of = |column: UnitColumn| -> Vec<&UnitSlip> {
+        possible.iter().copied().filter(|unit| unit.column == column).collect()
+    };
+    let (readings, forces, payloads) =
+        (of(UnitColumn::Reading), of(UnitColumn::Force), of(UnitColumn::Payload));
+    let range = forward.range(Channel::Static);
+    let of_component =
+        |c: usize| -> Vec<usize> { range.clone().filter(|i| forward.data[*i].component == c).collect() };
+    let loaded = |payload: bool| -> Vec<usize> {
+        let all = forward.statics.iter().flat_map(StaticPose::loaded_by);
+        let own = all.filter(|(_, by)| by.payload == payload && by.force != payload);
+        own.map(|(datum, _)| datum).collect()
+    };
+    let parts: [(String, Vec<usize>, Vec<&UnitSlip>); 5] = [
+        (DISPLACEMENT.values[0].into(), of_component(0), readings.clone()),
+        (DISPLACEMENT.values[1].into(), of_component(1), readings.clone()),
+        (DISPLACEMENT.values[2].into(), of_component(2), readings),
+        ("every reading under a payload alone".into(), loaded(true), payloads),
+        ("every reading under a force alone".into(), loaded(false), forces),
+    ];
+    let is_part = |own: &[usize]| own.len() < range.len();
+    let found = parts.into_iter().filter(|(_, own, _)| is_part(own)).filter_map(|(what, own, slips)| {
+        let unit = seeming_slip(&pairs(&own), &slips)?;
+        let factor = crate::report::number::significant(unit.factor, 4);
+        Some(format!(
+            "{what} is about {factor} times what the arm as given says: {}? It was taken as it is",
+            unit.cause
+        ))
+    });
+    found.collect()
 }
 
 /// Multiplies the declared standard deviations of the channels named in `stretches` by their factors.

@@ -154,6 +154,26 @@ pub(crate) fn prepare(
     poses
 }
 
+/// What loads the arm in a static reading.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct LoadedBy {
+    /// Whether there is a payload.
+    pub payload: bool,
+    /// Whether a force acts on the tip.
+    pub force: bool,
+}
+
+impl StaticPose {
+    /// The index of each reading of the pose in the campaign's data, with what loads the arm in it.
+    pub(crate) fn loaded_by(&self) -> impl Iterator<Item = (usize, LoadedBy)> + '_ {
+        self.loads.iter().flat_map(|load| {
+            let by =
+                LoadedBy { payload: load.payload.mass_kg > 0.0, force: load.force_n != Vector3::zeros() };
+            load.data.iter().flatten().map(move |datum| (*datum, by))
+        })
+    }
+}
+
 impl PoseGeometry {
     /// Computes the geometry of a pose with the mechanics of the full model.
     pub fn new(layout: &Layout, nominal: &Subject, pose_deg: &[f64]) -> Self {

@@ -10,11 +10,12 @@ use crate::arm::effect::immersion::PAYLOAD_DENSITY;
 use crate::arm::effect::kind::{ElasticRotation, Freed, Kind, Parameter, Place, Removes, Scale, Setting};
 use crate::arm::effect::soft_windup::MIDDLE_SLOPE;
 use crate::arm::effect::validate::fits_nominal;
-use crate::arm::effect::wrong_unit;
+use crate::arm::effect::wrong_unit::{self, UnitColumn, UnitSlip};
 use crate::arm::effect::{connection_compliance, servo_compliance, thermal_modulus, travel_compliance};
 use crate::arm::joint_law::Curve;
 use crate::arm::structure::Piece;
 use crate::reconcile::forward::prepared::Forward;
+use crate::reconcile::forward::statics::StaticPose;
 
 /// The candidates of a campaign: every effect at every place of the arm that the channels of the campaign could show.
 pub fn candidates(forward: &Forward) -> Vec<Candidate> {
@@ -314,8 +315,12 @@ pub(crate) fn largest_torque_nm(forward: &Forward, at: &str) -> f64 {
     statics.chain(modal).map(|t| t[j].abs()).chain(bench).fold(0.0, f64::max)
 }
 
-/// Candidates for readings in a wrong unit. The factor between two units is known exactly, so there is no free
-/// parameter.
+/// Two factors between units whose logarithms differ by less than this are one candidate, because a calibrated stiffness
+/// makes up for the difference. Of tenths (10) and kgf (9.807) that is so.
+const ONE_FACTOR: f64 = 0.03;
+
+/// Candidates for readings, forces or payloads in a wrong unit. The factor between two units is known exactly, so there
+/// is no free parameter.
 fn unit_slips(forward: &Forward) -> Vec<Candidate> {
     let channels = Channel::ALL.into_iter().filter(|c| !forward.range(*c).is_empty());
     let slip = |channel: Channel, factor: f64| Candidate {
@@ -328,8 +333,50 @@ fn unit_slips(forward: &Forward) -> Vec<Candidate> {
     };
     channels
         .flat_map(|channel| {
-            let own = wrong_unit::SLIPS.iter().filter(move |unit| unit.is_of(channel));
-            own.map(move |unit| slip(channel, unit.factor))
+            let factors = unit_factors(&possible_slips(forward, channel));
+            factors.into_iter().map(move |factor| slip(channel, factor))
         })
         .collect()
+}
+
+/// The units that a column of the channel can be in by mistake. A campaign without payloads has no wrong unit of them.
+pub(crate) fn possible_slips(forward: &Forward, channel: Channel) -> Vec<&'static UnitSlip> {
+    let loads = || forward.statics.iter().flat_map(StaticPose::loaded_by).map(|(_, by)| by);
+    let has = |column: UnitColumn| match column {
+        UnitColumn::Force => channel != Channel::Static || loads().any(|by| by.force),
+        UnitColumn::Payload => loads().any(|by| by.payload),
+        UnitColumn::Reading => true,
+    };
+    wrong_unit::SLIPS.iter().filter(|unit| unit.is_of(channel) && has(unit.column)).collect()
+}
+
+/// The different factors of the units `slips`. Of factors that nearly agree, that of a force is taken, because forces in
+/// kgf are more usual than readings in tenths.
+fn unit_factors(slips: &[&UnitSlip]) -> Vec<f64> {
+    let (forces, others): (Vec<&UnitSlip>, Vec<&UnitSlip>) =
+        slips.iter().copied().partition(|unit| unit.column == UnitColumn::Force);
+    let mut out: Vec<f64> = Vec::new();
+    for factor in forces.into_iter().chain(others).map(|unit| unit.factor) {
+        if out.iter().all(|known| libm::log(known / factor).abs() > ONE_FACTOR) {
+            out.push(factor);
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn factors_that_a_calibration_cannot_tell_apart_are_one_candidate() {
+        let of = |has_forces: bool| {
+            let own = wrong_unit::SLIPS.iter().filter(|unit| unit.is_of(Channel::Static));
+            let own = own.filter(|unit| has_forces || unit.column != UnitColumn::Force);
+            unit_factors(&own.collect::<Vec<_>>())
+        };
+        assert!(of(true).contains(&9.80665) && !of(true).contains(&10.0));
+        assert!(of(false).contains(&10.0) && !of(false).contains(&9.80665));
+        assert_eq!(of(true).iter().filter(|factor| **factor == 1e-3).count(), 1, "metres and grams");
+    }
 }

@@ -15,3 +15,4 @@ pub(crate) mod record_report;
 pub(crate) mod report;
 pub(crate) mod stage;
 pub(crate) mod too_little;
+pub(crate) mod unit_words;
