@@ -85,16 +85,12 @@ pub(super) struct Again<'a> {
 ///
 /// # Errors
 /// The study has faults, its results cannot be written, or the user stops the search.
-pub(super) fn rerun(
-    outcome: &Outcome,
-    &Again { study, how, dir, keep }: &Again,
-    setup: Setup,
-) -> Result<Rerun, Failure> {
+pub(super) fn rerun(outcome: &Outcome, again: &Again, setup: Setup) -> Result<Rerun, Failure> {
     let catalogs = setup.catalogs;
     if outcome.verdict != Verdict::Explained {
-        return Ok(not_explained(outcome, study));
+        return Ok(not_explained(outcome, again.study));
     }
-    let (nominal, text) = study_of(study, catalogs)?;
+    let (nominal, text) = study_of(again.study, catalogs)?;
     let name = nominal.name.clone();
     let calibrated: Vec<(String, f64)> =
         outcome.calibrated.iter().map(|c| (c.name.clone(), c.factor.value)).collect();
@@ -105,19 +101,7 @@ pub(super) fn rerun(
     let nominal = Asked { study: nominal, text, corrections: Vec::new() };
     let (mut found, mut kept) = (Vec::new(), Files::new());
     for (asked, folder) in [(&nominal, "nominal"), (&corrected, "corrected")] {
-        let results = dir.join("study").join(folder);
-        let keep = &|files: &[(String, Vec<u8>)]| keep(&[kept.clone(), placed(files, folder)?].concat());
-        let (record, unfinished) = (None, &unfinished_in(dir, folder));
-        let settings = SearchSettings {
-            setup,
-            dir: &results,
-            keep,
-            unfinished,
-            how,
-            supplements: &SupplementArgs::default(),
-            record,
-        };
-        match search(asked, &settings) {
+        match run_once(asked, folder, &kept, again, setup) {
             Ok(written) => {
                 kept.extend(placed(&written.files, folder)?);
                 if written.exit == Exit::Interrupted {
@@ -140,6 +124,28 @@ pub(super) fn rerun(
     let mut rerun = told(&name, &corrected, &found, &changes);
     rerun.files.extend(kept);
     Ok(rerun)
+}
+
+/// Searches the study with one of the two models, whose results go into `folder`. `kept` has the files of the run
+/// before.
+fn run_once(
+    asked: &Asked,
+    folder: &str,
+    kept: &Files,
+    again: &Again,
+    setup: Setup,
+) -> Result<Written, Failure> {
+    let keep = |files: &[(String, Vec<u8>)]| (again.keep)(&[kept.clone(), placed(files, folder)?].concat());
+    let settings = SearchSettings {
+        setup,
+        dir: &again.dir.join("study").join(folder),
+        keep: &keep,
+        unfinished: &unfinished_in(again.dir, folder),
+        how: again.how,
+        supplements: &SupplementArgs::default(),
+        record: None,
+    };
+    search(asked, &settings)
 }
 
 /// The files of one run with their manifest, under their paths in the folder of the campaign's result. `folder` is

@@ -312,21 +312,8 @@ impl Analysis<'_> {
                 return (Verdict::InsufficientData, vec![text]);
             }
         }
-        // if only the poses of one fold show an effect, a fit without them knows nothing of it and cannot predict them
-        let held_out =
-            held_out.filter(|k| !self.shows_in_one_fold() || k.rms_after > TOO_FAR_OFF * self.expected_rms);
-        if let Some(k) = held_out.filter(|k| k.rms_after > k.rms_before + 0.02) {
-            let [after, before] = [k.rms_after, k.rms_before].map(|rms| format!("{rms:.2} sigma"));
-            let text = does_not_predict(&self.best.model.label(), &after, &before);
-            return (Verdict::InsufficientData, vec![text]);
-        }
-        if let Some(k) = held_out.filter(|k| k.rms_after > TOO_FAR_OFF) {
-            let text = format!(
-                "with {} the readings of poses held out of the fit are still {:.1} sigma off: something else is missing",
-                self.best.model.label(),
-                k.rms_after
-            );
-            return (Verdict::Unexplained, vec![text]);
+        if let Some((verdict, text)) = held_out.and_then(|held_out| self.badly_predicted(held_out)) {
+            return (verdict, vec![text]);
         }
         if let Some(&i) = caution::may_be_absent(&self.best, self.ends()).first() {
             let text = format!(
@@ -336,6 +323,27 @@ impl Analysis<'_> {
             return (Verdict::InsufficientData, vec![text]);
         }
         (Verdict::Explained, vec![self.gap_sentence()])
+    }
+
+    /// Verdict and reason if the best effects predict the readings of poses badly that are held out of the fit.
+    fn badly_predicted(&self, held_out: HeldOut) -> Option<(Verdict, String)> {
+        let HeldOut { rms_before, rms_after, .. } = held_out;
+        // without the poses that alone show an effect nothing is known of it, so nothing can be predicted either
+        if self.shows_in_one_fold() && rms_after <= TOO_FAR_OFF * self.expected_rms {
+            return None;
+        }
+        if rms_after > rms_before + 0.02 {
+            let [after, before] = [rms_after, rms_before].map(|rms| format!("{rms:.2} sigma"));
+            let text = does_not_predict(&self.best.model.label(), &after, &before);
+            return Some((Verdict::InsufficientData, text));
+        }
+        (rms_after > TOO_FAR_OFF).then(|| {
+            let text = format!(
+                "with {} the readings of poses held out of the fit are still {rms_after:.1} sigma off: something else is missing",
+                self.best.model.label()
+            );
+            (Verdict::Unexplained, text)
+        })
     }
 
     /// Verdict and reasons if the evidence for the best effects is weak. These effects are only suspected. The

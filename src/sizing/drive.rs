@@ -227,7 +227,7 @@ pub fn critical_rpm(frequency_hz: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{f11_10, hfuc_58_100, housed};
+    use super::super::testing::{component_set, f11_10, hfuc_58_100, housed};
     use super::*;
     use crate::sizing::requirement::MotionRequirement;
 
@@ -245,14 +245,7 @@ mod tests {
         // Eq 9 adds the inertia of the gear's input: 0.00273 kg m² (gears.csv, HFUC-58-100), seven times the inertia
         // of the rotor.
         let (gear, motor) = (hfuc_58_100(), f11_10());
-        let drive = Drive {
-            gear: &gear,
-            motor: &motor,
-            gear_mass: GearMass::ComponentSet,
-            bearing: BearingSource::OfGear,
-            extras: ExtrasSource::NONE,
-            stage: Stage::NONE,
-        };
+        let drive = component_set(&gear, &motor);
         let inertia = drive.input_inertia_kgm2().unwrap();
         assert_eq!(inertia, 0.00312);
         assert_eq!(format!("{:.2}", rotary_torque_motor_nm(inertia, 100.0, 3.7)), "1.15");
@@ -272,17 +265,7 @@ mod tests {
     #[test]
     fn the_mass_is_that_of_the_build_asked_for_and_a_blank_is_named() {
         let (gear, mut motor) = (hfuc_58_100(), f11_10());
-        let mass = |gear_mass, motor: &Motor| {
-            Drive {
-                gear: &gear,
-                motor,
-                gear_mass,
-                bearing: BearingSource::OfGear,
-                extras: ExtrasSource::NONE,
-                stage: Stage::NONE,
-            }
-            .mass_kg()
-        };
+        let mass = |gear_mass, motor: &Motor| Drive { gear_mass, ..housed(&gear, motor) }.mass_kg();
         assert!((mass(GearMass::ComponentSet, &motor).unwrap() - 12.2).abs() < 1e-12, "Table 1");
         assert!((mass(GearMass::HousedUnit, &motor).unwrap() - 22.1).abs() < 1e-12);
         motor.mass_kg = None;

@@ -5,11 +5,9 @@ use super::super::duty::{DutyCycle, HeatWeights, Phase, PhaseKind};
 use super::super::limits::DriveLimits;
 use super::super::requirement::MotionRequirement;
 use super::super::stated::{StatedDuty, StatedPhase};
-use super::super::testing::{any_gear, any_motion, any_motor, gear, motor};
+use super::super::testing::{any_gear, any_motion, any_motor, component_set, gear, motor};
 use super::*;
-use crate::arm::bearing::BearingSource;
-use crate::arm::extras::ExtrasSource;
-use crate::catalog::gear::{Gear, GearKind, GearMass, LifeLaw};
+use crate::catalog::gear::{Gear, GearKind, LifeLaw};
 use crate::catalog::motor::Motor;
 use crate::sizing::motor_curve::continuous_torque_nm;
 use proptest::prelude::*;
@@ -21,17 +19,6 @@ fn motion() -> JointMotion {
 fn parts() -> (Gear, Motor) {
     let gear = gear("CSG-50-100", [600.0, 900.0, 700.0, 2000.0], [3500.0, 2500.0], 0.00125, [3.2, 8.9]);
     (gear, motor("M", [4.0, 20.0], [3000.0, 4000.0], 0.0003, 4.0))
-}
-
-fn drive<'c>(gear: &'c Gear, motor: &'c Motor) -> Drive<'c> {
-    Drive {
-        gear,
-        motor,
-        gear_mass: GearMass::ComponentSet,
-        bearing: BearingSource::OfGear,
-        extras: ExtrasSource::NONE,
-        stage: crate::arm::Stage::NONE,
-    }
 }
 
 /// Root mean square of the motor's torque over a cycle that is stepped through in time \[N m\]. The joint lifts
@@ -69,7 +56,7 @@ fn simulated_rms_nm(drive: &Drive, motion: &JointMotion, [t_nm, t_lin_nm]: [f64;
 #[test]
 fn the_mean_square_is_that_of_the_worse_direction_stepped_through_in_time() {
     let (gear, motor) = parts();
-    let drive = drive(&gear, &motor);
+    let drive = component_set(&gear, &motor);
     for has_brake in [false, true] {
         let motion = motion().of_joint(None, has_brake, None);
         for torques in [[0.0, 80.0], [100.0, 40.0], [40.0, 100.0], [100.0, 98.0], [250.0, 0.0], [0.0, 0.0]] {
@@ -86,7 +73,7 @@ fn the_mean_square_is_that_of_the_worse_direction_stepped_through_in_time() {
 fn a_vertical_axis_heats_its_motor_by_its_ramps_alone() {
     // inertia outboard 4 kg m², ratio 100, η = 0.78, acceleration 5 rad/s²
     let (gear, motor) = parts();
-    let drive = drive(&gear, &motor);
+    let drive = component_set(&gear, &motor);
     let demand = motion().demand(0.0, 4.0);
     let (own, driving, driven): (f64, f64, f64) = (0.00155 * 100.0 * 5.0, 20.0 / 78.0, 20.0 * 0.78 / 100.0);
     let by_hand: f64 =
@@ -102,7 +89,7 @@ fn the_worked_example_of_a_vertical_axis() {
     let mut gear = gear("CSG-20-100", [52.0, 107.0, 64.0, 191.0], [6500.0, 3500.0], 1.93e-5, [0.28, 0.98]);
     gear.efficiency = Some(0.78);
     let motor = motor("MF0060008", [0.29, 2.3], [4140.0, 4469.0], 2.1e-5, 0.13);
-    let drive = drive(&gear, &motor);
+    let drive = component_set(&gear, &motor);
     let own = drive.rotary_torque_motor_nm(&motion).unwrap();
     let (up, down) = (82.94 / 78.0 + own, -82.94 * 0.78 / 100.0 - own);
     assert!((up - 1.078).abs() < 1e-3 && (down + 0.662).abs() < 1e-3, "{up}, {down}");
@@ -124,13 +111,13 @@ fn beyond_the_rated_speed_a_motor_gives_its_rated_power() {
 fn a_study_may_turn_the_check_off() {
     let (gear, motor) = parts();
     let off = MotionRequirement { checks_motor_heat: false, ..Default::default() }.joint_motion(1.0, None);
-    assert_eq!(MotorHeat::of(&drive(&gear, &motor), &off), Ok(MotorHeat::NONE));
+    assert_eq!(MotorHeat::of(&component_set(&gear, &motor), &off), Ok(MotorHeat::NONE));
 }
 
 #[test]
 fn a_stated_duty_heats_the_motor_phase_by_phase() {
     let (gear, motor) = parts();
-    let drive = drive(&gear, &motor);
+    let drive = component_set(&gear, &motor);
     let phase = |torque_nm, time_s, speed_rpm| StatedPhase { torque_nm, time_s, speed_rpm };
     let phases =
         vec![phase(200.0, 0.3, 7.0), phase(100.0, 3.0, 14.0), phase(-50.0, 0.4, 7.0), phase(90.0, 0.3, 0.0)];
@@ -232,7 +219,7 @@ proptest! {
         gears in prop::array::uniform2(any_gear()), motors in prop::array::uniform2(any_motor()),
         motion in any_motion(), t_nm in 0.0..400.0f64, lin_nm in 0.0..400.0f64,
     ) {
-        let limits = |i: usize| DriveLimits::of(&drive(&gears[i], &motors[i]), &motion);
+        let limits = |i: usize| DriveLimits::of(&component_set(&gears[i], &motors[i]), &motion);
         if let (Ok(a), Ok(b)) = (limits(0), limits(1)) {
             let demand = motion.demand_of_torques(t_nm, lin_nm);
             prop_assert!(!(a.cover(&b) && b.hold(&demand)) || a.hold(&demand));
@@ -276,7 +263,7 @@ fn the_makers_example_of_an_integrated_actuator_comes_out() {
     let speed_rad_s = 40.0 * std::f64::consts::PI / 30.0;
     let motion = asked.joint_motion(1.0, Some(speed_rad_s)).of_joint(Some(speed_rad_s), true, None);
     let demand = motion.demand(5.0, 1.3);
-    let drive = drive(&gear, &motor);
+    let drive = component_set(&gear, &motor);
     let peak_nm = drive.peak_motor_torque_nm(&motion, demand.peak_torque_nm()).unwrap() * 50.0;
     let by_hand = 5.0 + (1.3 + 0.86) * speed_rad_s / 0.1;
     assert!((peak_nm - by_hand).abs() < 1e-9 && (peak_nm - 95.0).abs() < 0.6, "{peak_nm}");

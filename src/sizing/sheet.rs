@@ -392,11 +392,8 @@ fn shortened(name: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{char_lynn_j_8_2, f11_10, hfuc_40_100, hfuc_58_100};
+    use super::super::testing::{char_lynn_j_8_2, component_set, f11_10, hfuc_40_100, hfuc_58_100};
     use super::*;
-    use crate::arm::bearing::BearingSource;
-    use crate::arm::extras::ExtrasSource;
-    use crate::catalog::gear::GearMass;
     use crate::catalog::motor::Motor;
     use crate::sizing::demand::LinearReading;
     use crate::sizing::requirement::MotionRequirement;
@@ -405,14 +402,7 @@ mod tests {
         let study = MotionRequirement { linear_reading: LinearReading::Paper, ..Default::default() };
         let motion = study.joint_motion(1.35, None);
         let gear = hfuc_58_100();
-        let drive = Drive {
-            gear: &gear,
-            motor,
-            gear_mass: GearMass::ComponentSet,
-            bearing: BearingSource::OfGear,
-            extras: ExtrasSource::NONE,
-            stage: crate::arm::Stage::NONE,
-        };
+        let drive = component_set(&gear, motor);
         JointSizingRow::new("j2", &drive, &motion, &motion.demand(568.3, 0.0), 80.0)
     }
 
@@ -436,14 +426,7 @@ mod tests {
         let long = MotionRequirement { life_h: 1e6, ..Default::default() };
         let motion = long.joint_motion(1.35, None);
         let (gear, motor) = (hfuc_58_100(), f11_10());
-        let drive = Drive {
-            gear: &gear,
-            motor: &motor,
-            gear_mass: GearMass::ComponentSet,
-            bearing: BearingSource::OfGear,
-            extras: ExtrasSource::NONE,
-            stage: crate::arm::Stage::NONE,
-        };
+        let drive = component_set(&gear, &motor);
         let row = JointSizingRow::new("j2", &drive, &motion, &motion.demand(400.0, 1.0), 80.0);
         let life = row.checks.iter().find(|c| c.kind == CheckKind::GearLife).unwrap();
         let part = life.allowed.unwrap() / life.needed.unwrap();
@@ -475,14 +458,7 @@ mod tests {
     fn a_fixed_selection_that_fails_is_remarked_below_the_table() {
         let motion = MotionRequirement::default().joint_motion(1.35, None);
         let (gear, motor) = (hfuc_40_100(), f11_10());
-        let drive = Drive {
-            gear: &gear,
-            motor: &motor,
-            gear_mass: GearMass::ComponentSet,
-            bearing: BearingSource::OfGear,
-            extras: ExtrasSource::NONE,
-            stage: crate::arm::Stage::NONE,
-        };
+        let drive = component_set(&gear, &motor);
         let row = JointSizingRow::new("j2", &drive, &motion, &motion.demand_of_torques(500.0, 100.0), 0.0);
         assert_eq!(row.fails[0], "gear peak 600 N m needed, 568 allowed");
         assert!(row.margin.unwrap() < 1.0);

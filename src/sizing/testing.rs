@@ -35,6 +35,11 @@ pub(crate) fn housed<'c>(gear: &'c Gear, motor: &'c Motor) -> Drive<'c> {
     }
 }
 
+/// A drive of a gear as component set and a motor, without extras.
+pub(crate) fn component_set<'c>(gear: &'c Gear, motor: &'c Motor) -> Drive<'c> {
+    Drive { gear_mass: GearMass::ComponentSet, ..housed(gear, motor) }
+}
+
 /// A gear and a motor that pass every check under 300 N m of static and 100 N m of linear torque, 1.35 m from the
 /// tip.
 pub(crate) fn ample() -> (Gear, Motor) {

@@ -114,57 +114,8 @@ pub(crate) fn alias<'r>(row: &'r Row) -> Option<&'r str> {
 }
 
 fn check(row: &Row) {
-    order(
-        row,
-        &["rated_torque_nm", "average_torque_limit_nm", "repeated_peak_torque_nm"],
-        Order::NotFalling,
-        "rated <= average limit <= repeated peak < momentary peak",
-    );
-    order(
-        row,
-        &["repeated_peak_torque_nm", "momentary_peak_torque_nm"],
-        if kind(row) == GearKind::StrainWave { Order::Rising } else { Order::NotFalling },
-        "rated <= average limit <= repeated peak < momentary peak",
-    );
-    order(
-        row,
-        &["k1_nm_per_rad", "k2_nm_per_rad", "k3_nm_per_rad"],
-        Order::NotFalling,
-        "a gear stiffens: K1 <= K2 <= K3",
-    );
-    order(
-        row,
-        &["t1_nm", "t2_nm"],
-        Order::Rising,
-        "the first segment of the torsion curve ends before the second",
-    );
-    order(
-        row,
-        &["average_input_speed_limit_rpm", "max_input_speed_rpm"],
-        Order::NotFalling,
-        "the limit for the average speed is not above that for the peak",
-    );
-    order(
-        row,
-        &["mass_component_set_kg", "mass_housed_unit_kg"],
-        Order::Rising,
-        "the housed unit contains the component set",
-    );
-    for limit in ["buckling_torque_nm", "ratcheting_torque_nm"] {
-        order(
-            row,
-            &["momentary_peak_torque_nm", limit],
-            Order::NotFalling,
-            "a gear survives its momentary peak torque",
-        );
-    }
-    if let (Some(pitch_m), Some(outer_mm)) =
-        (row.number("bearing_pitch_diameter_m"), row.number("outer_diameter_mm"))
-        && pitch_m * 1e3 >= outer_mm
-    {
-        let problem = format!("= {pitch_m} is not within outer_diameter_mm = {outer_mm}");
-        row.fault("bearing_pitch_diameter_m", problem, "write the pitch diameter in m, the outer one in mm");
-    }
+    ratings_in_order(row);
+    pitch_circle_within(row);
     if let Some(exponent) = row.number("life_exponent") {
         row.within(
             "life_exponent",
@@ -180,9 +131,50 @@ fn check(row: &Row) {
     usual::of_gear(row, kind(row) == GearKind::Direct);
 }
 
-fn order(row: &Row, columns: &[&'static str], order: Order, hint: &str) {
-    let figures: Vec<_> = columns.iter().map(|column| (*column, row.number(column))).collect();
-    row.ascending(&figures, order, hint);
+fn ratings_in_order(row: &Row) {
+    let torques = "rated <= average limit <= repeated peak < momentary peak";
+    let to_momentary = if kind(row) == GearKind::StrainWave { Order::Rising } else { Order::NotFalling };
+    let survives = "a gear survives its momentary peak torque";
+    let rules: [(&[&'static str], Order, &str); 8] = [
+        (
+            &["rated_torque_nm", "average_torque_limit_nm", "repeated_peak_torque_nm"],
+            Order::NotFalling,
+            torques,
+        ),
+        (&["repeated_peak_torque_nm", "momentary_peak_torque_nm"], to_momentary, torques),
+        (
+            &["k1_nm_per_rad", "k2_nm_per_rad", "k3_nm_per_rad"],
+            Order::NotFalling,
+            "a gear stiffens: K1 <= K2 <= K3",
+        ),
+        (&["t1_nm", "t2_nm"], Order::Rising, "the first segment of the torsion curve ends before the second"),
+        (
+            &["average_input_speed_limit_rpm", "max_input_speed_rpm"],
+            Order::NotFalling,
+            "the limit for the average speed is not above that for the peak",
+        ),
+        (
+            &["mass_component_set_kg", "mass_housed_unit_kg"],
+            Order::Rising,
+            "the housed unit contains the component set",
+        ),
+        (&["momentary_peak_torque_nm", "buckling_torque_nm"], Order::NotFalling, survives),
+        (&["momentary_peak_torque_nm", "ratcheting_torque_nm"], Order::NotFalling, survives),
+    ];
+    for (columns, order, hint) in rules {
+        let figures: Vec<_> = columns.iter().map(|column| (*column, row.number(column))).collect();
+        row.ascending(&figures, order, hint);
+    }
+}
+
+fn pitch_circle_within(row: &Row) {
+    if let (Some(pitch_m), Some(outer_mm)) =
+        (row.number("bearing_pitch_diameter_m"), row.number("outer_diameter_mm"))
+        && pitch_m * 1e3 >= outer_mm
+    {
+        let problem = format!("= {pitch_m} is not within outer_diameter_mm = {outer_mm}");
+        row.fault("bearing_pitch_diameter_m", problem, "write the pitch diameter in m, the outer one in mm");
+    }
 }
 
 /// Warns of numbers of a row that are far from the numbers of all known harmonic drives of the same size. Such a number

@@ -15,9 +15,26 @@ use std::collections::{HashMap, HashSet};
 pub struct Noise {
     /// Factors on the declared standard deviations of static, modal and windup readings, in this order.
     pub scale: [f64; 3],
-    /// Rows that are gross errors: channel, row counted from 0, and size of the residual in declared standard
-    /// deviations.
-    pub outliers: Vec<(Channel, usize, f64)>,
+    /// Rows that are gross errors.
+    pub outliers: Vec<Outlier>,
+}
+
+/// A row that is far from what a model predicts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outlier {
+    /// Kind of the reading.
+    pub channel: Channel,
+    /// Row of the file, counted from 0.
+    pub row: usize,
+    /// Size of the residual in declared standard deviations.
+    pub sigmas: f64,
+}
+
+impl Outlier {
+    /// The place of the row among all readings.
+    fn place(&self) -> (usize, usize) {
+        (self.channel as usize, self.row)
+    }
 }
 
 /// A reading is a gross error if its residual is at least this many standard deviations.
@@ -63,8 +80,7 @@ impl Noise {
     /// Weights of the data: gross errors get 0, and all other data the reciprocal of their standard deviation times
     /// the factor of the channel.
     pub fn weights(&self, forward: &Forward) -> Weights {
-        let outliers: HashSet<(usize, usize)> =
-            self.outliers.iter().map(|(channel, row, _)| (*channel as usize, *row)).collect();
+        let outliers: HashSet<(usize, usize)> = self.outliers.iter().map(Outlier::place).collect();
         let inverse = forward.data.iter().map(|d| {
             let gross = outliers.contains(&(d.channel as usize, d.row));
             if gross { 0.0 } else { 1.0 / (d.sigma * self.scale[d.channel as usize]) }
@@ -87,10 +103,10 @@ impl Noise {
     /// calibration.
     pub fn without_worst(forward: &Forward, fit: &Fit, weights: &Weights) -> Self {
         let mut outliers = misses(forward, fit, weights);
-        outliers.retain(|(_, _, size)| *size > UNMISTAKABLE_SIGMAS);
+        outliers.retain(|outlier| outlier.sigmas > UNMISTAKABLE_SIGMAS);
         let mut left = CHANNELS.map(|channel| at_most(FEW_UNSEEN, rows(forward, channel)));
-        outliers.retain(|(channel, _, _)| {
-            let of_channel = &mut left[*channel as usize];
+        outliers.retain(|outlier| {
+            let of_channel = &mut left[outlier.channel as usize];
             let is_among = *of_channel > 0;
             *of_channel -= usize::from(is_among);
             is_among
@@ -102,31 +118,31 @@ impl Noise {
     /// such rows, or more than two.
     pub fn with_slips(&self, forward: &Forward, fit: &Fit) -> Option<Self> {
         let mut slips = misses(forward, fit, &self.weights(forward));
-        slips.retain(|(_, _, size)| *size > GROSS_SIGMAS);
-        slips.retain(|slip| !self.outliers.iter().any(|(c, row, _)| (c, row) == (&slip.0, &slip.1)));
+        slips.retain(|slip| slip.sigmas > GROSS_SIGMAS);
+        slips.retain(|slip| !self.outliers.iter().any(|known| known.place() == slip.place()));
         let residuals = declared_residuals(forward, &fit.point.predicted);
-        let slips: Vec<(Channel, usize, f64)> = CHANNELS
+        let slips: Vec<Outlier> = CHANNELS
             .into_iter()
             .flat_map(|channel| {
                 let range = forward.range(channel);
-                let own =
-                    slips.iter().filter(|slip| slip.0 == channel).map(|slip| (slip.1, slip.2)).collect();
+                let own = slips.iter().filter(|slip| slip.channel == channel);
+                let own = own.map(|slip| (slip.row, slip.sigmas)).collect();
                 let kept = without_runs(&forward.data[range.clone()], &residuals[range], own);
-                kept.into_iter().map(move |(row, size)| (channel, row, size))
+                kept.into_iter().map(move |(row, sigmas)| Outlier { channel, row, sigmas })
             })
             .collect();
         if slips.is_empty() || slips.len() > MOST_SLIPS {
             return None;
         }
         let mut outliers = [self.outliers.clone(), slips].concat();
-        outliers.sort_by_key(|(channel, row, _)| (*channel as usize, *row));
+        outliers.sort_by_key(Outlier::place);
         Some(Self { outliers, ..self.clone() })
     }
 
     /// This judgement with all frequencies kept as good readings; `None` if it leaves out no frequency.
     pub fn with_frequencies(&self) -> Option<Self> {
         let mut with = self.clone();
-        with.outliers.retain(|(channel, _, _)| *channel != Channel::Modal);
+        with.outliers.retain(|outlier| outlier.channel != Channel::Modal);
         (with.outliers.len() < self.outliers.len()).then_some(with)
     }
 
@@ -139,13 +155,13 @@ impl Noise {
         }
         let residuals = declared_residuals(forward, &baseline.point.predicted);
         let mut outliers = Self::from_fit(forward, baseline, weights).outliers;
-        outliers.retain(|(_, _, size)| *size > UNMISTAKABLE_SIGMAS);
-        let in_channel = |channel| outliers.iter().filter(|(c, _, _)| *c == channel).count();
+        outliers.retain(|outlier| outlier.sigmas > UNMISTAKABLE_SIGMAS);
+        let in_channel = |channel| outliers.iter().filter(|outlier| outlier.channel == channel).count();
         let few: Vec<Channel> = CHANNELS
             .into_iter()
             .filter(|c| in_channel(*c) <= at_most(FEW_UNSEEN, rows(forward, *c)))
             .collect();
-        outliers.retain(|(channel, _, _)| few.contains(channel));
+        outliers.retain(|outlier| few.contains(&outlier.channel));
         Self { outliers, ..Self::default() }.with_whole_lists(forward, &residuals)
     }
 
@@ -168,7 +184,7 @@ impl Noise {
                 continue;
             }
             let gross = without_runs(data, own, gross);
-            noise.outliers.extend(gross.iter().map(|(row, size)| (channel, *row, *size)));
+            noise.outliers.extend(gross.iter().map(|&(row, sigmas)| Outlier { channel, row, sigmas }));
             let gross: HashSet<usize> = gross.into_iter().map(|(row, _)| row).collect();
             let kept = range.filter(|i| !gross.contains(&forward.data[*i].row));
             noise.scale[channel as usize] = scale(kept.map(|i| (residuals[i], leverages[i])));
@@ -188,9 +204,12 @@ impl Noise {
             return None;
         }
         let rows = doubtful.iter().flat_map(|test| &test.modes);
-        let outliers =
-            rows.map(|(i, _)| (Channel::Modal, forward.data[*i].row, residuals[*i].abs())).collect();
-        Some(Self { outliers, ..Self::default() })
+        let outlier = |&(datum, _): &(usize, usize)| Outlier {
+            channel: Channel::Modal,
+            row: forward.data[datum].row,
+            sigmas: residuals[datum].abs(),
+        };
+        Some(Self { outliers: rows.map(outlier).collect(), ..Self::default() })
     }
 
     /// This judgement without any row of a frequency list that has several gross errors. The pose, the payload or the
@@ -199,18 +218,19 @@ impl Noise {
         for list in gross_lists(forward, &self.weights(forward)) {
             for &(datum, _) in &forward.modal[list].modes {
                 let (channel, row) = (Channel::Modal, forward.data[datum].row);
-                if !self.outliers.iter().any(|(c, r, _)| (*c, *r) == (channel, row)) {
-                    self.outliers.push((channel, row, residuals[datum].abs()));
+                let outlier = Outlier { channel, row, sigmas: residuals[datum].abs() };
+                if !self.outliers.iter().any(|known| known.place() == outlier.place()) {
+                    self.outliers.push(outlier);
                 }
             }
         }
-        self.outliers.sort_by_key(|(channel, row, _)| (*channel as usize, *row));
+        self.outliers.sort_by_key(Outlier::place);
         self
     }
 
     /// Whether this judgement and `other` leave out the same rows.
     pub fn same_rows(&self, other: &Self) -> bool {
-        let rows = |n: &Self| n.outliers.iter().map(|(c, r, _)| (*c, *r)).collect::<Vec<_>>();
+        let rows = |n: &Self| n.outliers.iter().map(Outlier::place).collect::<Vec<_>>();
         rows(self) == rows(other)
     }
 
@@ -231,22 +251,22 @@ pub fn gross_lists(forward: &Forward, weights: &Weights) -> Vec<usize> {
 }
 
 /// The misfit that each row of each channel would have if the fit did not follow this row \[declared standard
-/// deviations\]. It is the residual divided by the root of one minus the leverage, which is the fraction of the datum's
-/// variance that the fitted parameters absorb. Returns channel, row and misfit, the largest misfit first.
-fn misses(forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<(Channel, usize, f64)> {
+/// deviations\], the largest one first. It is the residual divided by the root of one minus the leverage, which is the
+/// fraction of the datum's variance that the fitted parameters absorb.
+fn misses(forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<Outlier> {
     // prevents a division by zero for a row that the fit follows completely
     const LARGEST_LEVERAGE: f64 = 0.9;
     let residuals = declared_residuals(forward, &fit.point.predicted);
     let sizes = residuals.iter().zip(fit.leverages(weights));
     let sizes = sizes.map(|(r, leverage)| r.abs() / (1.0 - leverage.min(LARGEST_LEVERAGE)).sqrt());
     let sizes: Vec<f64> = sizes.collect();
-    let mut out: Vec<(Channel, usize, f64)> = Vec::new();
+    let mut out: Vec<Outlier> = Vec::new();
     for channel in CHANNELS {
         let range = forward.range(channel);
         let own = forward.data[range.clone()].iter().zip(sizes[range].iter().copied());
-        out.extend(largest_of_rows(own).into_iter().map(|(row, size)| (channel, row, size)));
+        out.extend(largest_of_rows(own).into_iter().map(|(row, sigmas)| Outlier { channel, row, sigmas }));
     }
-    out.sort_by(|a, b| b.2.total_cmp(&a.2));
+    out.sort_by(|a, b| b.sigmas.total_cmp(&a.sigmas));
     out
 }
 
@@ -254,16 +274,18 @@ fn misses(forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<(Channel, usiz
 /// one pose, or of the bench, with errors of the same sign. Slips are single, whereas a run has a cause, such as a
 /// clamp that slips at the end of a load.
 fn without_runs(data: &[Datum], residuals: &[f64], gross: Vec<(usize, f64)>) -> Vec<(usize, f64)> {
-    // component, value and pose of the largest error of each row
-    let mut worst: HashMap<usize, (usize, f64, usize)> = HashMap::new();
+    // the datum with the largest error of each row, and this error
+    let mut worst: HashMap<usize, (&Datum, f64)> = HashMap::new();
     for (datum, residual) in data.iter().zip(residuals) {
-        let own = worst.entry(datum.row).or_insert((datum.component, *residual, datum.group));
+        let own = worst.entry(datum.row).or_insert((datum, *residual));
         if residual.abs() > own.1.abs() {
-            *own = (datum.component, *residual, datum.group);
+            *own = (datum, *residual);
         }
     }
     let is_run = |a: usize, b: usize| match (worst.get(&a), worst.get(&b)) {
-        (Some(a), Some(b)) => a.0 == b.0 && a.2 == b.2 && a.1.signum() == b.1.signum(),
+        (Some((a, error_a)), Some((b, error_b))) => {
+            a.component == b.component && a.group == b.group && error_a.signum() == error_b.signum()
+        }
         _ => false,
     };
     // the modes of a list are consecutive rows by their numbering, so a run among them means nothing

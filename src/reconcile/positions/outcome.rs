@@ -18,7 +18,7 @@ use crate::arm::effect::entry::Effect;
 use crate::arm::effect::kind::ElasticRotation;
 use crate::arm::{Arm, BASE};
 use crate::reconcile::fit::held_out::{HeldOut, rms};
-use crate::reconcile::fit::noise::{FEW, Noise};
+use crate::reconcile::fit::noise::{FEW, Noise, Outlier};
 use crate::reconcile::model::estimate::{Estimate, Finding, Z_95};
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::components::POSITION;
@@ -84,7 +84,9 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         next_tests,
         noise: Noise {
             scale: [1.0; 3],
-            outliers: found.gross.iter().map(|(row, mm)| (Channel::Positions, *row, mm / scale_mm)).collect(),
+            outliers: (found.gross.iter())
+                .map(|(row, mm)| Outlier { channel: Channel::Positions, row: *row, sigmas: mm / scale_mm })
+                .collect(),
         },
         lack_of_fit: Some(lack_of_fit),
         calibrated: adjusted,

@@ -390,8 +390,8 @@ impl<'a> Search<'a> {
     }
 
     /// The candidates that come closest to the readings when they are added to the model `base` at one of a few
-    /// sizes, the closest first. Their score is minus half of the objective. They are needed if much is missing: a model that is linearized about `base` then does not predict the effect
-    /// of a candidate on the frequencies well enough.
+    /// sizes, the closest first. Their score is minus half of the objective. They are needed if much is missing: a model
+    /// that is linearized about `base` then does not predict the effect of a candidate on the frequencies well enough.
     fn by_size(&self, base: &Scored) -> Vec<Screened> {
         let model = self.model(&base.effects);
         let here = evaluate(self.forward, &model, &base.u, self.weights);

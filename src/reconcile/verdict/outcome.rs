@@ -279,7 +279,7 @@ impl Outcome {
             .noise
             .outliers
             .iter()
-            .map(|(c, row, size)| json!({"channel": c.word(), "row": row + 1, "sigmas": size}))
+            .map(|o| json!({"channel": o.channel.word(), "row": o.row + 1, "sigmas": o.sigmas}))
             .collect();
         let [s, m, w] = self.noise.scale;
         json!({"gross_errors": outliers, "sigma_scale": {"static": s, "modal": m, "windup": w}})

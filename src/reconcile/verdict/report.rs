@@ -5,6 +5,7 @@ use super::outcome::{Outcome, Verdict};
 use super::record_report;
 use crate::arm::effect::entry::word_of;
 use crate::arm::pose::any_slides;
+use crate::reconcile::fit::noise::Outlier;
 use crate::reconcile::model::estimate::{Estimate, Finding};
 use crate::report::pose::pose_words;
 use crate::report::whole_file::{create_folder, write_whole};
@@ -120,10 +121,10 @@ impl Outcome {
             Verdict::Unexplained => "gross error, or part of what no effect explains",
             _ => "gross error",
         };
-        for (channel, row, size) in &self.noise.outliers {
+        for Outlier { channel, row, sigmas } in &self.noise.outliers {
             let _ = writeln!(
                 out,
-                "  {what}: {} row {} is {size:.0} sigma off; left out of the fit",
+                "  {what}: {} row {} is {sigmas:.0} sigma off; left out of the fit",
                 channel.word(),
                 row + 1
             );
