@@ -167,7 +167,7 @@ fn check(row: &Row) {
     if kind(row) == GearKind::StrainWave {
         usual_figures(row);
     }
-    usual::of_gear(row, kind(row) == GearKind::Direct);
+    usual::of_gear(row, kind(row));
 }
 
 fn order(row: &Row, columns: &[&'static str], strict: bool, hint: &str) {
