@@ -128,7 +128,7 @@ fn check(row: &Row) {
     if kind(row) == GearKind::StrainWave {
         usual_figures(row);
     }
-    usual::of_gear(row, kind(row) == GearKind::Direct);
+    usual::of_gear(row, kind(row));
 }
 
 fn ratings_in_order(row: &Row) {
