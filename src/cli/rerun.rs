@@ -135,7 +135,12 @@ fn run_once(
     again: &Again,
     setup: Setup,
 ) -> Result<Written, Failure> {
-    let keep = |files: &[(String, Vec<u8>)]| (again.keep)(&[kept.clone(), placed(files, folder)?].concat());
+    // the names that are taken in this run's own folder are those that concern it
+    let own = format!("study/{folder}/");
+    let keep = |files: &[(String, Vec<u8>)]| {
+        let taken = (again.keep)(&[kept.clone(), placed(files, folder)?].concat())?;
+        Ok(taken.iter().filter_map(|name| name.strip_prefix(&own)).map(str::to_string).collect())
+    };
     let settings = SearchSettings {
         setup,
         dir: &again.dir.join("study").join(folder),

@@ -23,7 +23,10 @@ use super::select::seen::seen;
 use super::select::settle::Settled;
 use super::select::unnamed::{self, Better};
 use super::verdict::corrected_model::Choice;
-use super::verdict::judgement::{TOO_FAR_OFF, does_not_predict, shows_in_few_poses, too_many_alternatives};
+use super::verdict::judgement::{
+    BEYOND_TOLERANCE, NOTHING_MISSING, SHOWN_BY_ONE_FOLD, TOO_FAR_OFF, WEAK_EVIDENCE, does_not_predict,
+    shows_in_few_poses, too_many_alternatives,
+};
 use super::verdict::next_test;
 use super::verdict::outcome::{Calibrated, Evidence, Law, Located, Outcome, ReadingResidual, Verdict};
 use super::verdict::too_little::{rows, too_little};
@@ -32,19 +35,7 @@ use crate::arm::Arm;
 use serde_json::Value;
 use std::cell::OnceCell;
 
-/// Limit of the residuals that the best model would leave on held-out poses even if it were right \[standard
-/// deviations\]. Above it, only the poses of one fold show some effect, so held-out poses cannot confirm it.
-const SHOWN_BY_ONE_FOLD: f64 = 1.5;
-/// An effect is only suspected if it raises the natural logarithm of the evidence by less than this. Such evidence is
-/// not yet strong (Kass and Raftery 1995, table of Bayes factors).
-const WEAK_EVIDENCE: f64 = 3.0;
-/// Reason that is written for the verdict `no_gap`.
-const NOTHING_MISSING: &str = "noise and calibration within tolerance explain every reading";
-/// Reason that is written for the verdict `no_gap` if a calibrated factor is outside its tolerance.
-const BEYOND_TOLERANCE: &str = "noise and calibration explain every reading, but not within tolerance";
-
-/// Reconciles the displacements, frequencies and bench readings of a campaign with its arm. Absolute positions and
-/// records are not used here.
+/// Reconciles displacements, frequencies and bench readings with the arm of a campaign; positions and records are not used.
 pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let mut forward = Forward::new(campaign);
     let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);

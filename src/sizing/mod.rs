@@ -61,7 +61,7 @@ pub use bearing_checks::{BlankRatings, bearing_margin};
 pub use check::{Check, CheckKind, CheckState};
 pub use checks::{all_hold, binding, checks, gear_checks, motor_checks};
 pub use demand::{
-    JointDemand, JointMotion, LinearReading, cubic_mean_cubed_nm3, linear_torque_nm, stop_torque_nm,
+    JointDemand, JointMotion, LinearReading, Stop, cubic_mean_cubed_nm3, linear_torque_nm, stop_torque_nm,
 };
 pub use drive::{
     Drive, MissingRating, critical_rpm, motor_torque_nm, rotary_torque_motor_nm, rotary_torque_output_nm,

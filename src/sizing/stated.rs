@@ -92,8 +92,11 @@ impl StatedDuty {
             let [before, after] = [ends_rpm[i][1], ends_rpm[(i + 1) % ends_rpm.len()][0]];
             if is_about(before, after) { 0.0 } else { (after - before).abs() * RAD_S_PER_RPM / jump_s }
         });
+        // a ramp that takes no time is a jump too
+        let at_once = self.phases.iter().zip(&ends_rpm).filter(|(phase, _)| phase.time_s == 0.0);
+        let at_once = at_once.map(|(_, [start, end])| (end - start).abs() * RAD_S_PER_RPM / jump_s);
         let ramps = self.accelerations_rad_s2().into_iter().map(f64::abs);
-        let steepest_rad_s2 = jumps.chain(ramps).fold(0.0, f64::max);
+        let steepest_rad_s2 = jumps.chain(at_once).chain(ramps).fold(0.0, f64::max);
         if steepest_rad_s2 > 0.0 { self.fastest_rpm() * RAD_S_PER_RPM / steepest_rad_s2 } else { jump_s }
     }
 
@@ -131,8 +134,8 @@ impl StatedDuty {
 
     /// Speeds at the start and at the end of every phase \[rpm\] if the joint never jumps from one speed to another and
     /// every phase is a ramp or has constant speed. `None` if no such speeds have the stated means. The largest of these
-    /// speeds must be stated, as that of a phase at constant speed: two phases of equal speed after a rest are no ramps to
-    /// and from twice their speed.
+    /// speeds must be stated, and a ramp up must not be followed at once by a ramp down: two phases of equal speed after a
+    /// rest are no ramps to and from twice their speed.
     ///
     /// The speeds are followed from a phase of constant speed through the whole cycle, back to it: at rest, or else the
     /// fastest one.
@@ -142,7 +145,7 @@ impl StatedDuty {
         let first = speeds_rpm.iter().position(|rpm| *rpm == 0.0);
         let first = first.or_else(|| speeds_rpm.iter().position(|rpm| *rpm == fastest_rpm))?;
         let mut ends_rpm = vec![[0.0; 2]; speeds_rpm.len()];
-        let mut now_rpm = speeds_rpm[first];
+        let (mut now_rpm, mut was_ramp_up) = (speeds_rpm[first], false);
         for place in (first..first + speeds_rpm.len()).map(|place| place % speeds_rpm.len()) {
             let (start_rpm, mean_rpm) = (now_rpm, speeds_rpm[place]);
             let next_rpm = speeds_rpm[(place + 1) % speeds_rpm.len()];
@@ -155,9 +158,11 @@ impl StatedDuty {
                     .unwrap_or(2.0 * mean_rpm - start_rpm),
             };
             let is_stated = now_rpm <= fastest_rpm || is_about(now_rpm, fastest_rpm);
-            if now_rpm < 0.0 || !is_stated {
+            let is_peak = was_ramp_up && now_rpm < start_rpm;
+            if now_rpm < 0.0 || !is_stated || is_peak {
                 return None;
             }
+            was_ramp_up = now_rpm > start_rpm;
             ends_rpm[place] = [start_rpm, now_rpm];
         }
         is_about(now_rpm, speeds_rpm[first]).then_some(ends_rpm)
@@ -337,6 +342,23 @@ mod tests {
         // two phases of one speed are not a triangle up to twice the speed
         let same = of_speeds(&[(14.0, 1.0), (14.0, 1.0), (0.0, 1.0)]);
         assert_eq!((same.ramps().len(), steepest_rpm_s(&same).round()), (0, 140.0));
+        // however a constant speed is cut into phases
+        let cut = of_speeds(&[(10.0, 5.0), (10.0, 5.0), (10.0, 5.0), (20.0, 5.0), (10.0, 5.0), (0.0, 5.0)]);
+        assert_eq!((cut.ramps(), steepest_rpm_s(&cut).round()), (vec![5], 100.0));
+        // a ramp in no time
+        let at_once = of_speeds(&[(10.0, 0.0), (20.0, 1.0), (10.0, 0.4), (0.0, 0.2)]);
+        assert!((steepest_rpm_s(&at_once) - 200.0).abs() < 1e-9);
+        // a move to and fro
+        let reverses = of_speeds(&[
+            (7.0, 0.3),
+            (14.0, 1.0),
+            (7.0, 0.3),
+            (7.0, 0.3),
+            (14.0, 1.0),
+            (7.0, 0.3),
+            (0.0, 1.0),
+        ]);
+        assert_eq!(reverses.ramps(), [1, 3, 4, 6]);
         // a move and a creeping speed that begins at once
         let creeps = of_speeds(&[(7.0, 0.3), (14.0, 1.0), (7.0, 0.3), (3.0, 1.0), (0.0, 1.0)]);
         assert_eq!(creeps.ramps(), [1]);

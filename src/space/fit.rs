@@ -71,15 +71,18 @@ pub(crate) fn carried_link(pieces: &[SpacePiece], place: usize) -> Option<usize>
     before_next_joint.find(|(_, piece)| is_tube(piece)).map(|(link, _)| link)
 }
 
-/// Length of the tubes between the joint with number `place` and the next joint \[m\]; `None` if there are none.
+/// Length of the tubes that begin at the link of the joint with number `place` and go on in its direction, up to the next
+/// joint \[m\]; `None` if there are none.
 pub(crate) fn carried_length_m(pieces: &[SpacePiece], place: usize) -> Option<f64> {
     let first = carried_link(pieces, place)?;
-    let lengths_m = pieces[first..].iter().map_while(|piece| match piece {
-        SpacePiece::Choice(choice) => Some(choice.vector_m.norm()),
-        SpacePiece::Link(Link { vector_m, body: LinkBody::Tube { .. }, .. }) => Some(vector_m.norm()),
+    let tube = |piece: &SpacePiece| match piece {
+        SpacePiece::Choice(choice) => Some(choice.vector_m),
+        SpacePiece::Link(Link { vector_m, body: LinkBody::Tube { .. }, .. }) => Some(*vector_m),
         _ => None,
-    });
-    Some(lengths_m.sum())
+    };
+    let direction = tube(&pieces[first])?.normalize();
+    let goes_on = |vector_m: &Vector3<f64>| vector_m.dot(&direction) > ALONG_COSINE * vector_m.norm();
+    Some(pieces[first..].iter().map_while(tube).take_while(goes_on).map(|vector_m| vector_m.norm()).sum())
 }
 
 /// Names of the joints for which a study limits sizes in relation to a link, but which have no link.

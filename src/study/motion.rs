@@ -68,15 +68,15 @@ pub(super) fn duty_remarks(space: &DesignSpace) -> Vec<String> {
     let slower = space.joints().zip(reaches_m(space, sizing)).filter_map(remark);
     let ramps = space.joints().filter_map(|(_, joint)| {
         let numbers: Vec<String> = joint.duty.as_ref()?.ramps().iter().map(usize::to_string).collect();
-        let phases = if numbers.len() == 1 { "phase" } else { "phases" };
-        (!numbers.is_empty()).then(|| {
-            format!("Joint {}: {phases} {} of its duty count as ramps.", joint.name, numbers.join(", "))
-        })
+        let (phases, count) =
+            if numbers.len() == 1 { ("phase", "counts as a ramp") } else { ("phases", "count as ramps") };
+        (!numbers.is_empty())
+            .then(|| format!("Joint {}: {phases} {} of its duty {count}.", joint.name, numbers.join(", ")))
     });
     let has_no_ramps = |joint: &&SpaceJoint| joint.duty.as_ref().is_some_and(StatedDuty::moves_without_ramps);
     let without_ramps = space.joints().map(|(_, joint)| joint).filter(has_no_ramps).map(|joint| {
         format!(
-            "Joint {}: the speed of no phase of its duty is the mean of the speeds before and after it, so that none is a ramp. Motor heat leaves out the \
+            "Joint {}: no phase of its duty has the mean of two different speeds before and after it, so that none is a ramp. Motor heat leaves out the \
              inertia of the rotor, and speeds count as constant in each phase. Give ramps at their mean speed, and between a ramp up \
              and a ramp down a short phase at the speed that they reach.",
             joint.name
@@ -157,7 +157,8 @@ fn read_fraction(node: &Node) -> Option<f64> {
 pub(super) fn read_duty(node: &Node) -> Option<StatedDuty> {
     let read: Vec<Option<StatedPhase>> = node.array()?.iter().map(read_stated_phase).collect();
     let duty = StatedDuty { phases: read.into_iter().collect::<Option<_>>()? };
-    if duty.duration_s() == 0.0 || duty.fastest_rpm() == 0.0 {
+    let moves = |phase: &StatedPhase| phase.time_s > 0.0 && phase.speed_rpm > 0.0;
+    if !duty.phases.iter().any(moves) {
         return node.fault(
             "has no phase of motion",
             "give at least one phase with \"time_s\" and \"speed_rpm\" above 0",

@@ -82,7 +82,7 @@ pub(super) fn roller_life_remark(space: &DesignSpace, catalogs: &Catalogs) -> Op
     };
     catalogs.gears.iter().filter(has_rollers).any(|gear| may_have(space, gear)).then(|| {
         "The mean torque is the cubic mean. For gears with roller bearings (cycloidal, planetary, spur) some makers take the \
-         power 10/3, and their lives are then up to 23 % shorter (docs/sizing.md)."
+         power 10/3, and their lives are then shorter: by 23 % where full torque acts a tenth of the time (docs/sizing.md)."
             .to_string()
     })
 }

@@ -2,8 +2,8 @@
 //!
 //! A study states the mean speed of every phase. In a phase the joint turns at constant speed, or its speed changes evenly.
 //! There is one course without a jump if, followed once through the cycle from a phase of constant speed (rest, or else the
-//! fastest), the speed comes back to where it began, and is never negative nor beyond the fastest phase. If there is none,
-//! a phase is taken to ramp where its mean is that of its neighbours' speeds; a neighbour that is half of the phase beyond
+//! fastest), the speed comes back to where it began, is never negative nor beyond the fastest phase, and never turns from
+//! rising to falling without a phase in between. If there is none, a phase is taken to ramp where its mean is that of its neighbours' speeds; a neighbour that is half of the phase beyond
 //! it ends, or begins, at rest.
 
 use super::question::AskedDutyPhase;
@@ -25,6 +25,11 @@ impl Course {
     /// Change of the speed in a second \[rpm/s\]; 0 in a phase without duration.
     pub(super) fn rpm_per_s(&self) -> f64 {
         if self.time_s > 0.0 { (self.to_rpm - self.from_rpm) / self.time_s } else { 0.0 }
+    }
+
+    /// Change of the speed if the phase takes no time \[rpm\], else 0.
+    pub(super) fn change_at_once_rpm(&self) -> f64 {
+        if self.time_s > 0.0 { 0.0 } else { (self.to_rpm - self.from_rpm).abs() }
     }
 
     fn mean_rpm(&self) -> f64 {
@@ -58,7 +63,8 @@ fn unbroken(duty: &[AskedDutyPhase]) -> Option<Vec<Course>> {
         let fits = |course: &Course| is_same_speed(course.mean_rpm(), phase.speed_rpm);
         let found = ends_rpm.map(course).into_iter().find(fits)?;
         let is_stated = found.to_rpm <= fastest_rpm || is_same_speed(found.to_rpm, fastest_rpm);
-        if found.to_rpm < 0.0 || !is_stated {
+        let rose = courses.last().is_some_and(|last: &Course| last.to_rpm > last.from_rpm);
+        if found.to_rpm < 0.0 || !is_stated || rose && found.to_rpm < found.from_rpm {
             return None;
         }
         from_rpm = found.to_rpm;

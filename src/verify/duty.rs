@@ -171,7 +171,8 @@ fn ramp_s(duty: &[AskedDutyPhase], jump_s: f64) -> f64 {
         true => 0.0,
         false => (next.from_rpm - now.to_rpm).abs() / jump_s,
     });
-    let rates = courses.iter().map(|course| course.rpm_per_s().abs());
+    let rates =
+        courses.iter().map(|course| course.rpm_per_s().abs().max(course.change_at_once_rpm() / jump_s));
     let steepest_rpm_s = rates.chain(jumps).fold(0.0, f64::max);
     let fastest_rpm = duty.iter().map(|phase| phase.speed_rpm).fold(0.0, f64::max);
     if steepest_rpm_s > 0.0 { fastest_rpm / steepest_rpm_s } else { jump_s }

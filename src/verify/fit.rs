@@ -11,7 +11,8 @@
 //!
 //! The link of a joint is the first tube between it and the next joint. A size that the catalog lacks is not compared.
 //!
-//! Nothing of `sizing` or `space` is used, so that an error in a size there is not repeated here.
+//! Nothing of `sizing` or `space` is used, so that an error in a size there is not repeated here. Only the length of the link
+//! in which a motor is comes with the question.
 
 use super::question::{AskedFit, AskedJoint};
 use crate::arm::section::Section;

@@ -59,7 +59,7 @@ fn stiffnesses_in_newton_metres_per_arcmin_are_refused() {
     );
     let here = folder(&one_joint(json!({})), &[("gears.csv", &sheet)]);
     let (code, said) = armwright(here.path(), &["catalog", "check", "--catalogs", "parts"]);
-    assert_eq!(code, 3, "{said}");
+    assert_eq!(code, 4, "{said}");
     assert!(said.contains("k1_nm_per_rad") && said.contains("1 N m/arcmin = 3438 N m/rad"), "{said}");
     let per_degree = sheet.replace(",,,7,,,", ",,,420,,,");
     std::fs::write(here.path().join("parts/gears.csv"), per_degree).expect("written");

@@ -69,7 +69,7 @@ fn a_duty_that_is_slower_than_the_tip_speed_asks_is_said_beside_the_result() {
         [vec!["size", "study.json"], vec!["run", "study.json", "--out", "out"]].map(|command| {
             let (code, out, err) = on(&study, &command);
             assert_eq!(code, 0, "{err}");
-            assert_eq!(short(&out).contains(words), short(&out).contains("of its duty"), "{out}");
+            assert_eq!(short(&out).contains(words), short(&out).contains("rpm of its duty"), "{out}");
             short(&out).contains(words)
         })
     };

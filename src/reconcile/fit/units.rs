@@ -11,7 +11,6 @@ use crate::arm::effect::wrong_unit::{self, UnitColumn, UnitSlip};
 use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::forward::statics::StaticPose;
-use crate::reconcile::model::candidates::possible_slips;
 use crate::reconcile::model::parameters::Candidate;
 use crate::reconcile::readings::components::{DISPLACEMENT, FEWEST_ALIKE};
 
@@ -111,16 +110,20 @@ fn other_signs(forward: &Forward) -> Vec<String> {
     (0..3).filter_map(of_component).collect()
 }
 
-/// The factor between two units by which readings seem to be off, of the units `slips`. Each of the `pairs` is a reading
-/// and its prediction for the nominal arm. `None` if there is none, or if it does not bring the readings at
+/// Least-squares factor between readings and their predictions for the nominal arm; each of the `pairs` is one of both.
+/// `None` if there are too few readings, or if the factor is not positive.
+fn ratio(pairs: &[(f64, f64)]) -> Option<f64> {
+    let sum = |of: fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>();
+    let ratio = sum(|(d, m)| d * m) / sum(|(_, m)| m * m);
+    (pairs.len() >= FEWEST_ALIKE && ratio > 0.0 && ratio.is_finite()).then_some(ratio)
+}
+
+/// The factor between two units by which readings seem to be off, of the units `slips`. `ratio` is that of the readings to
+/// their predictions. `None` if there is none, or if it does not bring the readings at
 /// least [`LEAST_IMPROVEMENT`] times nearer to the nominal arm.
-fn seeming_slip<'s>(pairs: &[(f64, f64)], slips: &[&'s UnitSlip]) -> Option<&'s UnitSlip> {
+fn seeming_slip<'s>(pairs: &[(f64, f64)], ratio: f64, slips: &[&'s UnitSlip]) -> Option<&'s UnitSlip> {
     let sum = |of: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>();
-    let (both, square) = (sum(&|(d, m)| d * m), sum(&|(_, m)| m * m));
-    if pairs.len() < FEWEST_ALIKE || square == 0.0 || both <= 0.0 {
-        return None;
-    }
-    let apart = |unit: &UnitSlip| libm::log(both / square / unit.factor).abs();
+    let apart = |unit: &UnitSlip| libm::log(ratio / unit.factor).abs();
     let nearest = slips.iter().copied().min_by(|a, b| apart(a).total_cmp(&apart(b)))?;
     let misfit = |factor: f64| sum(&|(d, m)| (d - factor * m).powi(2)).sqrt();
     let is_near = apart(nearest) < UNIT_TOLERANCE && misfit(1.0) > LEAST_IMPROVEMENT * misfit(nearest.factor);
@@ -134,9 +137,9 @@ fn other_units(forward: &Forward) -> Vec<String> {
     let pairs = |own: &[usize]| -> Vec<(f64, f64)> {
         own.iter().map(|&i| (forward.data[i].value, nominal[i])).collect()
     };
-    let possible = possible_slips(forward, Channel::Static);
     let of = |column: UnitColumn| -> Vec<&UnitSlip> {
-        possible.iter().copied().filter(|unit| unit.column == column).collect()
+        let own = wrong_unit::SLIPS.iter().filter(|unit| unit.is_of(Channel::Static));
+        own.filter(|unit| unit.column == column).collect()
     };
     let (readings, forces, payloads) =
         (of(UnitColumn::Reading), of(UnitColumn::Force), of(UnitColumn::Payload));
@@ -155,10 +158,15 @@ fn other_units(forward: &Forward) -> Vec<String> {
         ("every reading under a payload alone".into(), loaded(true), payloads),
         ("every reading under a force alone".into(), loaded(false), forces),
     ];
-    let is_part = |own: &[usize]| own.len() < range.len();
-    let found = parts.into_iter().filter(|(_, own, _)| is_part(own)).filter_map(|(what, own, slips)| {
-        let unit = seeming_slip(&pairs(&own), &slips)?;
-        let factor = crate::report::number::significant(unit.factor, 4);
+    let found = parts.into_iter().filter_map(|(what, own, slips)| {
+        let rest: Vec<usize> = range.clone().filter(|i| !own.contains(i)).collect();
+        let (of_own, of_rest) = (ratio(&pairs(&own))?, ratio(&pairs(&rest))?);
+        // if the rest is off by the same factor, nothing is special about this part
+        if libm::log(of_own / of_rest).abs() < UNIT_TOLERANCE {
+            return None;
+        }
+        let unit = seeming_slip(&pairs(&own), of_own, &slips)?;
+        let factor = crate::report::number::significant(of_own, 3);
         Some(format!(
             "{what} is about {factor} times what the arm as given says: {}? It was taken as it is",
             unit.cause

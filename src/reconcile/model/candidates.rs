@@ -315,9 +315,8 @@ pub(crate) fn largest_torque_nm(forward: &Forward, at: &str) -> f64 {
     statics.chain(modal).map(|t| t[j].abs()).chain(bench).fold(0.0, f64::max)
 }
 
-/// Two factors between units whose logarithms differ by less than this are one candidate, because a calibrated stiffness
-/// makes up for the difference. Of tenths (10) and kgf (9.807) that is so.
-const ONE_FACTOR: f64 = 0.03;
+/// Factors whose logarithms differ by less than this are one and the same.
+const ONE_FACTOR: f64 = 1e-9;
 
 /// Candidates for readings, forces or payloads in a wrong unit. The factor between two units is known exactly, so there
 /// is no free parameter.
@@ -339,24 +338,23 @@ fn unit_slips(forward: &Forward) -> Vec<Candidate> {
         .collect()
 }
 
-/// The units that a column of the channel can be in by mistake. A campaign without payloads has no wrong unit of them.
+/// The units that a column of the channel can be in by mistake, if that gives all its readings one factor. The unit of
+/// forces does so only where every row is loaded by forces alone, that of payloads where every row has a payload alone.
 pub(crate) fn possible_slips(forward: &Forward, channel: Channel) -> Vec<&'static UnitSlip> {
     let loads = || forward.statics.iter().flat_map(StaticPose::loaded_by).map(|(_, by)| by);
     let has = |column: UnitColumn| match column {
-        UnitColumn::Force => channel != Channel::Static || loads().any(|by| by.force),
-        UnitColumn::Payload => loads().any(|by| by.payload),
+        UnitColumn::Force => channel != Channel::Static || loads().all(|by| by.force && !by.payload),
+        UnitColumn::Payload => loads().all(|by| by.payload && !by.force),
         UnitColumn::Reading => true,
     };
     wrong_unit::SLIPS.iter().filter(|unit| unit.is_of(channel) && has(unit.column)).collect()
 }
 
-/// The different factors of the units `slips`. Of factors that nearly agree, that of a force is taken, because forces in
-/// kgf are more usual than readings in tenths.
+/// The different factors of the units `slips`. Units with one factor, such as readings in metres and payloads in grams,
+/// are one candidate. Between readings in tenths and forces in kgf (9.807) the readings decide.
 fn unit_factors(slips: &[&UnitSlip]) -> Vec<f64> {
-    let (forces, others): (Vec<&UnitSlip>, Vec<&UnitSlip>) =
-        slips.iter().copied().partition(|unit| unit.column == UnitColumn::Force);
     let mut out: Vec<f64> = Vec::new();
-    for factor in forces.into_iter().chain(others).map(|unit| unit.factor) {
+    for factor in slips.iter().map(|unit| unit.factor) {
         if out.iter().all(|known| libm::log(known / factor).abs() > ONE_FACTOR) {
             out.push(factor);
         }
@@ -369,14 +367,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn factors_that_a_calibration_cannot_tell_apart_are_one_candidate() {
-        let of = |has_forces: bool| {
-            let own = wrong_unit::SLIPS.iter().filter(|unit| unit.is_of(Channel::Static));
-            let own = own.filter(|unit| has_forces || unit.column != UnitColumn::Force);
-            unit_factors(&own.collect::<Vec<_>>())
-        };
-        assert!(of(true).contains(&9.80665) && !of(true).contains(&10.0));
-        assert!(of(false).contains(&10.0) && !of(false).contains(&9.80665));
-        assert_eq!(of(true).iter().filter(|factor| **factor == 1e-3).count(), 1, "metres and grams");
+    fn units_with_one_factor_are_one_candidate() {
+        let own = wrong_unit::SLIPS.iter().filter(|unit| unit.is_of(Channel::Static));
+        let factors = unit_factors(&own.collect::<Vec<_>>());
+        assert!(factors.contains(&9.80665) && factors.contains(&10.0));
+        assert_eq!(factors.iter().filter(|factor| **factor == 1e-3).count(), 1, "metres and grams");
     }
 }

@@ -419,8 +419,7 @@ impl Positions {
         out
     }
 
-    /// Change of every calibrated number of the geometry in the fit `shown` from its nominal value, as JSON.
-    /// Placements are not among them.
+    /// Change of every calibrated number of the geometry but the placements in the fit `shown`, as JSON.
     fn calibrated(&self, shown: &Fitted) -> Vec<Value> {
         let numbers = self.numbers.iter().zip(&shown.moved);
         let inside = numbers.filter(|(n, _)| {
@@ -534,8 +533,7 @@ pub(crate) fn located(campaign: &Campaign, residuals: &[ReadingResidual]) -> Vec
     rest
 }
 
-/// The value with its 95 % interval, from its standard deviation `deviation`. An end is `None` if the standard
-/// deviation is infinite.
+/// The value with its 95 % interval, from its standard deviation. An end is `None` if the deviation is infinite.
 fn within(value: f64, deviation: f64) -> Estimate {
     let end = |by: f64| Some(value + by * deviation).filter(|e| e.is_finite());
     Estimate { value, low: end(-Z_95), high: end(Z_95) }

@@ -4,6 +4,17 @@
 use super::outcome::Verdict;
 use crate::reconcile::model::estimate::Finding;
 
+/// Limit of the residuals that the best model would leave on held-out poses even if it were right \[standard
+/// deviations\]. Above it, only the poses of one fold show some effect, so held-out poses cannot confirm it.
+pub(crate) const SHOWN_BY_ONE_FOLD: f64 = 1.5;
+/// An effect is only suspected if it raises the natural logarithm of the evidence by less than this. Such evidence is
+/// not yet strong (Kass and Raftery 1995, table of Bayes factors).
+pub(crate) const WEAK_EVIDENCE: f64 = 3.0;
+/// Reason that is written for the verdict `no_gap`.
+pub(crate) const NOTHING_MISSING: &str = "noise and calibration within tolerance explain every reading";
+/// Reason that is written for the verdict `no_gap` if a calibrated factor is outside its tolerance.
+pub(crate) const BEYOND_TOLERANCE: &str =
+    "noise and calibration explain every reading, but not within tolerance";
 /// An effect is named only if at most this many alternatives would fit as well.
 const MOST_ALTERNATIVES: usize = 3;
 /// If the root mean square residual with all effects exceeds this many standard deviations, something else is missing,

@@ -77,13 +77,16 @@ pub fn asked(joint: &Value, study: &Value) -> Value {
     Value::Object(asked)
 }
 
-/// How far the tubes reach that follow the first one without a break \[m\].
+/// How far a straight rod reaches that lies in the first tube and those that follow it without a break \[m\].
 fn tubes_m(outboard: &[Chosen]) -> f64 {
-    let tube_m = |piece: &Chosen| match piece {
-        Chosen::Link(link) if link.option.is_some() => Some(link.vector_m.norm()),
+    let tube = |piece: &Chosen| match piece {
+        Chosen::Link(link) if link.option.is_some() => Some(link.vector_m),
         _ => None,
     };
-    outboard.iter().map(tube_m).skip_while(Option::is_none).map_while(|length_m| length_m).sum()
+    let mut tubes = outboard.iter().map(tube).skip_while(Option::is_none).map_while(|vector_m| vector_m);
+    let Some(first) = tubes.next() else { return 0.0 };
+    let is_straight = |next: &Vector3<f64>| next.angle(&first) < 0.1;
+    first.norm() + tubes.take_while(is_straight).map(|vector_m| vector_m.norm()).sum::<f64>()
 }
 
 /// The first link with a section before the next joint.
