@@ -78,7 +78,7 @@ fn intervals_of_positions_leave_room_for_what_yields_too_little_to_be_named() {
     let mut coverage = Coverage::default();
     for seed in 0..campaigns(1) as u64 {
         let own = folder.path().join(seed.to_string());
-        let truth = yielding_arm::make(&own, 400 + seed);
+        let truth = yielding_arm::make(&own, 1_100 + seed);
         let outcome = reconciled(&own);
         for finding in outcome.effects.iter().chain(&outcome.suspects) {
             let Some(compliance) = truth.of(&finding.effect, &finding.at) else { continue };

@@ -38,18 +38,14 @@ impl Best {
     /// Standard deviations of the model's numbers, in their units; infinite for a number that is fixed at its
     /// constraint.
     pub(crate) fn deviations(&self) -> Vec<f64> {
-        (0..self.step.len()).map(|number| self.deviation(&[(number, 1.0)])).collect()
-    }
-
-    /// Standard deviation of a quantity that depends on the model's numbers by the derivatives `gradient`, each given with
-    /// the index of its number; infinite if all these numbers are fixed at their constraints.
-    pub(crate) fn deviation(&self, gradient: &[(usize, f64)]) -> f64 {
-        let along = |slope: &Slope| gradient.iter().map(|(number, g)| g * slope.of(*number)).sum::<f64>();
-        let slopes = DVector::from_iterator(self.slopes.len(), self.slopes.iter().map(along));
-        match slopes.iter().any(|s| *s != 0.0) {
-            true => slopes.dot(&self.factor.solve(&slopes)).max(0.0).sqrt(),
-            false => f64::INFINITY,
-        }
+        let deviation = |number: usize| {
+            let slopes = DVector::from_iterator(self.slopes.len(), self.slopes.iter().map(|s| s.of(number)));
+            match slopes.iter().any(|s| *s != 0.0) {
+                true => slopes.dot(&self.factor.solve(&slopes)).max(0.0).sqrt(),
+                false => f64::INFINITY,
+            }
+        };
+        (0..self.step.len()).map(deviation).collect()
     }
 }
 

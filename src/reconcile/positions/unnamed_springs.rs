@@ -2,83 +2,32 @@
 //!
 //! Every joint and bearing is slightly compliant. Compliances that are too small to be worth their price are not in the
 //! model, and those in the model take over a part of their effect. The linearized model with all of them gives the size
-//! of this part. Before the readings are used, the prior standard deviation of a compliance outside the model is the
-//! geometric mean of those in it: compliances of one arm scatter in ratios, and what is outside has a small effect, often
-//! because its lever is short and not because it is stiff. The smallest compliance in the model would be too small a
-//! deviation, and the smaller, the more compliances are named. With the readings, the compliances outside the model have the
-//! most probable values `m` without a negative one, and the covariance matrix `P`. A number of the model with the variance
-//! `σ²` changes by `-L` per unit of these compliances. Its variance then becomes `σ² + L P Lᵀ + (L m)²`.
+//! of this part. Before the readings are used, the prior standard deviation of a compliance outside the model is that
+//! of the smallest compliance in it. With the readings, the compliances outside the model have the most probable values
+//! `m` and the covariance matrix `P`. A number of the model with the variance `σ²` changes by `-L` per unit of these
+//! compliances. Its variance then becomes `σ² + L P Lᵀ + (L m)²`.
 
 use super::analysis::Positions;
-use super::fitted::{Sample, misses};
+use super::fitted::Sample;
 use super::loads::CompliantPlace;
 use super::normal::Factor;
-use super::rows::{normal, normal_of_fit};
+use super::rows::normal;
 use super::shape::Shape;
-use super::springs::best_springs;
 use crate::arm::BASE;
 use crate::arm::effect::kind::ElasticRotation;
 use crate::arm::structure::Piece;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// Derivatives of a quantity with respect to numbers of the model, each with the index of its number.
-pub(super) type Gradient = Vec<(usize, f64)>;
-
-/// What the readings say about compliances outside the model, and how these change the numbers of the model.
-struct Unnamed {
-    /// By how much each number of the model (row) changes per unit of each compliance outside the model (column), with the
-    /// sign reversed.
-    moves: DMatrix<f64>,
-    /// The factorized inverse of the covariance matrix of these compliances, in units of `usual`.
-    seen: Cholesky<f64, Dyn>,
-    /// Their most probable values \[rad/(N m)\].
-    likely: DVector<f64>,
-    /// Standard deviation of each before the readings are used \[rad/(N m)\].
-    usual: f64,
-}
-
-impl Unnamed {
-    /// Variance that these compliances add to a quantity that depends on the model's numbers by the derivatives `gradient`,
-    /// each given with the index of its number.
-    fn variance(&self, gradient: &[(usize, f64)]) -> f64 {
-        let none = DVector::zeros(self.likely.len());
-        let moves =
-            gradient.iter().fold(none, |sum, (number, g)| sum + self.moves.row(*number).transpose() * *g);
-        moves.dot(&self.seen.solve(&moves)) * self.usual.powi(2) + moves.dot(&self.likely).powi(2)
-    }
-}
-
 impl Positions {
     /// Widens the standard deviations of the model's numbers by the uncertainty that comes from compliances outside
     /// the model.
     pub(super) fn widen(&mut self) {
-        let Some(unnamed) = self.unnamed() else { return };
-        let compliances = self.fitted.deviations.iter_mut().flatten();
-        let own = self.fitted.number_deviations.iter_mut().chain(compliances).enumerate();
-        own.for_each(|(number, own)| *own = (own.powi(2) + unnamed.variance(&[(number, 1.0)])).sqrt());
-    }
-
-    /// Standard deviations of quantities that depend on the model's numbers: the numbers of the geometry first, then the
-    /// compliances. Each quantity is given by its derivatives with respect to them, each with the index of its number. What the
-    /// numbers have in common and what compliances outside the model add is counted.
-    pub(super) fn deviations_of(&self, gradients: &[Gradient]) -> Vec<f64> {
-        let all: Vec<&Sample> = self.samples.iter().collect();
-        let equations = normal_of_fit(&all, &misses(&all, &self.fitted), &self.numbers, &self.fitted);
-        let best = best_springs(&equations, self.numbers.len(), &self.fitted.compliances);
-        let unnamed = self.unnamed();
-        let deviation = |gradient: &Gradient| {
-            let own = best.as_ref().map_or(f64::INFINITY, |best| best.deviation(gradient));
-            let further = unnamed.as_ref().map_or(0.0, |unnamed| unnamed.variance(gradient));
-            ((own * self.fitted.robust_factor).powi(2) + further).sqrt()
-        };
-        gradients.iter().map(deviation).collect()
-    }
-
-    /// The compliances outside the model; `None` if there are none, or if the model has no spring to compare them with.
-    fn unnamed(&self) -> Option<Unnamed> {
         let unnamed = self.unnamed_springs();
-        let usual = self.usual_named().filter(|_| !unnamed.is_empty())?;
-        self.seen_outside(&unnamed, usual)
+        let Some(usual) = self.stiffest_named().filter(|_| !unnamed.is_empty()) else { return };
+        let Some(further) = self.further_variances(&unnamed, usual) else { return };
+        let compliances = self.fitted.deviations.iter_mut().flatten();
+        let own = self.fitted.number_deviations.iter_mut().chain(compliances);
+        own.zip(&further).for_each(|(own, more)| *own = (own.powi(2) + more).sqrt());
     }
 
     /// Indices of the candidates with a single compliance that are neither in the model nor contained in a frame of
@@ -106,17 +55,18 @@ impl Positions {
         (0..self.candidates.len()).filter(is_spring).filter(|c| !is_named(*c)).collect()
     }
 
-    /// The geometric mean \[rad/(N m)\] of the compliances of those effects of the model that are springs with a single
+    /// The smallest compliance \[rad/(N m)\] among those effects of the model that are springs with a single
     /// compliance; `None` if there are none.
-    fn usual_named(&self) -> Option<f64> {
+    fn stiffest_named(&self) -> Option<f64> {
         let named = self.fitted.effects.iter().zip(&self.fitted.compliances);
         let springs = named.filter(|(e, own)| self.candidates[**e].shape == Shape::Spring && own.len() == 1);
-        geometric_mean(springs.map(|(_, own)| own[0]).filter(|c| *c > 0.0))
+        springs.map(|(_, own)| own[0]).filter(|c| *c > 0.0).reduce(f64::min)
     }
 
-    /// What the readings say about the candidates with the indices `unnamed`, which are outside the model. `usual` is the
-    /// prior standard deviation of their compliances \[rad/(N m)\]. `None` if the equations are singular.
-    fn seen_outside(&self, unnamed: &[usize], usual: f64) -> Option<Unnamed> {
+    /// Variance that the compliances outside the model add to every number of the model, those of the geometry first.
+    /// `unnamed` are the indices of the candidates outside the model, and `usual` is the prior standard deviation of
+    /// their compliances \[rad/(N m)\]. `None` if the equations are singular.
+    fn further_variances(&self, unnamed: &[usize], usual: f64) -> Option<Vec<f64>> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let from_level = self.fitted.geometry.level_to_instrument();
         let gravity = &self.fitted.geometry.gravity;
@@ -138,15 +88,16 @@ impl Positions {
         let pull = equations.gradient.rows(own, count) - moves.transpose() * equations.gradient.rows(0, own);
         let seen = Cholesky::new(seen)?;
         // no compliance is negative
-        let likely = none_negative(&seen, &(pull * (per / usual))) * usual;
-        Some(Unnamed { moves, seen, likely, usual })
+        let likely = match self.is_long() {
+            true => none_negative(&seen, &(pull * (per / usual))) * usual,
+            false => seen.solve(&(pull * (per / usual))).map(|c| c.max(0.0) * usual),
+        };
+        let variance = |row: usize| {
+            let row = moves.row(row).transpose();
+            row.dot(&seen.solve(&row)) * usual.powi(2) + row.dot(&likely).powi(2)
+        };
+        Some((0..own).map(variance).collect())
     }
-}
-
-/// The geometric mean of positive numbers; `None` if there are none.
-fn geometric_mean(numbers: impl Iterator<Item = f64>) -> Option<f64> {
-    let (sum, count) = numbers.fold((0.0, 0.0), |(sum, count), x| (sum + libm::log(x), count + 1.0));
-    (count > 0.0).then(|| libm::exp(sum / count))
 }
 
 /// The vector `x` without a negative entry at which `½ xᵀ A x - bᵀ x` is least, for a positive definite matrix `A` (the active
@@ -194,26 +145,6 @@ mod tests {
     use super::*;
     use rand_xoshiro::Xoshiro256PlusPlus;
     use rand_xoshiro::rand_core::{Rng, SeedableRng};
-
-    #[test]
-    fn what_is_usual_does_not_fall_with_the_number_of_compliances_that_scatter() {
-        assert_eq!(geometric_mean([].into_iter()), None);
-        for count in [1, 3, 10] {
-            let part = |k: i32| f64::from(k) / f64::from(count);
-            let found = geometric_mean((-count..=count).map(|k| 3e-6 * libm::exp(part(k)))).expect("a mean");
-            assert!((found / 3e-6 - 1.0).abs() < 1e-12, "{count}: {found}");
-        }
-    }
-
-    #[test]
-    fn compliances_outside_the_model_widen_a_quantity_by_what_they_may_be_and_by_what_they_are() {
-        let moves = DMatrix::from_row_slice(2, 2, &[2.0, 0.0, -1.0, 3.0]);
-        let seen = Cholesky::new(DMatrix::from_row_slice(2, 2, &[4.0, 0.0, 0.0, 25.0])).expect("definite");
-        let unnamed = Unnamed { moves, seen, likely: DVector::from_vec(vec![0.1, 0.2]), usual: 10.0 };
-        // of the first number plus twice the second: 0 and 6 per unit, with the variances 100/4 and 100/25
-        let found = unnamed.variance(&[(0, 1.0), (1, 2.0)]);
-        assert!((found - (36.0 * 4.0 + 1.2f64.powi(2))).abs() < 1e-9, "{found}");
-    }
 
     #[test]
     fn the_best_vector_without_a_negative_entry_is_the_best_of_all_active_sets() {
