@@ -261,7 +261,7 @@ fn a_body_beside_a_tube_is_said_to_lower_the_lowest_mode() {
     };
     let beam =
         json!({"shape": "i_beam", "width_m": 0.08, "height_m": 0.1, "web_m": 0.005, "flange_m": 0.006});
-    for (cg_m, mass_kg, lowest_hz) in [([0.3, 0.15, 0.0], 5.0, 28.071), ([0.25, 0.08, 0.0], 3.0, 55.792)] {
+    for (cg_m, mass_kg, lowest_hz) in [([0.3, 0.15, 0.0], 5.0, 27.811), ([0.25, 0.08, 0.0], 3.0, 55.276)] {
         let (json, text) = analysis(beam.clone(), cg_m, mass_kg);
         let divided_hz = json["lowest_mode_divided_hz"].as_f64().expect("a frequency");
         assert!((divided_hz / lowest_hz - 1.0).abs() < 1e-4, "{divided_hz}");

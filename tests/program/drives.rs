@@ -66,7 +66,7 @@ fn stiffnesses_in_newton_metres_per_arcmin_are_refused() {
     let (code, said) = armwright(here.path(), &["catalog", "check", "--catalogs", "parts"]);
     assert_eq!(code, 0, "{said}");
     assert!(said.contains("gives 9.004e2 arcmin under rated_torque_nm = 110"), "{said}");
-    assert!(said.contains("inertia_input_kgm2 = 0.16 gives sqrt(J/m)"), "{said}");
+    assert!(said.contains("inertia_input_kgm2: = 0.16 gives sqrt(J/m)"), "{said}");
 }
 
 fn own_gears() -> String {
