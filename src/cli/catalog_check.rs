@@ -200,13 +200,15 @@ fn rigid_bearings(catalogs: &Catalogs) -> String {
     }
 }
 
-/// Ratings that a row of a belt may leave blank, each with the number that stands for it.
-const OF_BELTS: [(&str, fn(&Gear) -> Option<f64>); 4] = [
-    ("average_torque_limit_nm", |gear| gear.average_torque_limit_nm),
-    ("repeated_peak_torque_nm", |gear| gear.repeated_peak_torque_nm),
-    ("momentary_peak_torque_nm", |gear| gear.momentary_peak_torque_nm),
-    ("average_input_speed_limit_rpm", |gear| gear.average_input_speed_limit_rpm),
-];
+/// Ratings that the row of a belt may leave blank, each as its column and the number that then stands for it.
+fn ratings_of_belt(belt: &Gear) -> [(&'static str, Option<f64>); 4] {
+    [
+        ("average_torque_limit_nm", belt.average_torque_limit_nm),
+        ("repeated_peak_torque_nm", belt.repeated_peak_torque_nm),
+        ("momentary_peak_torque_nm", belt.momentary_peak_torque_nm),
+        ("average_input_speed_limit_rpm", belt.average_input_speed_limit_rpm),
+    ]
+}
 
 /// A list of the belts with their blank ratings, the numbers that stand for them, and what no check of a belt sees.
 fn belts(catalogs: &Catalogs) -> String {
@@ -216,12 +218,15 @@ fn belts(catalogs: &Catalogs) -> String {
     for gear in catalogs.gears.iter().filter(is_rated) {
         let Provenance { file, line, .. } = &gear.provenance;
         let printed = catalogs.printed_row(&gear.provenance);
-        let stands = OF_BELTS.iter().filter(|(column, _)| cell(printed, column).is_empty());
+        let stands = ratings_of_belt(gear).into_iter().filter(|(column, _)| cell(printed, column).is_empty());
         let stands: Vec<String> =
-            stands.filter_map(|(column, rating)| Some(format!("{column} {}", rating(gear)?))).collect();
+            stands.filter_map(|(column, rating)| Some(format!("{column} {}", rating?))).collect();
         let words = match stands.as_slice() {
             [] => "all ratings stated".to_string(),
-            stands => format!("blank, so the next lower rating stands for it: {}", stands.join(", ")),
+            stands => format!(
+                "blank, so the next lower rating (of the mean speed: the largest speed) stands for it: {}",
+                stands.join(", ")
+            ),
         };
         let _ = writeln!(out, "  {file}:{line} {}: {words}", gear.id);
     }

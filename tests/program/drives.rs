@@ -44,7 +44,7 @@ fn a_belt_with_one_rated_torque_and_one_largest_speed_is_sized() {
     assert_eq!(row["gear"], "GTX-60-12", "{row}");
     let (code, said) = armwright(here.path(), &["catalog", "check", "--catalogs", "parts"]);
     assert_eq!(code, 0, "{said}");
-    let stands = "GTX-60-12: blank, so the next lower rating stands for it: average_torque_limit_nm 300, \
+    let stands = "GTX-60-12: blank, so the next lower rating (of the mean speed: the largest speed) stands for it: average_torque_limit_nm 300, \
                   repeated_peak_torque_nm 300, momentary_peak_torque_nm 300, average_input_speed_limit_rpm 6000";
     assert!(said.contains(stands) && said.contains("not checked: pretension"), "{said}");
     let lacks = "GTZ-60-12: cannot be chosen by size and run: no rated_torque_nm (mean, peak and stop)\n";
