@@ -62,7 +62,7 @@ impl Gear {
     fn lacking_limits(&self) -> Vec<Lack> {
         let is_belt = self.kind == GearKind::Belt;
         let mut lacks = match is_belt && self.average_torque_limit_nm.is_none() {
-            true => blank(&[(None, "rated_torque_nm", "mean, peak and stop")]),
+            true => self.lacking_of_belt(),
             false => blank(&[
                 (self.repeated_peak_torque_nm, "repeated_peak_torque_nm", "peak"),
                 (self.average_torque_limit_nm, "average_torque_limit_nm", "mean"),
@@ -75,6 +75,18 @@ impl Gear {
             lacks.extend(blank(&[(mean_speed_rpm, "average_input_speed_limit_rpm", "mean input speed")]));
         }
         lacks
+    }
+
+    /// The rated torque, which a belt without a limit on its mean torque lacks, and the checks for which it is needed.
+    fn lacking_of_belt(&self) -> Vec<Lack> {
+        let is_blank = |rating: Option<f64>| rating.is_none();
+        let purpose = match [self.repeated_peak_torque_nm, self.momentary_peak_torque_nm].map(is_blank) {
+            [true, true] => "mean, peak and stop",
+            [true, false] => "mean and peak",
+            [false, true] => "mean and stop",
+            [false, false] => "mean",
+        };
+        vec![Lack { figure: "rated_torque_nm", purpose }]
     }
 
     /// The missing ratings that the checks of a gear with teeth, or of a belt, need.

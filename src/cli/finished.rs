@@ -1,7 +1,7 @@
 //! The output of a finished search: its files, the page for a browser, and the text for the terminal.
 
 use super::exit::Exit;
-use super::extra_files::{ExtraFiles, another_stands, say_missing};
+use super::extra_files::{ExtraFiles, say_missing};
 use super::failure::Failure;
 use super::manifest::{FRONT, Files, OF_A_RUN, PICTURE, RUN, STUDY, SUMMARY, hash};
 use super::progress::Progress;
@@ -193,8 +193,7 @@ impl Finished<'_> {
             }
         }
         let terminal = extra.make("the summary on the terminal", || terminal_summary(&summary));
-        extra.missing.extend(left_out.iter().map(|name| another_stands(name)));
-        say_missing(&extra.missing, self.setup.log);
+        say_missing(&extra.missing_with(&left_out), self.setup.log);
         files.retain(|(name, _)| !left_out.contains(name));
         let paragraphs = supplements.iter().map(|s| &s.terminal).filter(|text| !text.is_empty());
         let paragraphs: String = paragraphs.map(|text| format!("\n{text}")).collect();

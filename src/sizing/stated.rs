@@ -90,14 +90,14 @@ impl StatedDuty {
         let ends_rpm = self.ends_rpm();
         let jumps = (0..ends_rpm.len()).map(|i| {
             let [before, after] = [ends_rpm[i][1], ends_rpm[(i + 1) % ends_rpm.len()][0]];
-            if is_about(before, after) { 0.0 } else { (after - before).abs() * RAD_S_PER_RPM / jump_s }
+            if is_about(before, after) { 0.0 } else { (after - before).abs() / jump_s }
         });
         // a ramp that takes no time is a jump too
-        let at_once = self.phases.iter().zip(&ends_rpm).filter(|(phase, _)| phase.time_s == 0.0);
-        let at_once = at_once.map(|(_, [start, end])| (end - start).abs() * RAD_S_PER_RPM / jump_s);
-        let ramps = self.accelerations_rad_s2().into_iter().map(f64::abs);
-        let steepest_rad_s2 = jumps.chain(at_once).chain(ramps).fold(0.0, f64::max);
-        if steepest_rad_s2 > 0.0 { self.fastest_rpm() * RAD_S_PER_RPM / steepest_rad_s2 } else { jump_s }
+        let duration_s = |phase: &StatedPhase| if phase.time_s > 0.0 { phase.time_s } else { jump_s };
+        let ramps = self.phases.iter().zip(&ends_rpm);
+        let ramps = ramps.map(|(phase, [start, end])| (end - start).abs() / duration_s(phase));
+        let steepest_rpm_s = jumps.chain(ramps).fold(0.0, f64::max);
+        if steepest_rpm_s > 0.0 { self.fastest_rpm() / steepest_rpm_s } else { jump_s }
     }
 
     /// The numbers of the phases that count as ramps, from 1.

@@ -13,6 +13,7 @@ use crate::mechanics::beam::section_frame;
 use crate::mechanics::statics::JointLoad;
 use crate::mechanics::{Wrench, angular, linear};
 use crate::sizing::bearing::{BearingLimits, BearingLoad};
+use crate::sizing::demand::JointMotion;
 use nalgebra::Vector3;
 
 /// What must be known of a space, in addition to poses and masses, to compute the loads on output bearings.
@@ -26,7 +27,8 @@ pub(crate) struct BearingLoads {
     pub checked: Vec<bool>,
 }
 
-/// A joint that accelerates while the other joints are at rest.
+/// A joint that accelerates while the other joints are at rest. For a prismatic joint, metres take the place of radians.
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Mover {
     /// Slot of the joint.
     pub slot: usize,
@@ -34,6 +36,13 @@ pub(crate) struct Mover {
     pub acceleration_rad_s2: f64,
     /// Ratio of the deceleration in its emergency stop to this acceleration, at least 1.
     pub stop_factor: f64,
+}
+
+impl Mover {
+    /// The joint in `slot`, which moves as `motion` says.
+    pub(crate) fn new(slot: usize, motion: &JointMotion) -> Self {
+        Self { slot, acceleration_rad_s2: motion.acceleration_rad_s2, stop_factor: motion.stop.factor }
+    }
 }
 
 /// The lever: the distance, along the axis of a joint, from the face of its flange to the point at which the link
@@ -128,8 +137,7 @@ impl BearingLoads {
             let motion = joint.motion(&space.motion, reach_m);
             // a passive joint moves only together with its driving joints, so it is not a mover of its own
             if joint.coupled.is_none() {
-                let (acceleration_rad_s2, stop_factor) = (motion.acceleration_rad_s2, motion.stop.factor);
-                movers.push(Mover { slot, acceleration_rad_s2, stop_factor });
+                movers.push(Mover::new(slot, &motion));
             }
             if has_bearing(&slots[slot], joint) {
                 levers[slot] = Some(Lever::new(space, piece, joint, piece_slots));

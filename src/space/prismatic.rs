@@ -63,14 +63,9 @@ impl SpacePrismatic {
 
     /// The motion of the joint, with metres in the place of radians: that of its sized drive, or that of the tip if the
     /// drive is given.
-    fn motion(&self, asked: &MotionRequirement) -> JointMotion {
+    pub(crate) fn motion(&self, asked: &MotionRequirement) -> JointMotion {
         let sized = self.drive.as_ref().map(|drive| drive.motion(asked));
         sized.unwrap_or_else(|| along_its_way(asked, asked.tip_speed_m_s))
-    }
-
-    /// Acceleration of the joint in its ramps \[m/s²\].
-    pub(crate) fn acceleration_m_s2(&self, asked: &MotionRequirement) -> f64 {
-        self.motion(asked).acceleration_rad_s2
     }
 
     /// Deceleration of the joint in an emergency stop \[m/s²\], at least its acceleration in the ramps.

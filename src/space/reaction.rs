@@ -6,6 +6,7 @@
 //! ([`demand`](crate::sizing::demand)), since the vendors' procedures size one axis at a time. So this torque is no
 //! part of their demand.
 
+use super::bearing_loads::Mover;
 use super::design_space::SpacePiece;
 use super::problem::ArmProblem;
 use super::station::{StationJoint, StationSlot};
@@ -25,15 +26,6 @@ pub(crate) struct Reaction {
     /// Static torque plus the torque due to the other joint's emergency stop \[N m\]. For a prismatic joint, these are
     /// forces \[N\].
     pub in_stop_nm: f64,
-}
-
-/// A joint that moves by itself: its slot (place in the arm, counted from the tip), and its acceleration in a ramp
-/// \[rad/s²\] (\[m/s²\] for a prismatic joint).
-struct Mover {
-    slot: usize,
-    acceleration: f64,
-    /// Ratio of the deceleration in its emergency stop to the acceleration, at least 1.
-    stop_factor: f64,
 }
 
 impl ArmProblem<'_> {
@@ -66,7 +58,7 @@ impl ArmProblem<'_> {
             // with the index of the joint that moves
             let with_mover = |times: fn(&Mover) -> f64| {
                 let held = |other: usize| {
-                    let acceleration = times(&movers[other]) * movers[other].acceleration;
+                    let acceleration = times(&movers[other]) * movers[other].acceleration_rad_s2;
                     let held_nm =
                         |at: usize| static_nm[here][at] + inertia_kgm2[here][other][at] * acceleration;
                     (0..cases.len()).map(held_nm).fold(0.0, f64::max)
@@ -90,20 +82,12 @@ impl ArmProblem<'_> {
 
     /// The joints that move by themselves, tip first. A passive joint moves only together with its driving joint.
     fn movers(&self) -> Vec<Mover> {
-        let motion = &self.space().motion;
-        let of_joints = self.bearing_loads().movers.iter();
-        let of_joints = of_joints.map(|m| Mover {
-            slot: m.slot,
-            acceleration: m.acceleration_rad_s2,
-            stop_factor: m.stop_factor,
-        });
         let rail = |(piece, what): (usize, &SpacePiece)| {
             let SpacePiece::Prismatic(rail) = what else { return None };
-            let (slot, acceleration) = (self.slot_of_piece(piece), rail.acceleration_m_s2(motion));
-            Some(Mover { slot, acceleration, stop_factor: rail.stop_m_s2(motion) / acceleration })
+            Some(Mover::new(self.slot_of_piece(piece), &rail.motion(&self.space().motion)))
         };
         let rails = self.space().pieces.iter().enumerate().filter_map(rail);
-        let mut out: Vec<Mover> = of_joints.chain(rails).collect();
+        let mut out: Vec<Mover> = self.bearing_loads().movers.iter().copied().chain(rails).collect();
         out.sort_by_key(|mover| mover.slot);
         out
     }

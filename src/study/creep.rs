@@ -52,10 +52,10 @@ pub(crate) fn creep_sentence(
     let name = without_factors(name);
     let row = catalogs.materials.iter().find(|row| row.name == name);
     let class = material.class.or(row.map(|row| row.class))?;
-    let (whose, modulus_pa) = match row {
-        Some(row) => ("the catalog's modulus", row.youngs_modulus_pa),
-        None => ("the stated modulus", material.youngs_modulus_pa),
-    };
+    // an arm file may state another modulus than the row of this name in the catalogs at hand
+    let modulus_pa = material.youngs_modulus_pa;
+    let is_of_row = row.is_some_and(|row| row.youngs_modulus_pa == modulus_pa);
+    let whose = if is_of_row { "the catalog's modulus" } else { "the stated modulus" };
     class.caution().map(|caution| {
         format!(
             "{name} ({class}) in {links}: {caution}. Deflections, stresses and frequencies are those of a short load with \

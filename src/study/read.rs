@@ -216,7 +216,7 @@ fn weight_is_needed(root: &Object, gravity_m_s2: f64, motion: &MotionRequirement
     match node.filter(|_| gravity_m_s2 == 0.0) {
         Some(node) => node.fault(
             "asks for loads as a multiple of the weight, and without gravity there is none",
-            "leave stress_safety_factor_min and the paper's linear_torque away, or state gravity_m_s2",
+            "leave stress_safety_factor_min away, or state gravity_m_s2",
         ),
         None => Some(()),
     }

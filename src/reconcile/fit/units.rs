@@ -13,6 +13,7 @@ use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::forward::statics::StaticPose;
 use crate::reconcile::model::parameters::Candidate;
 use crate::reconcile::readings::components::{DISPLACEMENT, FEWEST_ALIKE};
+use std::collections::BTreeSet;
 
 /// Largest difference between the logarithm of the ratio of readings to nominal predictions and the logarithm of the
 /// factor between two units. It is wide, because an effect that is still missing changes the ratio.
@@ -159,7 +160,9 @@ fn other_units(forward: &Forward) -> Vec<String> {
         ("every reading under a force alone".into(), loaded(false), forces),
     ];
     let found = parts.into_iter().filter_map(|(what, own, slips)| {
-        let rest: Vec<usize> = range.clone().filter(|i| !own.contains(i)).collect();
+        // a set, because a campaign may have 100,000 rows
+        let own_set: BTreeSet<usize> = own.iter().copied().collect();
+        let rest: Vec<usize> = range.clone().filter(|i| !own_set.contains(i)).collect();
         let (of_own, of_rest) = (ratio(&pairs(&own))?, ratio(&pairs(&rest))?);
         // if the rest is off by the same factor, nothing is special about this part
         if libm::log(of_own / of_rest).abs() < UNIT_TOLERANCE {
