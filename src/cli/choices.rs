@@ -5,7 +5,7 @@ use super::compare::files_of_comparison;
 use super::compare_remarks::{remarks, said_by};
 use super::corrections;
 use super::exit::{Answer, Exit};
-use super::extra_files::{another_stands, say_missing};
+use super::extra_files::say_taken;
 use super::failure::Failure;
 use super::finished::{Written, catalogs_hash, pretty};
 use super::log::Log;
@@ -201,7 +201,7 @@ fn publish(
     ];
     files.extend(pictures(&comparison, &contenders));
     let left_out = folder.publish(&files)?;
-    say_missing(&left_out.iter().map(|name| another_stands(name)).collect::<Vec<_>>(), log);
+    say_taken(&left_out, log);
     let sentences = words_of(dir, fronts, &joint);
     let lines = |words: &[String]| words.iter().map(|w| wrap(w, TERMINAL, "")).collect::<String>();
     let text = format!(

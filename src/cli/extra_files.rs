@@ -2,7 +2,7 @@
 //! one fails.
 
 use super::log::Log;
-use super::manifest::Files;
+use super::manifest::{Files, another_stands};
 use super::stop::stop_if_wanted;
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -48,10 +48,9 @@ pub(super) fn words_of(panic: &(dyn Any + Send)) -> String {
     format!("internal error: {}", text.unwrap_or("it has no message"))
 }
 
-/// The reason, in words, why the file `name` of the result was not written: a file of this name exists that is not part
-/// of a result, and it must not be overwritten.
-pub(super) fn another_stands(name: &str) -> String {
-    format!("{name}: a file that is no part of the result stands there")
+/// Prints a warning for each file that was not written because its name is `taken` by a file of someone else.
+pub(super) fn say_taken(taken: &[String], log: Log) {
+    say_missing(&ExtraFiles::default().missing_with(taken), log);
 }
 
 /// Prints a warning for each file that was not written.

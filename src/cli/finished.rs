@@ -181,13 +181,7 @@ impl Finished<'_> {
             let run = self.fill(&summary, &supplements, &mut extra);
             let mut all = [tables, std::mem::take(&mut extra.files)].concat();
             all.push((RUN.into(), pretty(&run)));
-            let kept = keep(&all).and_then(|names| {
-                // run.json says too which names are taken, and that is known only now
-                all.last_mut().expect("run.json").1 =
-                    pretty(&self.run_json(&summary, &supplements, &extra.missing_with(&names)));
-                if names.is_empty() { Ok(names) } else { keep(&all) }
-            });
-            match kept {
+            match keep(&all) {
                 Ok(names) => (left_out, files) = (names, all),
                 Err(e) => extra.missing.push(format!("what goes with the front: {e}")),
             }

@@ -3,7 +3,7 @@
 //! that the result is complete.
 
 use super::failure::Failure;
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::path::{Component, Path};
 
@@ -103,18 +103,30 @@ pub(super) fn hash(bytes: &[u8]) -> String {
     blake3::hash(bytes).to_hex().to_string()
 }
 
-/// The files of a result, with the list of their hashes added to the file named `manifest`, which comes last.
+/// The reason, in words, why the file `name` of the result was not written: a file of this name exists that is not part
+/// of a result, and it must not be overwritten.
+pub(super) fn another_stands(name: &str) -> String {
+    format!("{name}: a file that is no part of the result stands there")
+}
+
+/// The files of a result, with two lists added to the file named `manifest`, which comes last: `files` has the hashes of
+/// the others. `not_written` says what is missing: what `manifest` says already, and the files named `taken`, in whose
+/// places files stand that are no part of the result.
 ///
 /// # Errors
 /// The manifest is not among the files, or it is not a JSON object.
-pub(super) fn sealed(mut files: Files, manifest: &str) -> Result<Files, Failure> {
+pub(super) fn sealed(mut files: Files, manifest: &str, taken: &[String]) -> Result<Files, Failure> {
     let internal = || Failure::Internal(format!("{manifest} cannot list the files of the result"));
     let at = files.iter().position(|(name, _)| name == manifest).ok_or_else(internal)?;
     let (name, bytes) = files.remove(at);
     let mut value: Value = serde_json::from_slice(&bytes).map_err(|_| internal())?;
     let list: Map<String, Value> =
         files.iter().map(|(name, bytes)| (name.clone(), Value::String(hash(bytes)))).collect();
-    value.as_object_mut().ok_or_else(internal)?.insert("files".into(), Value::Object(list));
+    let keys = value.as_object_mut().ok_or_else(internal)?;
+    keys.insert("files".into(), Value::Object(list));
+    let missing =
+        keys.entry("not_written").or_insert_with(|| json!([])).as_array_mut().ok_or_else(internal)?;
+    missing.extend(taken.iter().map(|name| another_stands(name).into()));
     let mut text = serde_json::to_vec_pretty(&value).map_err(|_| internal())?;
     // if the manifest ended in a line break before, it does so again
     text.extend(bytes.last().filter(|last| **last == b'\n'));

@@ -43,6 +43,8 @@ const LIST: Kind = Kind::List(&Kind::Anything);
 const STATUS: Kind = Kind::Word(&["complete", "certified", "partial", "interrupted", "infeasible"]);
 const FILES: Key =
     required("files", Kind::Map(&Kind::Text), "-", "Every other file, with the BLAKE3 hash of its bytes.");
+const NOT_WRITTEN: Key =
+    required("not_written", WORDS, "-", "What could not be made or written; empty in a whole result.");
 const VERSION: Key = required("tool_version", Kind::Text, "-", "Version of armwright that wrote the file.");
 const SCHEMA_VERSION: Key = required("schema_version", Kind::Whole(1), "-", "Of this file.");
 const STUDY: Key = required("study", Kind::Text, "-", "Name of the study.");
@@ -116,7 +118,7 @@ static RUN: Shape = Shape::new(
         required("catalogs", Kind::Either(&[Kind::Text, Kind::Null]), "-", "Folder of own rows."),
         STUDY_HASH,
         CATALOGS_HASH,
-        required("not_written", WORDS, "-", "What could not be made; empty in a whole result."),
+        NOT_WRITTEN,
         optional(
             "worst_poses",
             Kind::Anything,
@@ -164,6 +166,7 @@ static CHOICES: Shape = Shape::new(
         CATALOGS_HASH,
         VERSION,
         FILES,
+        NOT_WRITTEN,
     ],
     &[],
 );
@@ -267,6 +270,7 @@ static SHARD: Shape = Shape::new(
         THREADS,
         PLATFORM,
         FILES,
+        NOT_WRITTEN,
     ],
     &[],
 );
@@ -347,6 +351,13 @@ static VERDICT: Shape = Shape::new(
             "-",
             "left out by the library",
             "Every other file, with the BLAKE3 hash of its bytes.",
+        ),
+        optional(
+            "not_written",
+            WORDS,
+            "-",
+            "left out by the library",
+            "What could not be made or written; empty in a whole result.",
         ),
     ],
     &[],

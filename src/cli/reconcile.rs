@@ -2,7 +2,7 @@
 //! study.
 
 use super::exit::{Answer, Exit};
-use super::extra_files::{ExtraFiles, another_stands, say_missing};
+use super::extra_files::{ExtraFiles, say_missing, say_taken};
 use super::failure::Failure;
 use super::finished::catalogs_hash;
 use super::log::Log;
@@ -23,7 +23,7 @@ use crate::reconcile::verdict::page::campaign_page;
 use crate::report::file_names::folder_name;
 use crate::report::words::{TERMINAL, wrap};
 use clap::Args;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -108,7 +108,7 @@ pub(crate) fn run(args: &ReconcileArgs, setup: Setup) -> Result<Answer, Failure>
         exit = rerun.exit;
         add(&mut files, rerun);
         let left_out = folder.publish(&files)?;
-        say_missing(&left_out.iter().map(|name| another_stands(name)).collect::<Vec<_>>(), log);
+        say_taken(&left_out, log);
     }
     text.push_str(&format!("written to {}\n", out.display()));
     Ok(Answer { text, exit })
@@ -136,6 +136,8 @@ fn kept_before(out: &Path, campaign: &Campaign, hash_of_catalogs: &str) -> Optio
     ))
 }
 
+/// Key of the verdict under which stands what could not be written.
+const NOT_WRITTEN: &str = "not_written";
 /// Name of the file with the verdict as text.
 const TEXT: &str = "verdict.txt";
 
@@ -165,6 +167,7 @@ fn keep(
     let texts = outcome.files().into_iter().map(|(name, text)| (name, text.into_bytes()));
     let mut files: Files = texts.collect();
     change_verdict(&mut files, "catalogs_hash", hash_of_catalogs.into());
+    change_verdict(&mut files, NOT_WRITTEN, json!([PAGE]));
     let mut left_out = folder.publish(&files)?;
     let mut extra = ExtraFiles::default();
     let page = extra.make("report.html and plots", || {
@@ -172,6 +175,7 @@ fn keep(
         (page.page().into_files(), page.terminal())
     });
     let (of_page, terminal) = page.unwrap_or_default();
+    change_verdict(&mut files, NOT_WRITTEN, json!(extra.missing));
     match folder.publish(&[files.clone(), of_page.clone()].concat()) {
         Ok(names) => {
             files.extend(of_page);
@@ -179,8 +183,7 @@ fn keep(
         }
         Err(e) => extra.missing.push(format!("the page: {e}")),
     }
-    extra.missing.extend(left_out.iter().map(|name| another_stands(name)));
-    say_missing(&extra.missing, log);
+    say_missing(&extra.missing_with(&left_out), log);
     Ok((files, terminal))
 }
 

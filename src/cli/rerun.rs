@@ -156,7 +156,7 @@ fn run_once(
 /// The files of one run with their manifest, under their paths in the folder of the campaign's result. `folder` is
 /// `nominal` or `corrected`.
 fn placed(files: &[(String, Vec<u8>)], folder: &str) -> Result<Files, Failure> {
-    let whole = sealed(files.to_vec(), RUN)?;
+    let whole = sealed(files.to_vec(), RUN, &[])?;
     Ok(whole.into_iter().map(|(name, bytes)| (format!("study/{folder}/{name}"), bytes)).collect())
 }
 

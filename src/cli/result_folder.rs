@@ -71,7 +71,8 @@ impl ResultFolder {
     }
 
     /// Replaces the result in the folder by these files, which include the manifest. Returns the names of the files
-    /// that were left out. A file is left out if its name is taken by something that is not part of the earlier result.
+    /// that were left out. A file is left out if its name is taken by something that is not part of the earlier result;
+    /// the manifest says so.
     ///
     /// # Errors
     /// The folder cannot be written. Either the earlier result stays, or the new result counts and the next reader
@@ -82,8 +83,9 @@ impl ResultFolder {
             is_foreign(&self.folder, name, &earlier, self.manifest) && !self.has(name, bytes)
         };
         let (foreign, own): (Files, Files) = files.iter().cloned().partition(is_foreign);
+        let taken: Vec<String> = foreign.into_iter().map(|(name, _)| name).collect();
         let state = self.folder.join(STATE);
-        let staged = self.stage(&sealed(own, self.manifest)?).and_then(|()| {
+        let staged = self.stage(&sealed(own, self.manifest, &taken)?).and_then(|()| {
             // from here on the new result counts
             rename(&state.join("next"), &state.join("ready"))
         });
@@ -93,7 +95,7 @@ impl ResultFolder {
         }
         let moved = sync_folder(&state).and_then(|()| roll_forward(&self.folder));
         moved.map_err(|e| Failure::file(&self.folder, "complete", &e))?;
-        Ok(foreign.into_iter().map(|(name, _)| name).collect())
+        Ok(taken)
     }
 
     /// Removes the saved states of unfinished searches when a search has ended as `end` says. They are kept if the user

@@ -3,7 +3,7 @@
 use super::choices::{Each, run_choices};
 use super::corrections;
 use super::exit::Answer;
-use super::extra_files::{another_stands, say_missing};
+use super::extra_files::say_taken;
 use super::failure::Failure;
 use super::finished::{
     Facts, Written, catalogs_hash, facts_of, front_of_material, is_front_of_material, pretty,
@@ -324,7 +324,7 @@ fn run_paper(args: &RunArgs, Setup { catalogs, log, .. }: Setup) -> Result<Strin
     files.push((RUN.into(), pretty(&run)));
     files.extend(page.into_files());
     let left_out = folder.publish(&files)?;
-    say_missing(&left_out.iter().map(|name| another_stands(name)).collect::<Vec<_>>(), log);
+    say_taken(&left_out, log);
     files.retain(|(name, _)| !left_out.contains(name));
     Ok(format!("{}\n{}", output.terminal, told(&dir, &files)))
 }

@@ -57,7 +57,7 @@ impl<'c> Joints<'c> {
         for (place, piece) in space.pieces.iter().enumerate() {
             let (SpacePiece::Joint(joint), Some(slot)) = (piece, tabulated.slot(place)) else {
                 joints.slots.push(None);
-                joints.needs.push(JointNeeds::default());
+                joints.needs.push(JointNeeds::without_bearing(space, piece));
                 joints.levers.push(None);
                 continue;
             };
@@ -89,16 +89,29 @@ impl<'c> Joints<'c> {
 }
 
 impl JointNeeds {
+    /// The data of a piece that is no joint with an output bearing. Only a rail moves; its acceleration and its stop
+    /// load the bearings of other joints.
+    fn without_bearing(space: &DesignSpace, piece: &SpacePiece) -> Self {
+        match piece {
+            SpacePiece::Prismatic(rail) => Self::moving(&rail.motion(&space.motion)),
+            _ => Self::default(),
+        }
+    }
+
+    /// The data of a joint that moves as `motion` says and whose bearing is rigid and not checked.
+    fn moving(motion: &JointMotion) -> Self {
+        Self {
+            acceleration_rad_s2: motion.acceleration_rad_s2,
+            stop_factor: motion.stop.factor,
+            ..Self::default()
+        }
+    }
+
     /// The data of `joint` that a compiled pose needs. `slot` is its place in the arm, with its drives. `reach_m` is
     /// the distance of the tip from the joint's axis \[m\]; the angular acceleration follows from it and the tip's
     /// acceleration.
     fn of(space: &DesignSpace, joint: &SpaceJoint, reach_m: f64, slot: &Slot) -> Self {
-        let motion = joint.motion(&space.motion, reach_m);
-        let of_gear = Self {
-            acceleration_rad_s2: motion.acceleration_rad_s2,
-            stop_factor: motion.stop.factor,
-            ..Self::default()
-        };
+        let of_gear = Self::moving(&joint.motion(&space.motion, reach_m));
         let Slot::Sized(sized) = slot else { return of_gear };
         let limits = (0..sized.table.len()).map(|i| sized.table.limits(i).bearing);
         Self {

@@ -26,7 +26,8 @@ use crate::space::effects::{Carried, Carrier, Layer};
 use crate::space::station::{Walk, bodies_at, payload_in, weight_wrench};
 use nalgebra::{DMatrix, Matrix3, Matrix6, Rotation3, SMatrix, Vector3};
 
-/// The data of a joint, in addition to its axis, that a compiled pose needs.
+/// The data of a joint, in addition to its axis, that a compiled pose needs. For a prismatic joint (rail), metres take
+/// the place of radians.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct JointNeeds {
     /// Whether the output bearing of the joint tilts with at least one of the drives that may be chosen.
@@ -59,7 +60,7 @@ impl Pose {
             {
                 loads.push((pieces.len(), on(side).map(wrench_of).sum()));
             }
-            if let Layer::Piece(SpacePiece::Joint(_)) = layer {
+            if let Layer::Piece(SpacePiece::Joint(_) | SpacePiece::Prismatic(_)) = layer {
                 needs.push((pieces.len(), joint));
             }
             pieces.push(posed);

@@ -149,6 +149,11 @@ impl JointMotion {
         }
     }
 
+    /// This motion with every torque of the duty that the study states for the joint multiplied by `factor`.
+    pub(super) fn with_torques_times(self, factor: f64) -> Self {
+        Self { stated: self.stated.map(|stated| stated.with_torques_times(factor)), ..self }
+    }
+
     /// The motion at the input of `stage`, whose output turns with this motion.
     pub(crate) fn before(self, stage: &Stage) -> Self {
         Self {

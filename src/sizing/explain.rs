@@ -3,7 +3,7 @@
 use super::bearing_checks::bearing_that_holds;
 use super::check::{Check, CheckState, digits_of};
 use super::checks::{binding, checks, gear_checks, motor_checks, torsion_checks};
-use super::demand::JointDemand;
+use super::demand::{JointDemand, JointMotion};
 use super::drive::Drive;
 use super::limits::DriveLimits;
 use super::select::DriveTable;
@@ -376,29 +376,35 @@ impl<'c> DriveTable<'c> {
     fn relaxation(&self, kind: RelaxationKind, demand: &JointDemand) -> Option<Relaxation> {
         (1..100).rev().find_map(|percent| {
             let factor = f64::from(percent) / 100.0;
-            let drive = match kind {
-                RelaxationKind::Torque => self.first_fit(&demand.scaled(factor)).map(|i| self.drive(i)),
-                RelaxationKind::Speed => self.lightest_when_slowed(factor, demand),
-            }?;
+            let (motion, relaxed) = match kind {
+                RelaxationKind::Torque => (self.motion().with_torques_times(factor), demand.scaled(factor)),
+                RelaxationKind::Speed => self.slowed(factor, demand),
+            };
+            let drive = self.lightest(&motion, &relaxed)?;
             let has_duty = demand.stated_peak_nm > 0.0;
             Some(Relaxation { kind, factor, has_duty, drive: drive.name() })
         })
     }
 
-    /// The lightest drive that meets `demand` if speed and acceleration are multiplied by `factor`. All pairs of gear
-    /// and motor are tried, not only the pairs of the table: a pair that was excluded as too fast may pass at the lower
-    /// speed. `None` if no pair passes.
-    fn lightest_when_slowed(&self, factor: f64, demand: &JointDemand) -> Option<Drive<'c>> {
+    /// The motion of the joint, and `demand`, if speed and acceleration are multiplied by `factor`.
+    fn slowed(&self, factor: f64, demand: &JointDemand) -> (JointMotion, JointDemand) {
         let motion = self.motion().slowed(factor);
         let slower = motion
             .demand_of_torques(demand.static_torque_nm, demand.linear_torque_nm * factor)
             .with_bearing(demand.bearing.slowed(factor))
             .with_room(demand.room);
+        (motion, slower)
+    }
+
+    /// The lightest drive that meets `demand` if the joint moves as `motion` says. All pairs of gear and motor are
+    /// tried, not only the pairs of the table: a pair that was excluded as too fast may pass at a lower speed. `None` if
+    /// no pair passes.
+    fn lightest(&self, motion: &JointMotion, demand: &JointDemand) -> Option<Drive<'c>> {
         let known = self.all_drives().filter(|drive| self.knows_torsion(drive.gear));
         let holding = known.filter_map(|drive| {
-            let limits = DriveLimits::of(&drive, &motion).ok()?;
+            let limits = DriveLimits::of(&drive, motion).ok()?;
             let mass_kg = drive.mass_with_extras_kg().ok()?;
-            limits.hold(&slower).then_some((mass_kg, drive))
+            limits.hold(demand).then_some((mass_kg, drive))
         });
         holding.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, drive)| drive)
     }
@@ -430,6 +436,7 @@ mod tests {
     use crate::sizing::demand::JointMotion;
     use crate::sizing::requirement::MotionRequirement;
     use crate::sizing::select::DriveFilter;
+    use crate::sizing::stated::{StatedDuty, StatedPhase};
 
     fn motion() -> JointMotion {
         MotionRequirement::default().joint_motion(1.35, None)
@@ -536,6 +543,33 @@ mod tests {
                 assert_ne!(fits, explained, "{} at {static_nm}", drive.name());
             }
         }
+    }
+
+    /// The motor is warm through the duty alone. The factor that is named is that with which the duty itself, written with
+    /// smaller torques, passes.
+    #[test]
+    fn a_smaller_torque_is_smaller_in_the_duty_that_heats_the_motor_too() {
+        let (gears, motors) = ([hfuc_58_100()], [f11_10()]);
+        let duty = |factor: f64| StatedDuty {
+            phases: [(900.0, 4.0, 10.0), (700.0, 20.0, 8.0), (0.0, 1.0, 0.0)]
+                .map(|(nm, time_s, speed_rpm)| StatedPhase { torque_nm: nm * factor, time_s, speed_rpm })
+                .to_vec(),
+        };
+        let moving = |factor: f64| {
+            JointMotion { checks_motor_heat: true, ..motion() }.of_joint(None, false, Some(&duty(factor)))
+        };
+        let table = |factor: f64| {
+            let filter = DriveFilter::everything(GearMass::ComponentSet);
+            DriveTable::build("j2", moving(factor), &filter, &gears, &motors)
+        };
+        let fits = |factor: f64| {
+            table(factor).first_fit(&moving(factor).demand_of_torques(50.0 * factor, 20.0 * factor)).is_some()
+        };
+        let shortfall =
+            table(1.0).smallest_shortfall(&moving(1.0).demand_of_torques(50.0, 20.0)).expect("too hot");
+        assert_eq!(shortfall.check.kind, CheckKind::MotorRms);
+        let torque = shortfall.relaxations.iter().find(|r| r.kind == RelaxationKind::Torque).expect("a step");
+        assert!(fits(torque.factor) && !fits(torque.factor + 0.01), "{}", torque.factor);
     }
 
     #[test]

@@ -235,6 +235,15 @@ impl StatedDemand {
         }
     }
 
+    /// What this duty asks of a drive if every torque is multiplied by `factor`.
+    pub(super) fn with_torques_times(self, factor: f64) -> Self {
+        Self {
+            peak_torque_nm: self.peak_torque_nm * factor,
+            mean_torque_cubed_nm3: self.mean_torque_cubed_nm3 * factor.powi(3),
+            heat: self.heat.with_torques_times(factor),
+        }
+    }
+
     /// What this duty asks of a drive if every acceleration is multiplied by `factor`.
     pub(super) fn slowed(self, factor: f64) -> Self {
         Self { heat: self.heat.slowed(factor), ..self }
@@ -273,6 +282,15 @@ impl StatedHeat {
             torque_nm2: [0, 1].map(|i| self.torque_nm2[i] * per_nm[i] * per_nm[i]),
             mixed_nm_rad_s2: [0, 1].map(|i| self.mixed_nm_rad_s2[i] * per_nm[i] * stage.ratio),
             acceleration_rad2_s4: self.acceleration_rad2_s4 * stage.ratio * stage.ratio,
+        }
+    }
+
+    /// The sums of this duty if every torque of it is multiplied by `factor`.
+    fn with_torques_times(self, factor: f64) -> Self {
+        Self {
+            torque_nm2: self.torque_nm2.map(|x| x * factor * factor),
+            mixed_nm_rad_s2: self.mixed_nm_rad_s2.map(|x| x * factor),
+            ..self
         }
     }
 

@@ -18,7 +18,8 @@ use nalgebra::Vector3;
 
 /// What must be known of a space, in addition to poses and masses, to compute the loads on output bearings.
 pub(crate) struct BearingLoads {
-    /// The driven joints of the chain, tip first.
+    /// The joints of the chain that move by themselves, turning or sliding, tip first. A passive joint, which moves only
+    /// together with its driving joints, is none of them.
     pub movers: Vec<Mover>,
     /// For each slot (piece of the arm, tip first), the lever of its joint: how far from the face of the flange the
     /// link attaches. `None` if the slot has no joint with a bearing.
@@ -27,7 +28,8 @@ pub(crate) struct BearingLoads {
     pub checked: Vec<bool>,
 }
 
-/// A joint that accelerates while the other joints are at rest. For a prismatic joint, metres take the place of radians.
+/// A joint that accelerates while the other joints are at rest. For a prismatic joint (rail), metres take the place of
+/// radians.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Mover {
     /// Slot of the joint.
@@ -124,24 +126,27 @@ fn half_width_m(axis: &Vector3<f64>, vector_m: &Vector3<f64>, section: &Section)
 
 impl BearingLoads {
     /// Collects the levers and accelerations of a space. `piece_slots` has the slot of each piece, base to tip.
-    /// `reaches_m` has, for each joint, base to tip, the largest distance of the tip from its axis \[m\].
+    /// `reaches_m` has, for each joint that turns, base to tip, the largest distance of the tip from its axis \[m\].
     pub(crate) fn new(space: &DesignSpace, slots: &[Slot], piece_slots: &[usize], reaches_m: &[f64]) -> Self {
         let mut levers: Vec<Option<Lever>> = slots.iter().map(|_| None).collect();
         let mut checked = vec![false; slots.len()];
         let mut movers = Vec::new();
         let mut reaches_m = reaches_m.iter();
         for (piece, what) in space.pieces.iter().enumerate() {
-            let SpacePiece::Joint(joint) = what else { continue };
             let slot = piece_slots[piece];
-            let reach_m = reaches_m.next().copied().unwrap_or_default();
-            let motion = joint.motion(&space.motion, reach_m);
-            // a passive joint moves only together with its driving joints, so it is not a mover of its own
-            if joint.coupled.is_none() {
-                movers.push(Mover::new(slot, &motion));
-            }
-            if has_bearing(&slots[slot], joint) {
-                levers[slot] = Some(Lever::new(space, piece, joint, piece_slots));
-                checked[slot] = is_checked(&slots[slot], joint);
+            match what {
+                SpacePiece::Joint(joint) => {
+                    let reach_m = reaches_m.next().copied().unwrap_or_default();
+                    if joint.coupled.is_none() {
+                        movers.push(Mover::new(slot, &joint.motion(&space.motion, reach_m)));
+                    }
+                    if has_bearing(&slots[slot], joint) {
+                        levers[slot] = Some(Lever::new(space, piece, joint, piece_slots));
+                        checked[slot] = is_checked(&slots[slot], joint);
+                    }
+                }
+                SpacePiece::Prismatic(rail) => movers.push(Mover::new(slot, &rail.motion(&space.motion))),
+                SpacePiece::Link(_) | SpacePiece::Choice(_) => {}
             }
         }
         movers.reverse();

@@ -155,11 +155,6 @@ impl<'c> ArmProblem<'c> {
         }
     }
 
-    /// The slot of piece number `piece` (base to tip).
-    pub(crate) fn slot_of_piece(&self, piece: usize) -> usize {
-        self.piece_slots[piece]
-    }
-
     /// Smallest ratio of strength to stress of an arm at peak load; `None` if no strength is known.
     pub fn stress_safety_factor(&self, partial: &Partial) -> Option<f64> {
         (partial.stress_ratio > 0.0).then(|| 1.0 / partial.stress_ratio)

@@ -7,7 +7,6 @@
 //! part of their demand.
 
 use super::bearing_loads::Mover;
-use super::design_space::SpacePiece;
 use super::problem::ArmProblem;
 use super::station::{StationJoint, StationSlot};
 
@@ -33,7 +32,7 @@ impl ArmProblem<'_> {
     /// cases; tip first. `options` are the options of the design, one for each level, tip first. `None` if the design
     /// breaks a limit.
     pub(crate) fn reactions(&self, options: &[u32]) -> Option<Vec<Reaction>> {
-        let movers = self.movers();
+        let movers = &self.bearing_loads().movers;
         let cases = &self.space().sizing_cases;
         let mut static_nm = vec![vec![0.0; cases.len()]; movers.len()];
         let mut inertia_kgm2 = vec![vec![vec![0.0; cases.len()]; movers.len()]; movers.len()];
@@ -78,18 +77,6 @@ impl ArmProblem<'_> {
             })
         };
         Some((0..movers.len()).filter_map(largest).collect())
-    }
-
-    /// The joints that move by themselves, tip first. A passive joint moves only together with its driving joint.
-    fn movers(&self) -> Vec<Mover> {
-        let rail = |(piece, what): (usize, &SpacePiece)| {
-            let SpacePiece::Prismatic(rail) = what else { return None };
-            Some(Mover::new(self.slot_of_piece(piece), &rail.motion(&self.space().motion)))
-        };
-        let rails = self.space().pieces.iter().enumerate().filter_map(rail);
-        let mut out: Vec<Mover> = self.bearing_loads().movers.iter().copied().chain(rails).collect();
-        out.sort_by_key(|mover| mover.slot);
-        out
     }
 
     fn posed_joint(&self, case: usize, slot: usize) -> Option<&StationJoint> {

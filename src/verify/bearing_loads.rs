@@ -1,7 +1,7 @@
 //! Loads on the output bearings in a pose, as linear functions of the weights and inertias of parts.
 //!
 //! A bearing is loaded by the weight of everything outboard of its joint, and by inertia forces. These arise while one
-//! joint ramps (changes its speed) or stops and the other joints are at rest. By virtual work, the component of an
+//! joint, or one rail, ramps (changes its speed) or stops and the other joints are at rest. By virtual work, the component of an
 //! inertia force or moment along a direction is the coupling `Σ m (v · w)` of two motions: the motion of the joint that
 //! accelerates, and a *probe*. A probe is a virtual motion that shifts or tilts everything outboard of the bearing
 //! along that direction. Couplings are entries of the inertia matrix of [`super::pose`] with probes as further
@@ -23,23 +23,25 @@ const COMPONENTS: usize = 5;
 pub(super) struct PosedBearing {
     /// The five components of the load at rest, each a linear function of the weights of the parts.
     rest: Components<Linear>,
-    /// The five components of the load that the ramp of each joint adds, one entry per joint, base first. Each is a
-    /// linear function of the inertias of the parts.
+    /// The five components of the load that the ramp of each mover adds, in the order of the movers. Each is a linear
+    /// function of the inertias of the parts.
     ramps: Vec<RampLoad>,
 }
 
-/// The load that the ramp of one joint adds.
+/// The load that the ramp of one joint or rail adds.
 struct RampLoad {
     components: Components<Linear>,
     /// Ratio of the deceleration in the joint's stop to the acceleration in its ramp, at least 1.
     stop_factor: f64,
 }
 
-/// How a joint moves while the others are at rest.
+/// How a joint or a rail (prismatic joint) moves while the others are at rest.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Mover {
-    /// Acceleration in a ramp \[rad/s²\].
-    pub acceleration_rad_s2: f64,
+    /// Its travel: an angle \[rad\], or a length \[m\] for a rail.
+    pub coordinate: Coordinate,
+    /// Acceleration in a ramp \[rad/s²\], or \[m/s²\] for a rail.
+    pub acceleration_per_s2: f64,
     /// Ratio of the deceleration in a stop to this acceleration, at least 1.
     pub stop_factor: f64,
 }
@@ -50,7 +52,7 @@ pub(super) struct Mover {
 pub(super) struct Largest([[Span; 3]; 3]);
 
 /// The bearings of all joints in a case, base first; `None` for a joint whose bearing is not checked.
-/// `movers` says how each joint moves.
+/// `movers` says how each joint and each rail moves.
 pub(super) fn bearings(
     builder: &Builder,
     case: &LoadCase,
@@ -58,23 +60,22 @@ pub(super) fn bearings(
     movers: &[Mover],
 ) -> Vec<Option<PosedBearing>> {
     let joints = checked.len();
-    let is_checked = |joint: &usize| checked[*joint];
-    let probes = (0..joints).filter(is_checked).flat_map(probes_of);
-    let coordinates: Vec<Coordinate> = (0..joints).map(Coordinate::Joint).chain(probes).collect();
+    let probes = (0..joints).filter(|joint| checked[*joint]).flat_map(probes_of);
+    let coordinates: Vec<Coordinate> = movers.iter().map(|mover| mover.coordinate).chain(probes).collect();
     let probing = builder.with_coordinates(&coordinates);
     let (fixed, per_inertia) = (probing.fixed_inertia(case), probing.inertia_per());
-    let mut first = joints;
+    let mut first = movers.len();
     (0..joints)
         .map(|joint| {
             checked[joint].then(|| {
-                let ramp = |(number, &Mover { acceleration_rad_s2, stop_factor }): (usize, &Mover)| {
+                let ramp = |(number, mover): (usize, &Mover)| {
                     let components = std::array::from_fn(|component| {
                         let row = first + component;
                         let entry = row * (row + 1) / 2 + number;
-                        let per = per_inertia.iter().map(|per| per[entry] * acceleration_rad_s2);
-                        Linear { fixed: fixed[entry] * acceleration_rad_s2, per_load: per.collect() }
+                        let per = per_inertia.iter().map(|per| per[entry] * mover.acceleration_per_s2);
+                        Linear { fixed: fixed[entry] * mover.acceleration_per_s2, per_load: per.collect() }
                     });
-                    RampLoad { components, stop_factor }
+                    RampLoad { components, stop_factor: mover.stop_factor }
                 };
                 let ramps = movers.iter().enumerate().map(ramp).collect();
                 first += COMPONENTS;

@@ -216,7 +216,7 @@ impl Skeleton {
             }
             Coordinate::Tilt(joint, _) => members.drives[joint].greatest_tilt_stiffness(),
             // a shift is a virtual motion for loads: no element deflects in this way
-            Coordinate::Shift(..) => f64::INFINITY,
+            Coordinate::Shift(..) | Coordinate::Rail(_) => f64::INFINITY,
             Coordinate::Spring(spring) => self.spring_stiffnesses[spring],
         };
         self.coordinates.iter().map(stiffness).collect()

@@ -37,6 +37,12 @@ pub(super) struct PlacedJoint {
     pub across: [Vector3<f64>; 2],
 }
 
+/// A prismatic joint (rail) in a pose. Its motion moves everything of a higher rank along `axis`.
+pub(super) struct PlacedRail {
+    pub rank: usize,
+    pub axis: Vector3<f64>,
+}
+
 /// A tube in a pose. The columns of `frame` are the axis of the tube and the y and z axes of its section.
 pub(super) struct PlacedTube {
     pub rank: usize,
@@ -115,6 +121,7 @@ impl Motion {
 /// The geometry of an arm in a pose. All lists are ordered from base to tip.
 pub(super) struct Layout {
     pub joints: Vec<PlacedJoint>,
+    pub rails: Vec<PlacedRail>,
     pub tubes: Vec<PlacedTube>,
     pub masses: Vec<PlacedMass>,
     pub springs: Vec<PlacedSpring>,
@@ -129,6 +136,7 @@ impl Layout {
         let mut rotation = Rotation3::identity();
         let mut layout = Self {
             joints: Vec::new(),
+            rails: Vec::new(),
             tubes: Vec::new(),
             masses: Vec::new(),
             springs: Vec::new(),
@@ -189,6 +197,7 @@ impl Layout {
         self.add_mass(still, self.tip_m, joint.fixed_mass_kg);
         self.add_bodies(still, &joint.bodies.fixed, rotation);
         let frame = rotation.matrix() * section_frame(&joint.axis);
+        self.rails.push(PlacedRail { rank: still, axis: frame.column(0).into_owned() });
         let moved_m = self.tip_m + frame.column(0) * travel_m;
         let at_m = if joint.moves == Moves::Carriage { moved_m } else { self.tip_m };
         let guide = frame.column_iter().zip(joint.guide_rad_per_nm.iter().copied());
@@ -353,6 +362,9 @@ pub(super) enum Coordinate {
     Joint(usize),
     /// Tilt of a joint's bearing about one of two axes at right angles to the joint's axis.
     Tilt(usize, usize),
+    /// Travel of a prismatic joint. It is virtual too: the motor holds the carriage, and the compliance of its drive is a
+    /// spring.
+    Rail(usize),
     /// Displacement of everything outboard of a joint along one of two axes at right angles to the joint's axis, or
     /// along the joint's axis (index 2). The arm does not deform in this way: the motion is virtual, and from it
     /// forces follow.
@@ -401,6 +413,10 @@ impl Layout {
                 let joint = &self.joints[joint];
                 let direction = joint.across.get(which).unwrap_or(&joint.axis);
                 if joint.rank < point.rank { Motion::along(*direction) } else { still }
+            }
+            Coordinate::Rail(rail) => {
+                let rail = &self.rails[rail];
+                if rail.rank < point.rank { Motion::along(rail.axis) } else { still }
             }
             Coordinate::Spring(spring) => {
                 let spring = &self.springs[spring];

@@ -8,7 +8,7 @@ use super::layout::{Coordinate, Layout, coordinates};
 use super::offers::JointOffers;
 use super::parts_box::Place;
 use super::pose::{Builder, Pose, water_of};
-use super::question::{AskedJoint, AskedPiece, Limits, Question};
+use super::question::{AskedJoint, AskedMotion, AskedPiece, Limits, Question};
 use super::tubes::TubeOptions;
 use crate::arm::LinkBody;
 use crate::arm::body::total_kg;
@@ -178,14 +178,32 @@ fn levers(question: &Question) -> Vec<Lever> {
     levers
 }
 
-/// How every joint moves in its ramp and in its stop, base to tip.
+/// How every joint and every rail moves in its ramp and in its stop: the joints base to tip, then the rails.
 fn movers(question: &Question) -> Vec<Mover> {
     let joints = question.joints().zip(reaches_m(question));
-    let duty = |(joint, reach_m): (&AskedJoint, f64)| {
+    let turning = joints.enumerate().map(|(number, (joint, reach_m))| {
         let duty = Duty::new(&question.motion, reach_m, joint);
-        Mover { acceleration_rad_s2: duty.acceleration_rad_s2, stop_factor: duty.stop_factor }
-    };
-    joints.map(duty).collect()
+        Mover {
+            coordinate: Coordinate::Joint(number),
+            acceleration_per_s2: duty.acceleration_rad_s2,
+            stop_factor: duty.stop_factor,
+        }
+    });
+    let rails = question.pieces.iter().filter(|piece| matches!(piece, AskedPiece::Prismatic(_)));
+    let sliding = rails.enumerate().map(|(number, _)| sliding(number, &question.motion));
+    turning.chain(sliding).collect()
+}
+
+/// How the rail with this number moves. Its drive is given, so it travels as fast as the tip, with the tip's ramp and
+/// the tip's emergency stop.
+fn sliding(number: usize, motion: &AskedMotion) -> Mover {
+    let acceleration_m_s2 = motion.tip_acceleration_m_s2();
+    let stop_m_s2 = motion.emergency_deceleration_m_s2.unwrap_or(2.0 * acceleration_m_s2);
+    Mover {
+        coordinate: Coordinate::Rail(number),
+        acceleration_per_s2: acceleration_m_s2,
+        stop_factor: (stop_m_s2 / acceleration_m_s2).max(1.0),
+    }
 }
 
 /// The drives of every joint, base to tip.

@@ -22,13 +22,16 @@ const WALL_M: f64 = 0.005;
 const DENSITY_KG_M3: f64 = 7800.0;
 /// 1 m/s within 0.2 s at 0.8 m.
 const ACCELERATION_RAD_S2: f64 = 1.0 / 0.2 / LENGTH_M;
+/// The tip's acceleration, which is that of a rail too.
+const ACCELERATION_M_S2: f64 = 1.0 / 0.2;
+const CARRIAGE_KG: f64 = 4.0;
 
-fn study(waist: Value, catalogs: &Catalogs) -> Study {
+fn text(waist: Value) -> Value {
     let mut waist = waist;
     waist["type"] = json!("joint");
     waist["name"] = json!("waist");
     waist["axis"] = json!([0, 0, 1]);
-    let text = json!({
+    json!({
         "name": "bearings", "question": "what do they carry?",
         "chain": [
             waist,
@@ -40,9 +43,26 @@ fn study(waist: Value, catalogs: &Catalogs) -> Study {
         "payload": {"mass_kg": PAYLOAD_KG},
         "poses": [{"name": "level", "pose_deg": [0, 0]}],
         "motion": {"tip_speed_m_s": 1.0, "ramp_time_s": 0.2},
-    });
+    })
+}
+
+fn read(text: &Value, catalogs: &Catalogs) -> Study {
     read_study(Document::parse("bearings", &text.to_string()).expect("JSON"), catalogs)
         .unwrap_or_else(|fault| panic!("{fault}"))
+}
+
+fn study(waist: Value, catalogs: &Catalogs) -> Study {
+    read(&text(waist), catalogs)
+}
+
+/// The arm with a rail along `axis` as the piece number `place` of its chain, base first. The carriage has a mass.
+fn railed(axis: [f64; 3], place: usize, catalogs: &Catalogs) -> Study {
+    let mut text = text(json!({"drive": "first_fit"}));
+    let rail = json!({"type": "prismatic", "name": "rail", "axis": axis, "stiffness_n_per_m": 1e8, "mass_kg": CARRIAGE_KG,
+        "fixed_mass_kg": 7});
+    text["chain"].as_array_mut().expect("a chain").insert(place, rail);
+    text["poses"] = json!([{"name": "level", "pose": {"rail_mm": 0}}]);
+    read(&text, catalogs)
 }
 
 /// The loads on the bearings of waist and shoulder, and the mass of the shoulder's drive \[kg\].
@@ -52,9 +72,9 @@ fn demands(study: &Study, catalogs: &Catalogs) -> ([BearingDemand; 2], f64) {
     let sizes = vec![0; armwright::space::OutwardIn::level_sizes(&problem).len()];
     problem
         .walk(&sizes, |slot, outboard| {
-            let joint = match problem.piece_of_slot(slot) {
-                0 => 0,
-                2 => 1,
+            let joint = match study.space.pieces[problem.piece_of_slot(slot)].name() {
+                "waist" => 0,
+                "shoulder" => 1,
                 _ => return,
             };
             out[joint] = problem.demand_at(outboard, slot).bearing;
@@ -113,6 +133,56 @@ fn waist_and_shoulder_carry_what_the_closed_forms_say() {
         let by_waist_nm = torque_nm.hypot(alpha * first_kgm * HEIGHT_M);
         let right = [by_shoulder_nm.max(by_waist_nm), alpha * first_kgm, axial_n + alpha * first_kgm];
         assert_close(load, right, &format!("waist {what}"));
+    }
+}
+
+#[test]
+fn a_rail_that_ramps_or_stops_loads_the_bearings_on_it_and_below_it() {
+    let catalogs = Catalogs::builtin();
+    let (tube_kg, tube_kgm2) = tube();
+    let mass_kg = tube_kg + PAYLOAD_KG;
+    let first_kgm = tube_kg * LENGTH_M / 2.0 + PAYLOAD_KG * LENGTH_M;
+    let inertia_kgm2 = tube_kgm2 + PAYLOAD_KG * LENGTH_M.powi(2);
+    let lever_m = SIDE_M / 2.0;
+
+    // the waist stands on a rail along the arm: everything outboard is pushed along x
+    let ([waist, shoulder], drive_kg) = demands(&railed([1.0, 0.0, 0.0], 0, &catalogs), &catalogs);
+    let axial_n = (mass_kg + drive_kg) * G_M_S2;
+    for (load, times, what) in [(shoulder.running, 1.0, "running"), (shoulder.in_stop, 2.0, "in a stop")] {
+        let (a, alpha) = (times * ACCELERATION_M_S2, times * ACCELERATION_RAD_S2);
+        let on_rail_n = (mass_kg * G_M_S2).hypot(mass_kg * a);
+        let radial_n = on_rail_n.max(mass_kg * G_M_S2 + alpha * first_kgm);
+        // the moment is that of the waist's ramp, whose radial force is the weight
+        let moment_nm = alpha * inertia_kgm2;
+        let right = [moment_nm + lever_m * radial_n, radial_n, alpha * first_kgm];
+        assert_close(load, right, &format!("shoulder on a rail, {what}"));
+    }
+    for (load, times, what) in [(waist.running, 1.0, "running"), (waist.in_stop, 2.0, "in a stop")] {
+        let (a, alpha) = (times * ACCELERATION_M_S2, times * ACCELERATION_RAD_S2);
+        let pushed_n = (mass_kg + drive_kg) * a;
+        let torque_nm = first_kgm * G_M_S2;
+        let moment_nm = torque_nm + (pushed_n * HEIGHT_M).max(alpha * inertia_kgm2);
+        let right = [moment_nm, pushed_n.max(alpha * first_kgm), axial_n + alpha * first_kgm];
+        assert_close(load, right, &format!("waist on a rail, {what}"));
+    }
+
+    // the shoulder stands on a vertical rail on the waist: its carriage and all of the arm are lifted
+    let ([waist, shoulder], drive_kg) = demands(&railed([0.0, 0.0, 1.0], 1, &catalogs), &catalogs);
+    let lifted_kg = mass_kg + drive_kg + CARRIAGE_KG;
+    let at_rest_n = (lifted_kg + 7.0) * G_M_S2;
+    for (load, times, what) in [(shoulder.running, 1.0, "running"), (shoulder.in_stop, 2.0, "in a stop")] {
+        let (a, alpha) = (times * ACCELERATION_M_S2, times * ACCELERATION_RAD_S2);
+        let radial_n = mass_kg * G_M_S2 + (mass_kg * a).max(alpha * first_kgm);
+        let right = [alpha * inertia_kgm2 + lever_m * radial_n, radial_n, alpha * first_kgm];
+        assert_close(load, right, &format!("shoulder on a lift, {what}"));
+    }
+    for (load, times, what) in [(waist.running, 1.0, "running"), (waist.in_stop, 2.0, "in a stop")] {
+        let (a, alpha) = (times * ACCELERATION_M_S2, times * ACCELERATION_RAD_S2);
+        let by_lift_nm = first_kgm * (G_M_S2 + a);
+        let by_shoulder_nm = first_kgm * G_M_S2 + alpha * inertia_kgm2;
+        let axial_n = at_rest_n + (lifted_kg * a).max(alpha * first_kgm);
+        let right = [by_lift_nm.max(by_shoulder_nm), alpha * first_kgm, axial_n];
+        assert_close(load, right, &format!("waist below a lift, {what}"));
     }
 }
 

@@ -1,11 +1,13 @@
 //! Output bearings in the exact search: how they tilt and what they carry.
 //!
 //! The gears of these catalogs have bearings of any stiffness, so gears of one size differ, and some are rigid. Ratings are
-//! so low that some of them bind. Bearings are those of the gears, stated, those of other gears, or rigid.
+//! so low that some of them bind. Bearings are those of the gears, stated, those of other gears, or rigid. A third of the arms
+//! have rails, whose ramps load the bearings too.
 
 use crate::dice::Dice;
 use crate::exact_front::random_study;
 use crate::exact_support::{both_searches, read};
+use crate::prismatic::add_prismatic;
 use armwright::catalog::Catalogs;
 use armwright::exact::Exact;
 use armwright::space::{ArmProblem, OutwardIn};
@@ -77,6 +79,9 @@ fn the_exact_front_is_whole_with_bearings_that_tilt_and_limit() {
     for seed in 0..studies {
         let (mut text, mut catalogs) = (random_study(seed), Catalogs::builtin());
         add_bearings(&mut text, seed);
+        if seed % 3 == 1 {
+            add_prismatic(&mut text, seed);
+        }
         change_bearings(&mut catalogs, seed);
         let study = read(&text, &catalogs);
         let problem = ArmProblem::new(&study.space, &catalogs);

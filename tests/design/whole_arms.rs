@@ -9,6 +9,7 @@ use crate::exact_front::random_study;
 use crate::exact_support::{both_searches, judged, read};
 use crate::fits::{add_fits, change_sizes};
 use crate::motor_heat::{add_heat, unheated};
+use crate::prismatic::add_prismatic;
 use crate::witness_drives::{faults, front};
 use armwright::catalog::Catalogs;
 use armwright::search::Sweep;
@@ -50,6 +51,9 @@ fn whole_arm(seed: u64) -> (Value, Catalogs) {
     study["motion"]["tip_speed_m_s"] = json!(0.4);
     add_bearings(&mut study, seed);
     add_extras(&mut study, seed);
+    if seed % 4 == 0 {
+        add_prismatic(&mut study, seed);
+    }
     change_bearings(&mut catalogs, seed);
     change_sizes(&mut catalogs, seed);
     (study, catalogs)

@@ -278,6 +278,22 @@ fn run_json_names_a_plot_in_whose_place_someone_elses_file_stands() {
     assert_eq!(fs::read_to_string(at("out/plots/front.svg")).expect("a file"), "mine");
 }
 
+#[test]
+fn verdict_json_names_a_plot_in_whose_place_someone_elses_file_stands() {
+    let here = tempfile::tempdir().expect("a folder");
+    let at = |name: &str| here.path().join(name);
+    let campaign = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/dial_gauge/z0_none");
+    fs::create_dir_all(at("out/plots")).expect("made");
+    fs::write(at("out/plots/channels.svg"), "mine").expect("written");
+    succeeds(here.path(), &["reconcile", campaign.to_str().expect("text"), "--out", "out"]);
+    let verdict = json_of(&at("out/verdict.json"));
+    let [what] = verdict["not_written"].as_array().expect("a list").as_slice() else { panic!("{verdict}") };
+    assert!(what.as_str().expect("words").starts_with("plots/channels.svg: "), "{what}");
+    let (code, text) = said(&mut command(here.path(), &["check", "out"]));
+    assert!(code == 9 && text.contains("not written: plots/channels.svg"), "{code} {text}");
+    assert_eq!(fs::read_to_string(at("out/plots/channels.svg")).expect("a file"), "mine");
+}
+
 #[cfg(unix)]
 #[test]
 fn symbolic_links_are_not_followed() {

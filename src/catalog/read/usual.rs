@@ -29,13 +29,15 @@ const PITCH_M: [f64; 2] = [0.005, 1.0];
 const STIFFNESS_UNITS: &str =
     "a slip of unit? (1 N m/arcmin = 3438 N m/rad, 1 N m/deg = 57.3 N m/rad, 1e4 N m/rad = 10000 N m/rad)";
 
+/// The columns of the torques for which a gear is rated, from the smallest to the largest.
+pub(super) const TORQUES: [&str; 4] =
+    ["rated_torque_nm", "average_torque_limit_nm", "repeated_peak_torque_nm", "momentary_peak_torque_nm"];
+
 /// Warns of stiffnesses, a pitch diameter or an inertia of a gear that are far from those of all gears.
 /// A stiffness by which the gear turns more than 1 rad under its own rating is a fault. A direct drive may be as stiff as
 /// it likes. Diameter and inertia of strain-wave gears are compared with their size instead, which is narrower.
 pub(super) fn of_gear(row: &Row, kind: GearKind) {
-    let ratings =
-        ["rated_torque_nm", "average_torque_limit_nm", "repeated_peak_torque_nm", "momentary_peak_torque_nm"];
-    angles(row, rating(row, &ratings), kind == GearKind::Direct);
+    angles(row, rating(row, &TORQUES), kind == GearKind::Direct);
     if kind == GearKind::StrainWave {
         return;
     }

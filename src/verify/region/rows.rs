@@ -393,7 +393,7 @@ impl<'a> Rows<'a> {
                 ))
             }
             Coordinate::Tilt(joint, _) => Ok((self.columns.tilt_stiffness(joint), 1.0)),
-            Coordinate::Shift(..) => Err(f64::INFINITY),
+            Coordinate::Shift(..) | Coordinate::Rail(_) => Err(f64::INFINITY),
             Coordinate::Spring(spring) => Err(self.skeleton.spring_stiffnesses[spring]),
         }
     }
