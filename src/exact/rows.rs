@@ -88,7 +88,7 @@ pub(super) struct Rows<'a> {
 /// A generalized force that the weights cause in a judged case. It has two rows, one for its least and one for its
 /// greatest value.
 pub(super) struct Force<'a> {
-    /// Index of the judged case.
+    /// Index of the case among the judged cases.
     pub judged: usize,
     /// Force per newton of each piece's weight, tip first.
     pub per_n: &'a [f64],
@@ -98,7 +98,7 @@ pub(super) struct Force<'a> {
 
 /// A trial shape (motion of the arm) that bounds the modes in a judged case, with what is needed to make its row.
 pub(super) struct Mode {
-    /// Index of the judged case.
+    /// Index of the case among the judged cases.
     pub judged: usize,
     /// Index of the starting acceleration from which the shape came.
     pub start: usize,
@@ -145,8 +145,8 @@ impl RelaxedDesign {
     }
 }
 
-/// A point of the dual function: the multipliers of all rows, the least weighted sum over the box, and the amount that
-/// each level adds to this sum.
+/// A point of the dual function: the multipliers of all rows, the least weighted sum `least` over the box, and in
+/// `levels` the amount that each level adds to this sum.
 pub(super) struct DualPoint {
     pub multipliers: Vec<f64>,
     /// Eigenvalue for which the mode rows were made \[1/s²\].
@@ -222,7 +222,8 @@ impl<'a> Rows<'a> {
         rows
     }
 
-    /// The feasible drives of each level with the states of their gears.
+    /// The feasible drives of each level with the states that their gears may have in the box; `None` for a level of
+    /// links.
     fn priced_drives(&self) -> Vec<Option<PricedDrives>> {
         let of = |(&piece, drives): (&usize, &Option<FeasibleDrives>)| {
             let gears: Vec<&Gear> = self.gears.iter().filter(|gear| gear.piece == piece).collect();
