@@ -125,7 +125,7 @@ impl StationState {
         self.tip_m += link.tip * end;
         let momentum = self.inertia * link.end;
         for g in 0..6 {
-            // the end coordinates have unit stiffness, so their diagonal inertias are the terms of Dunkerley's sum
+            // The end coordinates have unit stiffness, so their diagonal inertias are the terms of Dunkerley's sum.
             let own: f64 = link.end.column(g).dot(&momentum.column(g)) + link.end_inertia[g];
             self.trace_s2[link.block[g]] += own;
         }
