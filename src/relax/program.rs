@@ -23,7 +23,7 @@ const OPTIONS_ADDED: usize = 3;
 pub(super) struct Program {
     masses: Vec<Vec<f64>>,
     rows: Vec<Row>,
-    /// For each slot, the options in the solver's program, as indices among the remaining options.
+    /// For each slot, the options that are in the solver's program, as indices among the remaining options.
     seen: Vec<Vec<usize>>,
     /// The best lower bound so far \[kg\], and the multipliers of the rows that give it.
     best: (f64, Vec<f64>),

@@ -261,7 +261,7 @@ impl CaseLoads {
                 ),
             ];
             for ([torque, inertia], allowed) in demands {
-                // with a brake the static torque is not limited
+                // With a brake the static torque has no limit, so it gives no row.
                 if allowed.iter().any(|nm| nm.is_infinite()) {
                     continue;
                 }
@@ -287,8 +287,9 @@ impl CaseLoads {
     }
 }
 
-/// Inertia of every option of every slot outboard of the joint in `slot` about the joint's axis \[kg m²\]. `amount` has
-/// the load of each option, which is the mass for a joint.
+/// Inertia about the axis of the joint in `slot` \[kg m²\] of every option of every slot outboard of it; first index
+/// the outboard slot, second its option. `amount` has the load of each option, which is the mass for a joint. Empty if
+/// `slot` has no joint.
 fn inertias(station: &Station, slot: usize, amount: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let StationSlot::Joint(StationJoint { twist, .. }) = &station.slots[slot] else { return Vec::new() };
     let about = |inertia: &Matrix6<f64>| twist.dot(&(inertia * twist));
