@@ -173,7 +173,7 @@ fn rising_below(w: &Windup) -> Windup {
 /// The slopes of those segments of `w` \[N m/rad\] that contain a torque whose magnitude lies between `least_nm` and
 /// `most_nm` \[N m\].
 fn slopes(w: &Windup, least_nm: f64, most_nm: f64) -> impl Iterator<Item = f64> {
-    // A break point belongs to the segment below it
+    // A break point belongs to the segment below it.
     let touched = move |s: &Segment| least_nm <= s.to_nm && (most_nm > s.from_nm || s.from_nm == 0.0);
     w.segments().into_iter().filter(touched).map(|s| s.stiffness_nm_per_rad)
 }

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// The bounds of a box of parts: intervals that enclose the numbers of all its members.
 pub(super) trait Bounds: Clone {
-    /// The box around two boxes.
+    /// The smallest bounds that enclose all members of this box and of the box of `other`.
     fn join(&self, other: &Self) -> Self;
 
     /// Coordinates by which options are separated into halves. The options are divided at the coordinate with the
