@@ -31,7 +31,7 @@ pub(crate) struct EightArms {
     /// block is the sum of `1/λ` over the block's eigenvalues `λ`. The lowest eigenvalue is at most the reciprocal of
     /// this largest term.
     pub largest_s2: Eight,
-    /// The eight arms in each case.
+    /// The numbers of the eight arms that differ from case to case.
     pub cases: Vec<CaseArms>,
     /// Tip deflection of the complete arms \[m\], the largest over the judged cases, which count for deflection and
     /// lowest mode.

@@ -20,7 +20,7 @@ pub trait FinishRows: OutwardIn {
     /// Working space of a worker. It is used again for each row, so that memory is allocated once.
     type Scratch: Send;
 
-    /// Computes the numbers that are the same in all rows.
+    /// Computes once the numbers that are the same in all rows.
     fn compile(&self) -> Self::Compiled;
 
     /// Allocates the working space of one worker.

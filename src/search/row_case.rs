@@ -137,7 +137,7 @@ impl RowCase {
             _ => [0.0; 4],
         };
         let spread_entries = if links_are_compliant { spread_entries(&station.modal) } else { Vec::new() };
-        // the entries of block 0 come first
+        // The entries of block 0 stand before those of block 1.
         let of_first = spread_entries.partition_point(|entry| entry.block == 0);
         let (turned, link_torque) = turning(station, slots, hinges, numbers, &link_weight);
         Self {

@@ -25,7 +25,7 @@ pub(crate) struct Chunk {
     pub slender: u8,
     /// For each option, the factors that turn the loads on the link into its stress.
     pub stress: StressEight,
-    /// The eight options in each case.
+    /// The numbers of the eight options that differ from case to case.
     pub cases: Vec<CaseChunk>,
 }
 

@@ -375,7 +375,7 @@ impl RowChunk<'_, '_> {
         let all_same = all_equal(&indices);
         let first: V = at_places(&drives.compliance[0], &indices, all_same);
         let twisting = self.row.twisting[k];
-        // the curves are loaded once for all cases
+        // The wind-up curves do not depend on the case, so they are loaded once for all cases.
         let curves = match twisting {
             Twisting::Segments => Curves::<V>::gather(drives, &indices, all_same),
             _ => Curves::line(first),
@@ -449,7 +449,7 @@ impl RowChunk<'_, '_> {
                         (StationSlot::Joint(joint), _) if joint.block == b => {
                             sum = sum + V::load(&lanes.compliance[hinge.slot]) * inertia;
                         }
-                        // an end coordinate has unit stiffness, so its compliance is 1
+                        // An end coordinate has unit stiffness, so its compliance is 1.
                         (StationSlot::Link { options, .. }, Some(end)) if options[0].block[end] == b => {
                             sum = sum + inertia;
                         }

@@ -54,7 +54,8 @@ impl Status {
     }
 }
 
-/// A design that no other design found so far clearly dominates.
+/// A design that no other design found so far clearly dominates, that is, beats in all three objectives by more than
+/// the fraction [`SLACK`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Candidate {
     /// Number of the design in its design space.
@@ -243,7 +244,7 @@ fn share(all: u128, shards: u32, of: u32) -> u128 {
     all / of * shards + all % of * shards / of
 }
 
-/// Drops the candidates that another candidate clearly dominates.
+/// Drops each candidate that another candidate beats in all three objectives by more than [`SLACK`].
 pub(crate) fn clear_dominated(candidates: &mut Vec<Candidate>) {
     let points: Vec<[f64; 3]> = candidates.iter().map(|c| c.objectives.minimized()).collect();
     let kept = not_clearly_beaten(&points, SLACK);

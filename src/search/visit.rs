@@ -29,7 +29,7 @@ const TASK_DESIGNS: u128 = 1 << 24;
 /// A visit to all designs of a tree. Other threads can read its progress and stop it.
 pub(crate) struct Visit<'p, P: FinishRows> {
     pub problem: &'p P,
-    /// The row level with every number that is the same in all rows.
+    /// The numbers of the row level that are the same in all rows.
     pub compiled: P::Compiled,
     /// Number of designs visited or excluded so far.
     pub visited: &'p AtomicU64,
@@ -83,7 +83,7 @@ pub(crate) struct Tasks {
 }
 
 impl Tasks {
-    /// Divides some [blocks] of designs into tasks.
+    /// Divides the designs of the [blocks] with the numbers in `blocks` into tasks.
     pub(crate) fn of(problem: &impl FinishRows, blocks: Range<u128>) -> Self {
         let Levels { row, inner, .. } = Levels::of(problem);
         let choices = product(inner);
