@@ -200,7 +200,7 @@ impl Tilt<'_> {
 /// Where a motor stands on a piece.
 #[derive(Clone, Copy, PartialEq)]
 enum Stands {
-    /// It moves with the piece.
+    /// The motor moves with the piece.
     MovingWith,
     /// The motor stands where the piece begins, and does not move with it.
     AtStartOf,
@@ -327,7 +327,7 @@ impl DesignSpace {
         out.extend(self.motors_on(index, Stands::AtStartOf));
     }
 
-    /// A prismatic joint with the effects that act on it.
+    /// A prismatic joint, changed by the effects that act on it.
     fn prismatic_piece(&self, slide: &SpacePrismatic) -> PrismaticPiece {
         let nominal = slide.joint.piece(0);
         match self.affected(Piece::Prismatic(nominal.clone())) {
@@ -401,7 +401,7 @@ impl DesignSpace {
         affected
     }
 
-    /// A link with the effects that act on it.
+    /// A link, changed by the effects that act on it.
     pub(crate) fn link_piece(&self, link: &Link) -> LinkPiece {
         let nominal = link_piece(link);
         match self.affected(Piece::Link(nominal.clone())) {

@@ -83,7 +83,7 @@ impl StationState {
     /// which is the same joint or a joint inboard of it.
     pub(crate) fn inertia_between(&self, slot: usize, joint: &StationJoint, moving: &StationJoint) -> f64 {
         let momentum = self.momentum(slot, moving);
-        // everything outboard of a passive joint moves with the rotation of that joint too
+        // Everything outboard of a passive joint moves with the rotation of that joint too.
         let with_passive = |turned: &Turned| {
             let outboard = self.outboard_of(turned.slot);
             outboard.map_or(0.0, |(_, of)| turned.twist.dot(&self.momentum_of(of, turned.slot, moving)))
