@@ -29,9 +29,9 @@ pub(super) struct Program {
     best: (f64, Vec<f64>),
 }
 
-/// What the solver finds over the options that it has.
+/// The solution of the linear program over those options that are in the solver's program.
 struct Solved {
-    /// The weights of these options, slot by slot.
+    /// The weights of these options in the mixture, slot by slot.
     weights: Vec<f64>,
     /// The multipliers of the rows, all at least zero.
     multipliers: Vec<f64>,

@@ -129,7 +129,8 @@ impl CaseLoads {
         })
     }
 
-    /// Least and greatest inertia of everything outboard of the joint in `slot` about the joint's axis \[kg m²\].
+    /// Least and greatest inertia, over the remaining options, of everything outboard of the joint in `slot` about the
+    /// joint's axis \[kg m²\].
     pub(super) fn inertia_range(&self, problem: &ArmProblem, parts: &Parts, slot: usize) -> [f64; 2] {
         let Some(joint) = self.joint(problem, slot) else { return [0.0; 2] };
         let start = joint.twist.dot(&(problem.stations()[self.case].start_inertia * joint.twist));
