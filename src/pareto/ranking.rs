@@ -34,8 +34,9 @@ impl Ranking {
         let mut order = by(1, order);
         let mut second = rank(&mut order, points);
         if second.len() < order.len() / 16 {
-            // With many ties, comparisons would take long. A further radix sort, by the third objective, then costs
-            // less than the comparisons that it saves.
+            // If only few different values of the second objective occur, many points are equal in it. The sort below
+            // would need many comparisons between them. A radix sort by the third objective costs less than these
+            // comparisons.
             order = by(1, by(2, order));
             second = rank(&mut order, points);
         }
