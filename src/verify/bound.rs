@@ -239,7 +239,7 @@ fn weight(tube: &TubeRange, water: usize) -> Span {
     Span { least: tube.least.around[water].weight_n_per_m, most: tube.most.around[water].weight_n_per_m }
 }
 
-/// Interval of each compliance over a set of tubes.
+/// Interval of each compliance (1 / stiffness) over a set of tubes.
 pub(super) fn compliances(tube: &TubeRange) -> [Span; STIFFNESSES] {
     std::array::from_fn(|i| Span {
         least: 1.0 / tube.most.stiffnesses[i],
