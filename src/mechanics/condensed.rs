@@ -127,9 +127,9 @@ pub(crate) struct PlacedLink {
     pub inertia: [Inertia12; 3],
     /// Motion of everything outboard of the link per unit of each end coordinate.
     pub end: Matrix6<f64>,
-    /// Values of the end coordinates under the weight of the bodies on the link.
+    /// Values of the six end coordinates under the weight of the bodies on the link.
     pub end_under_bodies: Vector6<f64>,
-    /// Values of the end coordinates under a weight, with buoyancy subtracted, of 1 N per metre of the link
+    /// Values of the six end coordinates under a weight, with buoyancy subtracted, of 1 N per metre of the link
     /// \[1/(N/m)\].
     pub end_per_weight: Vector6<f64>,
     /// Sum of `1/λ` over the inner modes with root and end held \[s²\].

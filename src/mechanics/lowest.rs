@@ -216,7 +216,7 @@ fn through_link<const N: usize>(
         s[(i, i)] += 1.0;
     }
     let mut p = (at(&link.cross) + moved).transpose();
-    // LDLᵀ of 1 - λS and forward substitution of P in the same loop
+    // This loop does two things at once: the LDLᵀ factorization of 1 - λS and the forward substitution of P.
     *apparent += at(&link.root);
     for k in 0..N {
         let pivot = s[(k, k)];

@@ -323,7 +323,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
     #[inline(always)]
     fn compliant_link<L: LinkNumbers<N>>(&mut self, link: &L) {
         let lambda = self.lambda;
-        // the product W t of the formula
+        // The product W t of the formula.
         let mut moved = [[V::zero(); N]; N];
         for g in 0..N {
             for k in 0..N {
@@ -348,7 +348,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
             }
         }
         add_lower!(self.apparent, |i, j| at_lambda!(link.root(i, j), lambda));
-        // LDLᵀ of 1 - λS and forward substitution of P in the same loop
+        // This loop does two things at once: the LDLᵀ factorization of 1 - λS and the forward substitution of P.
         for k in 0..N {
             let pivot = s[k][k];
             let inverse = V::splat(1.0) / pivot;

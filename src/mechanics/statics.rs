@@ -201,7 +201,7 @@ struct Strained {
     forces: Vec<f64>,
     /// Value of each strain coordinate.
     strains: Vec<f64>,
-    /// Motion of everything outboard.
+    /// Motion that the strains give to everything outboard of the element.
     motion: Twist,
 }
 
