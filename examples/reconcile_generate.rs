@@ -5,7 +5,8 @@
 //!
 //! This makes COUNT campaigns below the folder OUT. The next word says which arms and readings they have:
 //!
-//! - `plain` and `hard`: six-axis arms with all kinds of readings.
+//! - `plain` and `hard`: six-axis arms with all kinds of readings. In `hard` the readings are few, the effects are
+//!   small, and some readings are gross errors.
 //! - `static`, `modal` and `windup`: six-axis arms with one kind of readings.
 //! - `varied`: arms of four to seven joints of any size, on a floor, a wall or a ceiling.
 //! - `geared`: the same as `varied`, but every joint has a torsion curve.

@@ -2,8 +2,8 @@
 //! 352 poses.
 //!
 //! Data and kinematics: github.com/ctu-vras/multirobot-calibration, `updated_leica_dataset` (Rozlivek et al., Humanoids
-//! 2021; Stepanova et al., RCIM 73 (2022) 102250). The masses of the links are guesses, because only the ratios of
-//! stiffness to mass can be identified.
+//! 2021; Stepanova et al., RCIM 73 (2022) 102250). The masses of the links are guesses, so that only ratios of
+//! stiffness to mass are identified.
 
 use super::frames::Walk;
 use super::{read_numbers, write};
