@@ -70,7 +70,7 @@ impl Bins {
         (((x - self.low) * self.steps_per_unit) as usize).min(STEPS - 1)
     }
 
-    /// The bin of a number.
+    /// The index of the bin that contains `x`.
     fn of(&self, x: f64) -> usize {
         self.bin[self.step(x)].into()
     }

@@ -83,7 +83,7 @@ pub(crate) struct Tasks {
 }
 
 impl Tasks {
-    /// Divides the designs of the [blocks] with the numbers in `blocks` into tasks.
+    /// Divides the designs of a range of [blocks] into tasks. `blocks` is the range of the block numbers.
     pub(crate) fn of(problem: &impl FinishRows, blocks: Range<u128>) -> Self {
         let Levels { row, inner, .. } = Levels::of(problem);
         let choices = product(inner);

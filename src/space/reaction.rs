@@ -16,7 +16,7 @@ use super::station::{StationJoint, StationSlot};
 pub(crate) struct Reaction {
     /// Piece of the joint that stands still, counted from the base.
     pub piece: usize,
-    /// Piece of the joint whose ramp gives the largest torque in a ramp.
+    /// Piece of the joint whose ramp (acceleration in normal operation) gives the largest torque in a ramp.
     pub ramps: usize,
     /// Piece of the joint whose emergency stop gives the largest torque in a stop.
     pub stops: usize,

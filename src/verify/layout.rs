@@ -30,6 +30,7 @@ fn piece_rank(piece: usize) -> usize {
 
 /// A joint in a pose.
 pub(super) struct PlacedJoint {
+    /// Place in the order of all elements from base to tip.
     pub rank: usize,
     pub at_m: Vector3<f64>,
     pub axis: Vector3<f64>,
@@ -39,6 +40,7 @@ pub(super) struct PlacedJoint {
 
 /// A tube in a pose. The columns of `frame` are the axis of the tube and the y and z axes of its section, in the world.
 pub(super) struct PlacedTube {
+    /// Place in the order of all elements from base to tip.
     pub rank: usize,
     pub root_m: Vector3<f64>,
     pub frame: Matrix3<f64>,
