@@ -1,4 +1,5 @@
-//! Pareto filter and hypervolume of large sets: `cargo bench --bench front`. Rates are points a second.
+//! Benchmarks of the Pareto filter and of the hypervolume on large sets of points. Run them with `cargo bench --bench
+//! front`. Rates are in points per second.
 
 use armwright::pareto::front::{exact_front, nondominated};
 use armwright::pareto::hypervolume::hypervolume;
@@ -11,7 +12,8 @@ fn main() {
 
 const SIZES: [usize; 2] = [100_000, 1_000_000];
 
-/// Points about a sphere: `thickness` 0 puts every point on the front.
+/// Random points in a part of a spherical shell of this thickness and of inner radius 1, about the centre (1.5, 1.5,
+/// 1.5). A point far from the centre has small objectives. With a thickness of 0 every point is on the front.
 fn points(count: usize, thickness: f64) -> Vec<[f64; 3]> {
     let mut state = 1u64;
     let mut random = || {

@@ -1,5 +1,5 @@
-//! Speed of the sweep and of what it is made of: `cargo bench --bench sweep`. Rates are items (designs, points, arms)
-//! a second on one thread.
+//! Benchmarks of the sweep, and of the full model that evaluates a single arm. Run them with `cargo bench --bench
+//! sweep`. Rates are in items (designs or arms) per second on one thread.
 
 mod common;
 
@@ -33,14 +33,15 @@ fn sweep(bencher: Bencher, study: &Study, catalogs: &Catalogs) {
     bencher.counter(ItemsCount::new(evaluated)).bench(run);
 }
 
-/// Rigid links, given joints, one case.
+/// Sweeps an arm with rigid links and given joints in one pose. `options` is the number of options of each link.
 #[divan::bench(args = [1000, 3162], sample_count = 5)]
 fn simple_model(bencher: Bencher, options: u32) {
     let catalogs = Catalogs::builtin();
     sweep(bencher, &common::simple(options, &catalogs), &catalogs);
 }
 
-/// Full links, three-segment gears, six sized joints, the stretched pose alone.
+/// Sweeps the study `compare-materials` (full link model, gears with three segments, six sized joints) in its stretched
+/// pose alone.
 #[divan::bench(sample_count = 3)]
 fn full_model_one_pose(bencher: Bencher) {
     let catalogs = Catalogs::builtin();
@@ -50,14 +51,15 @@ fn full_model_one_pose(bencher: Bencher) {
     sweep(bencher, &study, &catalogs);
 }
 
-/// The same with both poses: the named study.
+/// Sweeps the study `compare-materials` in all of its poses.
 #[divan::bench(sample_count = 3)]
 fn full_model_compare_materials(bencher: Bencher) {
     let catalogs = Catalogs::builtin();
     sweep(bencher, &compare_materials(&catalogs), &catalogs);
 }
 
-/// The full model of one six-axis arm in two poses: what `analyze` prints.
+/// Evaluates one six-axis arm of the study `compare-materials` by the full model, in all poses of the study. `armwright
+/// analyze` prints these numbers.
 #[divan::bench]
 fn analyze_six_axis_arm(bencher: Bencher) {
     let catalogs = Catalogs::builtin();

@@ -1,4 +1,4 @@
-//! Statics and modes of a two-joint arm: how far the tip sags, and what to stiffen.
+//! Statics and modes of an arm with two joints: how far the tip deflects, and what should be stiffened.
 //!
 //! Run: cargo run --example analyze_arm
 

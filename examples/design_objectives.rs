@@ -1,9 +1,13 @@
-//! What designs of a study are like, for searches that are written elsewhere.
+//! Answers questions about designs of a study, for optimizers that are written elsewhere.
 //!
-//! `cargo run --release --example design_objectives -- STUDY` prints the number of options of every level on one line,
-//! tip first. Then it answers every line of standard input, one option a level, by one line: deflection \[mm\], mass \[kg\],
-//! lowest mode \[Hz\] and 0, or four numbers of which the last says how far inward the arm fails. An empty line sends
-//! the answers off.
+//! `cargo run --release --example design_objectives -- STUDY` first prints one line: the number of options of every
+//! level, tip first. Then it reads lines from standard input. A line is a design: the index of an option for each
+//! level, tip first. An empty line sends the answers off.
+//!
+//! The answer to a design is a line of four numbers. If the arm can be completed, they are the deflection \[mm\], the
+//! mass \[kg\], the lowest mode \[Hz\], and how many of the study's limits on these three are broken. If a part fails
+//! while the arm is built up from the tip, the answer is `1e9 1e9 0` and a number above 1. This number is larger the
+//! nearer to the tip the part is.
 
 use armwright::catalog::Catalogs;
 use armwright::input::Document;

@@ -1,10 +1,14 @@
-//! How the time of the exact search grows with the size of the space.
+//! Measures how the time of the exact search grows with the size of the space.
 //!
-//! `cargo run --release --example exact_growth -- 60` searches `full-catalog` with every n-th gear, motor and link
-//! option, from few to all, at most 60 s each: once with the slope that a gear has at its torque in the modes, once with
-//! its first slope K1. Then it searches the whole of it for arms up to a few masses without any gap, and for all arms to
-//! smaller and smaller gaps, down to the one that the study asks for. Beside the elapsed time stands the processor time of
-//! all threads, where the system tells it (Linux).
+//! `cargo run --release --example exact_growth -- 60` makes three series of searches of the study `full-catalog`:
+//!
+//! - in thinned spaces, from a few parts to all parts, for at most 60 s each (the argument). This is done once with
+//!   modes that use the slope of a gear at its torque, and once with modes that use the gear's first slope K1.
+//! - in the whole space up to a few limits of mass, without a gap.
+//! - in the whole space for all arms, to smaller and smaller gaps. The last gap is the gap that the study asks for.
+//!
+//! Each line of the output has the elapsed time. It also has the processor time of all threads if the system tells it
+//! (Linux).
 
 use armwright::arm::JointModel;
 use armwright::catalog::Catalogs;
@@ -17,13 +21,14 @@ use armwright::study::read_study;
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-/// Every how manyth gear, motor and link option is kept.
+/// How spaces are thinned. A pair (n, m) keeps every n-th gear, every ceil(n/4)-th motor and every m-th option of a
+/// link.
 const THINNED: [(usize, usize); 8] =
     [(40, 4000), (25, 2000), (15, 1000), (10, 400), (6, 100), (4, 30), (2, 6), (1, 1)];
 
 /// Limits of mass up to which the front is found whole \[kg\]. The lightest arm weighs 13.69 kg.
 const UP_TO_KG: [f64; 5] = [13.75, 14.0, 14.25, 14.5, 14.75];
-/// Gaps to which all arms are searched, above that of the study.
+/// Gaps (relative) to which all arms are searched before the gap of the study.
 const GAPS: [f64; 3] = [0.08, 0.05, 0.03];
 
 fn main() {
@@ -60,10 +65,11 @@ fn head(space: &str) {
     );
 }
 
-/// Processor time of all threads of this process so far \[s\], in ticks of 10 ms; `None` where the system does not tell.
+/// Processor time of all threads of this process so far \[s\], in steps of 10 ms. `None` if the system does not tell
+/// it.
 fn processor_s() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/self/stat").ok()?;
-    // the name of the program, in brackets, may have spaces; user and system time are the 14th and 15th field
+    // The name of the program is in brackets and may have spaces. User time and system time are the fields 14 and 15.
     let fields: Vec<&str> = text.rsplit(')').next()?.split_whitespace().collect();
     let ticks = |field: usize| fields.get(field - 3)?.parse::<f64>().ok();
     Some((ticks(14)? + ticks(15)?) / 100.0)
@@ -90,14 +96,15 @@ fn search(space: &DesignSpace, catalogs: &Catalogs, gap: f64, limit: Option<Dura
     );
 }
 
-/// The space with every n-th gear and motor of the catalogs and every m-th option of its links.
+/// The space with every `parts`-th gear of the catalogs, every `parts / 4`-th motor (rounded up), and every
+/// `options`-th option of its links.
 fn thinned(space: &DesignSpace, catalogs: &Catalogs, parts: usize, options: usize) -> DesignSpace {
     let mut space = space.clone();
     for piece in &mut space.pieces {
         match piece {
             SpacePiece::Joint(joint) => {
                 if let DriveChoice::AllFits(filter) = &mut joint.drive {
-                    // gears by torque within a series: every n-th spans all sizes
+                    // A catalog lists the gears of a series by torque, so every n-th gear gives gears of all sizes.
                     filter.gear_ids =
                         Some(catalogs.gears.iter().step_by(parts).map(|g| g.id.clone()).collect());
                     filter.motor_ids = Some(

@@ -1,8 +1,12 @@
-//! How fast the Pareto filter and the hypervolume are on a file of points, for a comparison with other programs.
+//! Measures the speed of the Pareto filter and of the hypervolume on a file of points, for a comparison with other
+//! programs. `benches/peers/moocore_front.py` runs this example.
 //!
-//! `front_speed POINTS A,B,C MASK REPEATS` reads points (three little-endian `f64` each), writes one byte a point to MASK
-//! (1 if nothing dominates it) and prints the least processor seconds, all threads together, of so many repeats: filter,
-//! then hypervolume below the reference point; and the hypervolume. `benches/peers/moocore_front.py` runs it.
+//! `front_speed POINTS A,B,C MASK REPEATS` reads points from the file POINTS (three little-endian `f64` for each
+//! point). Filter and hypervolume are computed REPEATS times. The file MASK then gets one byte for each point: 1 if no
+//! other point dominates it, otherwise 0.
+//!
+//! Three numbers are printed: the least processor time of the filter \[s\], the least processor time of the hypervolume
+//! \[s\], and the hypervolume below the reference point A,B,C. Processor times are summed over all threads.
 
 use armwright::pareto::front::exact_front;
 use armwright::pareto::hypervolume::hypervolume;
@@ -38,7 +42,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Time that the threads of this process have been on a processor \[s\].
+/// Processor time of all threads of this process so far \[s\].
 fn processor_s() -> f64 {
     let tasks = std::fs::read_dir("/proc/self/task").into_iter().flatten().flatten();
     let spent = tasks.filter_map(|task| std::fs::read_to_string(task.path().join("schedstat")).ok());

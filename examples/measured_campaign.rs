@@ -1,7 +1,9 @@
-//! Makes a campaign folder from published measurements of a real machine, for `armwright reconcile`.
+//! Makes a campaign folder for `armwright reconcile` from published measurements of a real machine.
 //!
 //! Run: cargo run --release --example measured_campaign -- MACHINE DATA FOLDER
-//! (MACHINE: motoman or justin; DATA: the CSV file of its positions; FOLDER: made with its parents)
+//!
+//! MACHINE is `motoman` or `justin`, and DATA is the CSV file with the positions of this machine. FOLDER is made,
+//! together with its parent folders.
 
 mod measured;
 

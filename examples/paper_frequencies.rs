@@ -1,4 +1,5 @@
-//! The paper's arm: what its Table 1 gives for deflection and frequencies, with rigid and with real links.
+//! Computes deflection and frequencies of the paper's arm from its Table 1, with rigid links and with links that
+//! deform, and prints them next to the paper's own numbers.
 //!
 //! Run: cargo run --example paper_frequencies
 

@@ -1,14 +1,27 @@
-//! Makes campaigns with hidden effects from the independent witness.
+//! Makes campaigns with hidden effects. The readings are computed by the independent witness in `tests/witness`.
 //!
-//! `cargo run --release --example reconcile_generate -- OUT SEED COUNT plain|hard|static|modal|windup|varied|geared one|two|none|later|unknown|further [SIGMA]`
+//! `cargo run --release --example reconcile_generate -- OUT SEED COUNT plain|hard|static|modal|windup|varied|geared
+//! one|two|none|later|unknown|further [SIGMA]`
 //!
-//! `plain` and `hard` are six-axis arms, `static`, `modal` and `windup` the same with one kind of readings, `varied` is arms of four to seven joints of any size, on floor, wall or ceiling;
-//! all joints of those of `geared` have torsion curves.
-//! With `SIGMA` an effect that departs by less from what calibration within tolerance can imitate is made
-//! larger until it does not: one that nobody could see is no question. Or one campaign in the folder OUT of
-//! a six-axis arm file, j1 to j6, with the effects of a JSON list:
+//! This makes COUNT campaigns below the folder OUT. The next word says which arms and readings they have:
+//!
+//! - `plain` and `hard`: six-axis arms with all kinds of readings. In `hard` the readings are few, the effects are
+//!   small, and some readings are gross errors.
+//! - `static`, `modal` and `windup`: six-axis arms with one kind of readings.
+//! - `varied`: arms of four to seven joints of any size, on a floor, a wall or a ceiling.
+//! - `geared`: the same as `varied`, but every joint has a torsion curve.
+//!
+//! The word after it says what is hidden: one effect, two effects, nothing, an effect that was added to the library
+//! later, unknown physics, or unknown physics that was added later.
+//!
+//! SIGMA is the least size of a hidden effect: how many standard deviations the readings differ from what calibration
+//! within tolerance can imitate. A smaller effect is made larger, in at most eight steps, because nobody could find it.
+//! Unknown physics keeps its size.
 //!
 //! `cargo run --release --example reconcile_generate -- OUT SEED arm ARM.json EFFECTS.json`
+//!
+//! This makes one campaign in the folder OUT. It is of the six-axis arm in ARM.json, whose joints are called j1 to j6,
+//! with the effects of the JSON list in EFFECTS.json.
 
 use armwright::catalog::Catalogs;
 use armwright::reconcile::Campaign;
@@ -24,7 +37,7 @@ mod witness;
 
 use reconcile_generator::{Dice, Plan, Specimen, write};
 
-/// Most steps by which an effect is made larger.
+/// Greatest number of sizes that are tried for a hidden effect. Each size is larger than the one before.
 const MOST_STEPS: i32 = 8;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -57,7 +70,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// A campaign of a given arm with given effects; the key is written beside the folder.
+/// Makes a campaign of the arm in the file `arm` with the effects in the file `effects`. The key, which tells what is
+/// hidden, is written next to the folder `out`.
 fn measured(out: &Path, seed: &str, arm: &str, effects: &str) {
     let read = |file: &str| -> Value {
         let text = std::fs::read_to_string(file).unwrap_or_else(|e| panic!("{file}: {e}"));

@@ -1,12 +1,14 @@
-//! Reconciles every campaign of a folder and scores the verdicts against a folder of keys, which are
-//! opened only when all verdicts have been written.
+//! Reconciles every campaign of a folder and scores the verdicts. The keys tell what is hidden in each campaign; they
+//! are opened only when all verdicts have been written.
 //!
 //! `cargo run --release --example reconcile_score -- CAMPAIGNS KEYS [OUT]`
 //!
-//! `OUT/confusion.csv` counts what was said of what was hidden; `OUT/campaigns.csv` has a line a
-//! campaign: right or not, by how many standard deviations the hidden effect can be seen at all, and the
-//! time it took, by the clock and of the processor; `OUT/intervals.csv` one a parameter: true value,
-//! estimate, ends of the interval.
+//! CAMPAIGNS is a folder of campaigns, and KEYS a folder of their keys. Three files are written to the folder OUT:
+//!
+//! - `confusion.csv` has the number of campaigns for each pair of hidden effects and named effects.
+//! - `campaigns.csv` has a line for each campaign: whether the verdict is right, by how many standard deviations the
+//!   hidden effect can be seen at all, and the elapsed time and processor time \[s\].
+//! - `intervals.csv` has a line for each parameter: true value, estimate, and the ends of its interval.
 
 use armwright::catalog::Catalogs;
 use armwright::reconcile::Campaign;
@@ -21,7 +23,7 @@ mod detectability;
 #[path = "../tests/reconcile/scoring/mod.rs"]
 mod scoring;
 
-/// Processor seconds of this process and its threads so far; 0 where the system does not tell.
+/// Processor time of this process with all of its threads so far \[s\]; 0 if the system does not tell it.
 fn processor_s() -> f64 {
     const TICKS_PER_S: f64 = 100.0;
     let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Which drive does one joint need? The lightest that holds, and why the lighter gears do not.
+//! Finds the lightest drive that holds the demand of one joint, and tells why lighter gears do not hold it.
 //!
 //! Run: cargo run --example size_joint
 
@@ -10,11 +10,11 @@ use armwright::sizing::{JointSizingRow, render_rows};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let catalogs = Catalogs::builtin();
-    // the tip must reach 1 m/s in 0.2 s and is 1.35 m from the axis
+    // The tip must reach 1 m/s in 0.2 s, and is 1.35 m from the axis of the joint.
     let requirement = MotionRequirement { tip_speed_m_s: 1.0, ramp_time_s: 0.2, ..Default::default() };
     requirement.validate()?;
     let motion = requirement.joint_motion(1.35, None);
-    // 120 N m of gravity, 9 kg m² of inertia outboard of the joint
+    // The joint carries a static torque of 120 N m and moves an inertia of 9 kg m².
     let demand = motion.demand(120.0, 9.0);
     println!(
         "static {:.0} N m, accelerating {:.1} N m, emergency stop {:.1} N m, mean {:.1} N m",

@@ -1,8 +1,9 @@
-//! How fast the exhaustive sweep is, and whether its memory stays flat.
+//! Measures the speed of the exhaustive sweep, and whether its memory stays constant as the space grows.
 //!
-//! `cargo run --release --example speed -- simple 1e6 1e7 1e8` sweeps two links with fixed joints (rigid links, one
-//! case) over that many designs; `-- compare-materials` sweeps the named study (full links, three-segment gears, six
-//! sized joints, three poses), and `-- FILE.json` the study in a file. One thread; rates are per second of processor time.
+//! `cargo run --release --example speed -- simple 1e6 1e7 1e8` sweeps an arm with two links and given joints (rigid
+//! links, one pose) over 1e6, 1e7 and 1e8 designs. `-- compare-materials` sweeps the named study (full link model,
+//! gears with three segments, six sized joints, three poses), and `-- FILE.json` sweeps the study in a file. The sweep
+//! runs on one thread. Rates are in designs per second of processor time.
 
 #[path = "../benches/common/mod.rs"]
 mod common;
@@ -58,7 +59,7 @@ fn report(study: &Study, catalogs: &Catalogs) {
     }
 }
 
-/// Processor time of this process \[s\]; not that of others on the machine.
+/// Processor time of this process so far \[s\]. Other processes do not count.
 fn processor_s() -> f64 {
     let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
     let after_name = stat.rsplit(')').next().unwrap_or_default();

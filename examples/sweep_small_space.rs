@@ -1,4 +1,5 @@
-//! A small design space swept whole: the Pareto front on mass, tip deflection and lowest mode.
+//! Sweeps a small design space and prints two designs of its Pareto front: the lightest and the one with the highest
+//! lowest mode.
 //!
 //! Run: cargo run --example sweep_small_space
 

@@ -1,14 +1,16 @@
-//! Studies that the benches and the `speed` example share.
+//! Studies that the benchmarks and the example `speed` share.
 
 use armwright::catalog::Catalogs;
 use armwright::input::Document;
 use armwright::study::{Study, read_study};
 use serde_json::json;
 
-/// Two links with fixed joints: rigid links, one stiffness a joint, stretched, `options` sections a link.
-/// The rigid 3 x 3 eigenproblem of a planar arm on a turning base.
+/// A study of an arm with three given joints and two rigid links, in the stretched pose. Each joint has a single
+/// stiffness. Each link has at least `options` options (material and section). The modes of an arm are an eigenvalue
+/// problem with a 3 x 3 matrix.
 pub fn simple(options: u32, catalogs: &Catalogs) -> Study {
-    // square tubes of two materials; sides and walls make up the number
+    // The sections are square tubes of two materials. The numbers of sides and wall thicknesses are chosen so that
+    // there are at least `options` combinations.
     let sides = (f64::from(options) / 2.0).sqrt().ceil() as u32;
     let walls = options.div_ceil(2 * sides);
     let grid = |from: f64, to: f64, n: u32| -> Vec<f64> {

@@ -1,10 +1,10 @@
-//! DLR Agile Justin: two seven-joint arms on a torso of four joints, one of them passive; 300 poses, the
-//! position of a marker on each hand by ceiling cameras.
+//! Campaign of DLR Agile Justin: two arms of seven joints on a torso of four joints, one of which is passive. Ceiling
+//! cameras measured the position of a marker on each hand in 300 poses.
 //!
-//! Data: github.com/aidx-lab/2021-humanoids-elastic (Tenhumberg, Baeuml, Calibration of an Elastic Humanoid
-//! Upper Body and Efficient Compensation for Motion Planning, Humanoids 2021, arXiv 2311.08333); kinematics
-//! and masses from the authors' public code. The frames between chest and shoulders are not published:
-//! each arm is mounted anyhow (`mounts`).
+//! Data: github.com/aidx-lab/2021-humanoids-elastic (Tenhumberg, Baeuml, Calibration of an Elastic Humanoid Upper Body
+//! and Efficient Compensation for Motion Planning, Humanoids 2021, arXiv 2311.08333). Kinematics and masses are from
+//! the authors' public code. The frames between chest and shoulders are not published, so the position and attitude of
+//! each arm on the chest are left free (`mounts`).
 
 use super::frames::Walk;
 use super::{read_numbers, write};
@@ -12,7 +12,8 @@ use serde_json::{Value, json};
 use std::io;
 use std::path::Path;
 
-/// One row of the modified table and the body it moves.
+/// One row of the table of modified Denavit-Hartenberg parameters, with mass and centre of gravity of the body that it
+/// moves.
 struct Row {
     d_m: f64,
     theta_deg: f64,
@@ -50,18 +51,20 @@ const LEFT: [Row; 7] = [
     row(0.0, 90.0, 0.0, -90.0, 1.641, [0.50, -7.85, 8.71]),
     row(0.0, -90.0, 0.0, -90.0, 0.675, [29.08, 78.11, -19.58]),
 ];
-/// The head, a guess: mass \[kg\], centre above the chest \[m\].
+/// The head, which is a guess: mass \[kg\], and centre of gravity in the frame of the chest \[m\].
 const HEAD: (f64, [f64; 3]) = (3.0, [0.35, 0.0, 0.0]);
-/// A hand: mass \[kg\], part of the way from the wrist to where the marker is about.
+/// Mass of a hand \[kg\]. The hand is a point mass on the way from the wrist to the approximate position of the marker.
 const HAND_KG: f64 = 2.0;
-/// From chest to shoulder, a first guess \[m\]: to the right and to the left is -z and +z.
+/// Vector from chest to shoulder \[m\], a first guess. The last component is negative for the right arm and positive
+/// for the left arm.
 const SHOULDER_M: [f64; 3] = [0.2, 0.0, 0.2];
-/// About what the cameras repeat, per coordinate \[mm\].
+/// Approximate repeatability of the cameras for each coordinate, as a standard deviation \[mm\].
 const SIGMA_MM: f64 = 0.5;
-/// Joints of the torso, of the right arm, of the left arm.
+/// Letters with which the names of the joints begin: of the torso, of the right arm and of the left arm.
 const NAMES: [&str; 3] = ["t", "r", "l"];
 
-/// One body: Rx(alpha) Tx(r), the joint, Rz(theta + q) Tz(d).
+/// Adds one row of the table to the chain: a rotation by alpha about x, a shift by r along x, the joint, a rotation by
+/// theta about z, a shift by d along z, and the body.
 fn body(walk: &mut Walk, row: &Row, name: &str, coupled: Option<Value>) {
     walk.turn_x(row.alpha_deg);
     walk.shift(row.r_m, 0.0, 0.0);
@@ -75,7 +78,7 @@ fn body(walk: &mut Walk, row: &Row, name: &str, coupled: Option<Value>) {
 fn arm(name: &str, prefix: &str, rows: &[Row; 7], side: f64, hand_m: [f64; 3]) -> Value {
     let mut walk = Walk::new();
     for (i, row) in TORSO.iter().enumerate() {
-        // the linkage keeps the chest upright
+        // The linkage keeps the chest upright.
         let coupled = (i == 3).then(|| json!({"t1": -1.0, "t2": -1.0}));
         body(&mut walk, row, &format!("t{i}"), coupled);
     }
@@ -90,10 +93,11 @@ fn arm(name: &str, prefix: &str, rows: &[Row; 7], side: f64, hand_m: [f64; 3]) -
     json!({"name": name, "chain": walk.chain})
 }
 
-/// Makes the campaign folder from `poses_300.csv`: pose, 19 angles \[rad\], right and left x, y, z \[m\].
+/// Writes the campaign folder. `data` is the file `poses_300.csv` with the columns: pose, 19 angles \[rad\], x, y, z of
+/// the right marker, x, y, z of the left marker \[m\].
 ///
 /// # Errors
-/// The data cannot be read or the folder not be written.
+/// An error if the data cannot be read or the folder cannot be written.
 pub fn campaign(data: &Path, folder: &Path) -> io::Result<()> {
     let joints: Vec<String> = (0..3)
         .map(|i| format!("q_{}{i}_deg", NAMES[0]))

@@ -1,5 +1,5 @@
-//! Campaign folders made from published measurements of real machines, which may not be redistributed:
-//! the data are read from where they were downloaded to.
+//! Campaign folders that are made from published measurements of real machines. These data may not be redistributed, so
+//! they are read from a file that the user has downloaded.
 
 pub mod frames;
 pub mod justin;
@@ -8,19 +8,19 @@ pub mod motoman;
 use std::io;
 use std::path::Path;
 
-/// Writes the files of a campaign folder.
+/// Writes the files of a campaign folder. `files` has the name and the text of each file.
 ///
 /// # Errors
-/// The folder cannot be written.
+/// An error if the folder cannot be written.
 pub fn write(folder: &Path, files: &[(&str, String)]) -> io::Result<()> {
     std::fs::create_dir_all(folder)?;
     files.iter().try_for_each(|(name, text)| std::fs::write(folder.join(name), text))
 }
 
-/// The rows of a table of numbers, without its header.
+/// The rows of a file of comma-separated numbers, without its header.
 ///
 /// # Errors
-/// The file cannot be read, or a cell is no number.
+/// An error if the file cannot be read, or if a cell is not a number.
 pub fn read_numbers(path: &Path) -> io::Result<Vec<Vec<f64>>> {
     let text = std::fs::read_to_string(path)?;
     let bad =

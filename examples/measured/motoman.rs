@@ -1,8 +1,9 @@
-//! Motoman MA1400 on a turntable (CTU Prague): 352 reflector positions by laser tracker.
+//! Campaign of a Motoman MA1400 on a turntable (CTU Prague): a laser tracker measured the position of a reflector in
+//! 352 poses.
 //!
-//! Data and kinematics: github.com/ctu-vras/multirobot-calibration, `updated_leica_dataset` (Rozlivek et
-//! al., Humanoids 2021; Stepanova et al., RCIM 73 (2022) 102250). Link masses are guesses: what is
-//! identified is stiffness over mass.
+//! Data and kinematics: github.com/ctu-vras/multirobot-calibration, `updated_leica_dataset` (Rozlivek et al., Humanoids
+//! 2021; Stepanova et al., RCIM 73 (2022) 102250). The masses of the links are guesses, so that only ratios of
+//! stiffness to mass are identified.
 
 use super::frames::Walk;
 use super::{read_numbers, write};
@@ -10,7 +11,8 @@ use serde_json::json;
 use std::io;
 use std::path::Path;
 
-/// Standard rows a \[m\], d \[m\], alpha \[deg\], theta \[deg\]; joint; mass of the body it moves \[kg\].
+/// Standard Denavit-Hartenberg parameters of each joint: a \[m\], d \[m\], alpha \[deg\], theta \[deg\], name of the
+/// joint, mass of the body that it moves \[kg\].
 const ROWS: [(f64, f64, f64, f64, &str, f64); 7] = [
     (0.0, -0.263, 15.0, -90.0, "E", 60.0),
     (0.15, 1.4159, -90.0, 0.0, "S", 45.0),
@@ -20,12 +22,13 @@ const ROWS: [(f64, f64, f64, f64, &str, f64); 7] = [
     (0.03, 0.0, 90.0, -90.0, "B", 5.0),
     (0.0, 0.2, 0.0, 0.0, "T", 3.0),
 ];
-/// Tool: a \[m\], d \[m\], theta \[rad\], mass \[kg\].
+/// Standard Denavit-Hartenberg parameters and mass of the tool: a \[m\], d \[m\], theta \[rad\], mass \[kg\].
 const TOOL: (f64, f64, f64, f64) = (0.045, 0.245, -0.38, 2.0);
-/// The tracker's standard deviation \[mm\].
+/// Standard deviation of the laser tracker \[mm\].
 const SIGMA_MM: f64 = 0.008;
 
-/// The chain at zero angles: Rz(theta + q) Tz(d) Tx(a) Rx(alpha) for every row.
+/// The arm at zero angles: for each row the joint, a rotation by theta about z, a shift by d along z, a shift by a
+/// along x, and a rotation by alpha about x.
 fn arm() -> serde_json::Value {
     let mut walk = Walk::new();
     for (a, d, alpha, theta, name, mass_kg) in ROWS {
@@ -43,10 +46,11 @@ fn arm() -> serde_json::Value {
     json!({"name": "motoman-ma1400", "chain": walk.chain})
 }
 
-/// Makes the campaign folder from `poses_fit_352.csv`: columns pose, seven angles \[rad\], x, y, z \[m\].
+/// Writes the campaign folder. `data` is the file `poses_fit_352.csv` with the columns: pose, seven angles \[rad\], x,
+/// y, z of the reflector \[m\].
 ///
 /// # Errors
-/// The data cannot be read or the folder not be written.
+/// An error if the data cannot be read or the folder cannot be written.
 pub fn campaign(data: &Path, folder: &Path) -> io::Result<()> {
     let joints = ROWS.map(|row| format!("q_{}_deg", row.4)).join(",");
     let mut positions = format!("test,{joints},point,x_mm,y_mm,z_mm,sigma_mm\n");

@@ -29,27 +29,28 @@ const AXIAL: [usize; 1] = [4];
 /// The loads on the output bearing of one joint in one case, as linear functions of the weights and inertias of the
 /// parts.
 pub(super) struct BearingRows {
-    /// Load components at rest, caused by gravity and the tip load. Each is a sum over the weights of the pieces \[N\].
+    /// Load components at rest, caused by gravity and the tip load \[N m for moments, N for forces\]. Each component is
+    /// a linear function of the weights of the pieces \[N\].
     at_rest: Components,
-    /// Additional load components while one joint accelerates, one entry for each joint whose acceleration loads this
-    /// bearing. Each component is a sum over the line inertias (inertias per metre of a tube) of all pieces, with
-    /// [`INERTIAS`] numbers for each piece.
+    /// Load components that are added while one joint accelerates, one entry for each joint whose acceleration loads
+    /// this bearing. Each component is a linear function of the line inertias (inertias per metre of a tube) of all
+    /// pieces. Each piece has [`INERTIAS`] such numbers.
     ramps: Vec<RampRow>,
 }
 
-/// The load on a bearing while one joint accelerates.
+/// The additional load on a bearing while one joint accelerates.
 struct RampRow {
-    /// The load components in the ramp.
+    /// The load components that the acceleration adds to the components at rest.
     sums: Components,
     /// Ratio of the deceleration in the joint's emergency stop to its acceleration in the ramp, at least 1.
     stop_factor: f64,
 }
 
-/// The components of a load, each as a linear function of the numbers of the parts.
+/// The [`COMPONENTS`] components of a load, each as a linear function of the weights or inertias of the parts.
 type Components = [Sum; COMPONENTS];
 
-/// A linear function `fixed + Σ coefficient · number` of the weights or of the inertias. `terms` has the index and the
-/// coefficient of each number whose coefficient is not zero.
+/// A linear function `fixed + Σ coefficient · number`. The numbers are the weights of the pieces or their line
+/// inertias. `terms` has the index and the coefficient of each number whose coefficient is not zero.
 #[derive(Default)]
 struct Sum {
     fixed: f64,
@@ -73,9 +74,10 @@ pub(super) struct Loads<'a> {
     pub per_n: &'a [Wrench],
 }
 
-/// The ramp of one joint: its acceleration as a kinematic twist, and the inertia that it accelerates.
+/// The ramp of one joint (the time in which it accelerates): its acceleration as a twist, and the inertia that it
+/// accelerates.
 pub(super) struct Ramp<'a> {
-    /// Kinematic twist of the joint per radian, times its angular acceleration \[rad/s²\].
+    /// Twist of everything outboard per radian of the joint's angle, times the joint's angular acceleration \[rad/s²\].
     pub acceleration: Twist,
     /// Inertia matrix of the payload and of the bodies that the study gives, as far as they move with the joint.
     pub fixed: Matrix6<f64>,
@@ -86,8 +88,9 @@ pub(super) struct Ramp<'a> {
     pub stop_factor: f64,
 }
 
-/// The axes of a joint about and along which the components of a load are taken, each as a unit motion. The dot product
-/// of such a motion and a wrench is one component.
+/// The directions of the components of a load, each as the twist of a unit motion. The first two motions turn about the
+/// two axes at right angles to the joint axis. The other three move along these two axes and along the joint axis. The
+/// dot product of such a twist and a wrench is one component.
 struct Frame([Twist; COMPONENTS]);
 
 impl Frame {
@@ -147,9 +150,9 @@ impl BearingRows {
         Self { at_rest, ramps: ramps.map(of_ramp).filter(counts).collect() }
     }
 
-    /// Least and greatest moment, radial and axial force on the output bearing over the box: at rest, while a joint
-    /// accelerates, and in an emergency stop. The moment of the radial force about the bearing (force times the distance along the axis to the
-    /// link) is left out; the caller adds it.
+    /// Least and greatest loads on the output bearing over the box, in this order: moment, radial and axial force at
+    /// rest, while a joint accelerates, and in an emergency stop. The moment of the radial force about the bearing
+    /// (force times the distance along the axis to the link) is left out; the caller adds it.
     pub(super) fn loads(&self, numbers: &Numbers) -> [BearingDemand; 2] {
         let at_rest = self.at_rest.each_ref().map(|sum| sum.between_weights(numbers.weights_n));
         let rest = squared_lengths(&at_rest);
@@ -276,7 +279,8 @@ fn squared_lengths(components: &[[f64; 2]; COMPONENTS]) -> [Squares; 2] {
     squares.map(|of| [of[MOMENT[0]] + of[MOMENT[1]], of[RADIAL[0]] + of[RADIAL[1]], of[AXIAL[0]]])
 }
 
-/// Replaces each of the least and greatest loads in `load` by the corresponding one in `other` if that is larger.
+/// Replaces each of the least and greatest loads in `load` by the corresponding load in `other` if that is larger. The
+/// largest load over all ramps counts, so its least value over the box is the largest of the least values.
 fn widen(load: &mut [Squares; 2], other: [Squares; 2]) {
     for (load, other) in load.iter_mut().flatten().zip(other.iter().flatten()) {
         *load = load.max(*other);

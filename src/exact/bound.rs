@@ -34,7 +34,7 @@ const MOST_STEPS: usize = 30;
 /// The number is an estimate. It decides whether a better shape is computed, and no proof rests on it.
 const LOWEST_BY_SHAPE: f64 = 0.4;
 
-/// A box of designs: the number of one node of each level's tree, tip first.
+/// A box of designs: for each level (choice of a part), tip first, the number of a node of the level's tree.
 pub(super) type DesignBox = Vec<u32>;
 
 /// The ideal point of a box: the least mass \[kg\], the least tip deflection \[m\] and the highest lowest mode \[Hz\]
@@ -50,14 +50,14 @@ impl BoxBound {
     /// The bound of a box of which nothing is known yet: zero mass, zero deflection and an infinite frequency.
     pub(super) const OPEN: Self = Self { mass_kg: 0.0, tip_m: 0.0, hz: f64::INFINITY };
 
-    /// This bound with the lowest frequency that a better trial shape is assumed to reach ([`LOWEST_BY_SHAPE`]). If
-    /// even this bound would not prune the box, no better shape is computed.
+    /// The bound that a better trial shape would give at best: its frequency is lowered by the factor
+    /// [`LOWEST_BY_SHAPE`]. If even such a bound would not prune the box, no better shape is computed.
     pub(super) fn with_better_shape(&self) -> Self {
         Self { hz: LOWEST_BY_SHAPE * self.hz, ..*self }
     }
 
-    /// The bound with all three objectives made worse by the factor `1 + slack`. The slack is a fraction that the pass
-    /// of the search sets.
+    /// The bound with all three objectives made worse by the factor `1 + slack`. The slack is a fraction; it is the
+    /// same throughout one pass of the search.
     pub(super) fn slackened(&self, slack: f64) -> Self {
         let factor = 1.0 + slack;
         Self { mass_kg: self.mass_kg * factor, tip_m: self.tip_m * factor, hz: self.hz / factor }

@@ -17,7 +17,7 @@ use nalgebra::Vector3;
 pub(super) struct BoxWork {
     /// Greatest stiffnesses of each piece over the box, as in [`Line::stiffnesses`](super::parts::Line).
     pub(super) stiff: Vec<[f64; STIFFNESSES]>,
-    /// Least stiffnesses of each piece over the box.
+    /// Least stiffnesses of each piece over the box, in the same order as in `stiff`.
     pub(super) soft: Vec<[f64; STIFFNESSES]>,
     /// Least line inertias (inertias per metre of a tube) of each piece over the box, as in
     /// [`Line::inertias`](super::parts::Line). For a joint the first place is its mass \[kg\].
@@ -57,16 +57,16 @@ pub(super) struct BoxWork {
     /// second the piece. A judged case counts for deflection and lowest mode.
     pub(super) torques: Vec<Vec<[f64; 2]>>,
     /// The judged case in which the least tip deflection of the box is greatest, and the direction in which the tip
-    /// moves in this case.
+    /// moves in this case (a unit vector). `None` if the tip need not move in any judged case.
     pub(super) worst_tip: Option<(usize, Vector3<f64>)>,
     /// For each judged case, the direction of the tip's displacement when it is least over the box.
     pub(super) tip_directions: Vec<Vector3<f64>>,
     /// Upper bound of the tip's deflection \[m\], one entry for each judged case in which contributions to the tip's
     /// displacement may oppose each other.
     pub(super) greatest_tip_m: Vec<f64>,
-    /// For each piece, the relative growth of the tip's least deflection with middle stiffnesses of the piece. A middle
-    /// stiffness is the geometric mean of its least and its greatest value; the least deflection has the greatest
-    /// value.
+    /// For each piece, the fraction by which the least tip deflection of the box would grow if the piece had middle
+    /// stiffnesses instead of its greatest ones. A middle stiffness is the geometric mean of the least and the greatest
+    /// stiffness.
     pub(super) tip_growth: Vec<f64>,
     /// Buffers of the inverse iteration that improves trial shapes.
     pub(super) shape: ShapeWork,
@@ -76,7 +76,8 @@ pub(super) struct BoxWork {
 }
 
 impl BoxWork {
-    /// Resets all numbers to zero for a problem of this many pieces and cases.
+    /// Prepares the memory for a box of a problem with this many pieces and cases. Numbers of an earlier box become
+    /// zero.
     pub(super) fn clear(&mut self, pieces: usize, cases: usize) {
         fn zero<T: Clone>(items: &mut Vec<T>, n: usize, value: T) {
             items.clear();

@@ -96,9 +96,9 @@ impl Problem<'_> {
         softened
     }
 
-    /// Computes `work.tip_growth`: for each piece, the fraction by which the least tip deflection would grow with
-    /// middle stiffnesses of the piece. A middle stiffness is the geometric mean of its least and its greatest value;
-    /// the least deflection has the greatest value.
+    /// Computes `work.tip_growth`: for each piece, the fraction by which the least tip deflection would grow if the
+    /// piece had middle stiffnesses instead of its greatest ones. A middle stiffness is the geometric mean of the least
+    /// and the greatest stiffness.
     fn weigh_tip(&self, work: &mut BoxWork) {
         work.tip_growth.clear();
         work.tip_growth.resize(self.parts.len(), 0.0);
@@ -118,7 +118,7 @@ impl Problem<'_> {
                     (linear_strain(pose, row, force, work), middling(soft, stiff))
                 }
             };
-            // A coordinate whose interval contains zero need not move the tip at all.
+            // The tip need not move at all along a coordinate whose interval contains zero.
             let least = if moved[0] >= 0.0 { moved[0] } else { moved[1].min(0.0) };
             let part_m = direction.dot(&row.tip_m) * least;
             total += part_m;

@@ -39,7 +39,7 @@ const LEAST_DISTANCE_TO_END: f64 = 1e-3;
 pub(super) struct Branching {
     /// Expected benefit of the division. The weighted sum of rows (inequalities of the bound) is too low for two
     /// reasons: McCormick bounds underestimate products, and the mixed designs differ. The benefit is the part of this
-    /// error that the division can remove. The rows are scaled, so it has no unit.
+    /// error that the division can remove. It has no unit, because each row is divided by its scale.
     gain: f64,
     /// The quantity that is divided.
     by: BranchOn,
@@ -61,20 +61,21 @@ pub(super) enum BranchOn {
 /// bound although no single design does.
 type Mixed<'a> = [(&'a RelaxedDesign, f64)];
 
-/// Weighted mean of the number `of` over the designs of a mixture.
+/// Weighted mean, over the designs of a mixture, of the number that `of` returns for a design.
 fn mean(mixed: &Mixed, of: impl Fn(&RelaxedDesign) -> f64) -> f64 {
     mixed.iter().map(|(member, share)| share * of(member)).sum()
 }
 
-/// Weighted mean absolute deviation of the number `of` from its mean over the designs of a mixture.
+/// Mean absolute deviation, over the designs of a mixture, of the number that `of` returns for a design. The weights of
+/// the mixture apply to it and to the mean from which it is measured.
 fn spread(mixed: &Mixed, of: impl Fn(&RelaxedDesign) -> f64) -> f64 {
     let middle = mean(mixed, &of);
     mean(mixed, |member| (of(member) - middle).abs())
 }
 
 impl Rows<'_> {
-    /// Ways to divide the region, by descending expected benefit. `mixed` is the mixture with which
-    /// the bound ended, and `multipliers` are the factors on the rows (inequalities) of the bound.
+    /// Ways to divide the region, by descending expected benefit; empty if no division is worth while. `mixed` is the
+    /// mixture with which the bound ended. `multipliers` are the factors on the rows (inequalities) of the bound.
     pub(super) fn branchings(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<Branching> {
         let mut branchings = Vec::new();
         let left_out = self.left_out(mixed, multipliers);
@@ -102,8 +103,9 @@ impl Rows<'_> {
         branchings
     }
 
-    /// Two pairs, first for the mass of a piece and then for its stiffness. Each pair is the index of the coordinate
-    /// that stands for the quantity in the key of an option, and the best value of this coordinate in the box.
+    /// Two pairs, the first for the mass of a piece and the second for its stiffness. The first number of a pair is the
+    /// index of a coordinate in the key of an option: the coordinate that stands for mass or stiffness. The second
+    /// number is the best value of this coordinate in the box.
     fn best_of(&self, piece: usize) -> [(usize, f64); 2] {
         let (light, stiff) = (self.work.light[piece][inertia::MASS], self.work.stiff[piece][0]);
         let (places, stiff) = match &self.work.curves[piece] {
@@ -115,8 +117,8 @@ impl Rows<'_> {
         [number(places[0], light), number(places[1], stiff)]
     }
 
-    /// For each piece, the part of the weighted sum of scaled rows that the McCormick bounds of force times compliance
-    /// underestimate. The first number is due to the uncertain weight of the piece, the second to its uncertain
+    /// For each piece, the amount by which the McCormick bounds of force times compliance make the weighted sum of
+    /// scaled rows too low. The first number is due to the uncertain weight of the piece, the second to its uncertain
     /// compliance.
     fn left_out(&self, mixed: &Mixed, multipliers: &[f64]) -> Vec<[f64; 2]> {
         let mut left_out = vec![[0.0; 2]; self.problem.parts.len()];

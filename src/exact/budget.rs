@@ -17,8 +17,8 @@ impl<'p> Budget<'p> {
         Self { stop, started: Instant::now(), deadline, boxes: AtomicU64::new(0) }
     }
 
-    /// A budget with the same stop signal and time limit and a count of its own, for work whose boxes are not counted
-    /// as boxes of the search.
+    /// A budget with the same stop signal and time limit, but with a separate count of boxes. It is for work whose
+    /// boxes are not counted as boxes of the search.
     pub(super) fn aside(&self) -> Self {
         Self { boxes: AtomicU64::new(0), ..*self }
     }
@@ -34,7 +34,7 @@ impl<'p> Budget<'p> {
         self.deadline.map(left)
     }
 
-    /// Whether the fraction `part` of the time limit has passed, or the search has to end.
+    /// Whether the fraction `part` of the time limit has passed, or the search has to end now.
     pub(super) fn has_spent(&self, part: f64) -> bool {
         let limit = self.deadline.map(|deadline| deadline.saturating_duration_since(self.started));
         self.stopped() || limit.is_some_and(|limit| self.started.elapsed() >= limit.mul_f64(part))

@@ -32,13 +32,15 @@ struct Joints<'c> {
     /// For each joint, its given drive or the drives that it may have; `None` for any other piece, and after the joint
     /// was compiled.
     slots: Vec<Option<Slot<'c>>>,
-    /// The motion of each joint and the state of its bearing, as a compiled pose needs them; default values for any
-    /// other piece.
+    /// What a compiled pose needs to know of each joint: how it accelerates, and whether its bearing tilts or is
+    /// checked. Default values for a piece that is not a joint.
     needs: Vec<JointNeeds>,
-    /// For each joint whose bearing is checked: the lever, which is the distance along the joint's axis from the face
-    /// of its flange to the point where the link attaches. `None` for any other piece.
+    /// For each joint whose bearing is checked, its lever for each option of the link outboard. The lever is the
+    /// distance along the joint's axis from the face of its flange to the point where the link attaches. `None` for any
+    /// other piece.
     levers: Vec<Option<LeverByOption>>,
-    /// The space for gear and motor at each joint whose drives must fit into a link; `None` for any other piece.
+    /// The space for gear and motor at each joint whose drives must fit into a link, for each option of that link;
+    /// `None` for any other piece.
     rooms: Vec<Option<RoomAtJoint>>,
     /// The number of each piece in the compiled problem, which counts from the tip.
     numbers: Vec<usize>,
@@ -214,8 +216,8 @@ impl<'c> Problem<'c> {
         })
     }
 
-    /// Adds the compiled part of the joint at `place`, with its play. The lever of its bearing and the space for its
-    /// drive, which depend on the link outboard, are added too.
+    /// Adds the compiled part of the joint at `place`, together with its play. Also adds two things that depend on the
+    /// link outboard: the lever of the joint's bearing, and the space for its drive.
     fn push_joint(&mut self, part: Part<'c>, joint: &SpaceJoint, joints: &Joints<'c>, place: usize) {
         self.levers.push(joints.levers[place].as_ref().map(|lever| self.lever(lever)));
         self.rooms.push(joints.rooms[place].as_ref().map(|room| self.room_at(room)));
@@ -224,7 +226,8 @@ impl<'c> Problem<'c> {
         self.joint_plays.push(JointPlay::of(&self.space.joint_piece(joint, Curve::Linear(1.0), None).law));
     }
 
-    /// Adds a compiled part that is not a joint, and so has no play, no lever and no drive that must fit.
+    /// Adds a compiled part that is not a joint. Such a part has no play, no bearing with a lever, and no drive that
+    /// must fit into a link.
     fn push(&mut self, part: Part<'c>) {
         self.levers.push(None);
         self.rooms.push(None);

@@ -36,7 +36,7 @@ pub(super) struct JointNeeds {
     pub is_checked: bool,
     /// Angular acceleration of the joint in a ramp \[rad/s²\].
     pub acceleration_rad_s2: f64,
-    /// Ratio of the deceleration of the joint in its emergency stop to this acceleration, at least 1.
+    /// Ratio of the deceleration of the joint in its emergency stop to `acceleration_rad_s2`, at least 1.
     pub stop_factor: f64,
 }
 
@@ -89,8 +89,8 @@ impl Pose {
 
     /// Writes the rows of this pose: for each strain coordinate, its generalized force as a linear function of the
     /// weights outboard. The function goes inward from the tip and adds each piece to the wrench of everything
-    /// outboard. `joints` has the needs of each joint and `springs` the wrench of each spring, both with the number of
-    /// the piece at which they act.
+    /// outboard. `joints` has the needs of each joint, and `springs` the wrench of each spring. Both are given with the
+    /// number of the piece at which they act.
     fn compile(
         &mut self,
         space: &DesignSpace,
@@ -417,8 +417,8 @@ impl Outboard {
         }
     }
 
-    /// Adds the weight and the inertia of a body that the study gives. `body` is its inertia matrix about the world's
-    /// origin.
+    /// Adds the weight and the inertia of a body whose mass the study gives. `body` is the inertia matrix of this body
+    /// about the world's origin.
     fn add_body(&mut self, body: &Matrix6<f64>, space: &DesignSpace) {
         self.fixed_inertia += body;
         let mass_kg = body[(0, 0)];
@@ -485,9 +485,9 @@ impl Outboard {
         })
     }
 
-    /// The row of a strain coordinate: the force on it and the tip's displacement by it. A unit of the coordinate moves
-    /// everything outboard by the kinematic vector `twist`. `own_per_n` is the force on the coordinate per newton of
-    /// the weight of the piece to which it belongs.
+    /// The row of a strain coordinate: the generalized force on the coordinate, and the tip displacement that it
+    /// causes. `twist` is the motion of everything outboard per unit of the coordinate. `own_per_n` is the force on the
+    /// coordinate per newton of the weight of the piece to which it belongs.
     fn row(
         &self,
         piece: usize,

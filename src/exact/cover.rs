@@ -19,7 +19,7 @@ use std::sync::Arc;
 /// Number of boxes that are halved in one step, in parallel.
 const AT_ONCE: usize = 32;
 
-/// Boxes that cover the space.
+/// Boxes that together contain every design except those that a design found before dominates.
 pub(super) struct Cover(Vec<Piece>);
 
 /// A box, the level along which it is halved, and its gap. The level is `None` for a box of one design.

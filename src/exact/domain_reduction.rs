@@ -17,7 +17,7 @@ use crate::pareto::objectives::Objectives;
 use crate::space::design_space::DesignSpace;
 use std::collections::BTreeSet;
 
-/// Relative amount by which the known design's objectives are made worse before designs below them are looked for. With
+/// The search looks for designs below the known design's objectives after these were made worse by this fraction. With
 /// this margin, rounding excludes no part of the known design itself.
 const OBJECTIVE_MARGIN: f64 = 1e-6;
 /// Greatest number of subproblems that are branched. A subproblem of at most [`SMALL_SPACE`] designs is not branched,
@@ -31,7 +31,8 @@ pub struct DomainReduction<'p> {
 }
 
 impl<'p> DomainReduction<'p> {
-    /// Compiles a space. `None` if some level has no option.
+    /// Compiles a space. `None` if some level (choice of a part) has no option, or if this search cannot treat a piece
+    /// of the arm.
     pub fn new(space: &'p DesignSpace, catalogs: &'p Catalogs) -> Option<Self> {
         Some(Self { problem: Problem::new(space, catalogs, &|_| true, Ties::Merged)? })
     }
@@ -70,8 +71,8 @@ impl<'p> DomainReduction<'p> {
     }
 }
 
-/// A subproblem whose options have been excluded as far as that is worth the time. `designs` is the number of designs
-/// that remain.
+/// A subproblem whose options have been excluded as far as that is worth the time. `survivors` are the options that
+/// remain, and `designs` is the number of designs that they make.
 struct Reduced<'p> {
     subproblem: Subproblem<'p>,
     survivors: Survivors,

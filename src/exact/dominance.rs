@@ -45,7 +45,8 @@ struct DominatingDrive<'a> {
 }
 
 impl DominatingDrive<'_> {
-    /// Whether the box `drives` may contain a dominating drive. For a box of a single drive the answer is exact.
+    /// Whether the box `drives` may contain a dominating drive. `false` is certain; `true` is certain only for a box of
+    /// a single drive.
     fn may_be_in(&self, drives: &DriveBox) -> bool {
         drives.mass_kg[0] < self.lighter_than_kg
             && drives.tilt_rad_per_nm[0] <= self.most_tilt_rad_per_nm
@@ -114,8 +115,8 @@ impl Problem<'_> {
         Some(shrunk)
     }
 
-    /// Whether a lighter drive dominates every drive of the box `drives` at the joint `piece`. The tree is searched for
-    /// such a drive; `demand` is the greatest demand on the joint.
+    /// Whether a lighter drive dominates every drive of the box `drives` at the joint `piece`. The whole tree of the
+    /// joint is searched for such a drive. `demand` is the greatest demand on the joint over the box.
     fn is_dominated(
         &self,
         piece: usize,

@@ -1,9 +1,9 @@
 //! The feasible drives below a node, grouped by torsion curve and bearing.
 //!
-//! A joint has hundreds of drives but only some dozens of curves, and gears of one curve mostly have one bearing. The
-//! price of a drive is what it adds to a weighted sum of inequalities ([`dual_price`](super::dual_price)). It is the
-//! price of its mass plus the prices of its curve and its bearing. Among the drives of one group only the lightest or
-//! the heaviest can therefore be the cheapest, whatever the prices are.
+//! A joint has hundreds of drives but only some dozens of torsion curves, and gears of one curve mostly have one
+//! bearing. The price of a drive is what it adds to a weighted sum of inequalities ([`dual_price`](super::dual_price)).
+//! It is the price of the drive's mass plus the prices of its curve and its bearing. Drives of one group differ only in
+//! mass. Whatever the prices are, the cheapest drive of a group is therefore its lightest or its heaviest.
 //!
 //! The parts of a region are priced at dozens of sets of multipliers (the weights of the inequalities). A state of a
 //! gear is its torque with its twist and slope. The states that may be the cheapest are the same for all multipliers,
@@ -40,7 +40,7 @@ impl CurveGroup {
     }
 }
 
-/// The feasible drives, one group for each curve and bearing.
+/// The feasible drives below a node of a joint's tree, one group for each torsion curve and bearing.
 struct DrivesByCurve(Vec<CurveGroup>);
 
 impl DrivesByCurve {
@@ -183,7 +183,7 @@ impl LaneWork for GroupPrices<'_> {
     }
 }
 
-/// The feasible drives of a level with the states that their gears may have in a region.
+/// The feasible drives of a level (the drives of one joint), with the states that their gears may have in a region.
 pub(super) struct PricedDrives {
     drives: Arc<DrivesByCurve>,
     eights: Vec<EightGroups>,
@@ -191,7 +191,7 @@ pub(super) struct PricedDrives {
 
 impl PricedDrives {
     /// The feasible drives of a level with the states of their gears. `gears` has the gear of the joint in each judged
-    /// case.
+    /// case, and `play` is the lost motion and friction of the joint.
     pub(super) fn new(feasible: &FeasibleDrives, gears: &[&Gear], play: Option<&JointPlay>) -> Self {
         let drives = Arc::clone(&feasible.drives);
         let with_curve: Vec<(&CurveGroup, &CurveBox)> =
@@ -200,7 +200,8 @@ impl PricedDrives {
         Self { eights, drives }
     }
 
-    /// The least price of a drive and its node; among equal prices the lower node. `None` if no drive is feasible.
+    /// The least price of a drive, and the drive's node in the tree. Among equal prices the lower node is taken. `None`
+    /// if no drive is feasible.
     pub(super) fn cheapest(&self, price: &DualPrice) -> Option<(f64, u32)> {
         let end = usize::from(price.of_mass([0.0, 1.0]) < 0.0);
         let in_eights = self.eights.iter().flat_map(|groups| {

@@ -25,7 +25,7 @@ const ROUNDING: f64 = 1e-12;
 /// lowest mode.
 pub(super) struct Gear {
     pub piece: usize,
-    /// Index of the judged case.
+    /// Index of the case among the judged cases.
     pub judged: usize,
     /// Interval of the gear's torque \[N m\].
     pub torques_nm: [f64; 2],
@@ -77,7 +77,7 @@ pub(super) struct DualPrice {
 
 /// The dual prices of the state of a joint's gear in a judged case.
 pub(super) struct JointPrice {
-    /// Price per unit of twist \[1/rad\].
+    /// Price per radian of the gear's twist \[1/rad\].
     pub twist: f64,
     /// Price per unit of the torque at which the gear is evaluated \[1/(N m)\].
     pub torque: f64,
@@ -284,8 +284,8 @@ impl DualPrice {
     }
 }
 
-/// The price of a tube, prepared for many tubes: the sign of each number's price says which end of an interval costs
-/// less.
+/// The price of a tube, prepared for the pricing of many tubes. The sign of a number's price tells which end of the
+/// number's interval costs less: index 0 for the lower end, 1 for the upper end.
 pub(super) struct TubePrice<'a> {
     price: &'a DualPrice,
     inertia_ends: [usize; INERTIAS],
@@ -324,7 +324,7 @@ impl<'a> TubePrice<'a> {
     }
 }
 
-/// The least price of a number in an interval.
+/// The least price of a number that lies in an interval: the price per unit times the cheaper end.
 #[inline]
 fn least(price: f64, [low, high]: [f64; 2]) -> f64 {
     price * if price >= 0.0 { low } else { high }

@@ -20,14 +20,15 @@ use crate::pareto::objectives::Objectives;
 
 /// Number of dives.
 const DIVES: usize = 16;
-/// Number of boxes of the cover. To bound them takes about as long as the dives.
+/// Number of boxes of the cover. Bounding this many boxes takes about as long as the dives.
 const BOXES_OF_COVER: usize = 1024;
 
 /// The designs and the cover that are known before the first pass.
 pub(super) struct Early<'l> {
     /// Receives the gap and the counts for other threads to read.
     live: &'l LiveProgress,
-    /// Bounds of boxes that contain every design of the space, except designs that a design in `findings` dominates.
+    /// Bounds of the boxes of the cover. These boxes contain every design of the space, except designs that a design in
+    /// `findings` dominates.
     cover: Vec<BoxBound>,
     /// The designs that the dives found.
     findings: Findings,

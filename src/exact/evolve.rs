@@ -181,7 +181,8 @@ impl Recombination<'_, '_> {
         let option = std::mem::take(&mut design_box[level]);
         let mut around = vec![design_box[level]];
         while let Some([low, high]) = problem.halves(design_box, level) {
-            // Nodes are numbered from the root, all of the first half before the second.
+            // The nodes of a tree are numbered from the root. All nodes of the first half have lower numbers than those
+            // of the second half.
             design_box[level] = if option < high { low } else { high };
             around.push(design_box[level]);
         }

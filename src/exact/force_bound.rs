@@ -14,9 +14,9 @@ const ROUNDING: f64 = 1e-12;
 /// for deflection and lowest mode.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ForceBound {
-    /// Index of the case.
+    /// Index of the case among all cases of the study.
     pub case: usize,
-    /// Index of the force's row in the case.
+    /// Index of the force's row among the rows of the case.
     pub row: usize,
     /// Least and greatest allowed force \[N or N m\]; infinite on a side without a bound.
     pub between: [f64; 2],

@@ -1,15 +1,15 @@
 //! The incumbents are the designs found so far. This module tells whether one of them dominates the bound of a box.
 //!
-//! A table ([`Archive`]) knows the incumbents that are better by at least one grid cell in both mass and deflection.
-//! Lists for each row and each column of cells contain the incumbents that share a cell with the bound in one of these
-//! objectives.
+//! A table ([`Archive`]) finds incumbents that are better than a bound by at least one grid cell in both mass and
+//! deflection. An incumbent may also share a cell with the bound in one of these two objectives. Such an incumbent is
+//! found in a list: there is one list for each row and one for each column of cells.
 
 use super::bound::BoxBound;
 use crate::pareto::archive::Archive;
 use crate::pareto::objectives::{Objective, Objectives};
 use std::collections::HashMap;
 
-/// Two objectives that differ by less than this (relative) count as equal.
+/// Two values of an objective that differ by less than this (relative) count as equal.
 const EQUAL_WITHIN: f64 = 1e-9;
 /// A design dominates another only if it is better by at least this fraction in one objective, so that rounding cannot
 /// decide.
@@ -20,9 +20,11 @@ const STEPS: f64 = 64.0;
 /// Designs that meet every constraint.
 pub(super) struct Incumbents {
     table: Archive,
-    /// The incumbents, listed under the grid step of their mass: its cell number on a logarithmic scale.
+    /// The incumbents, in one list for each grid step of mass. The key is the number of the step on a logarithmic
+    /// scale.
     rows: HashMap<i32, Vec<Objectives>>,
-    /// The incumbents, listed under the grid step of their deflection: its cell number on a logarithmic scale.
+    /// The incumbents, in one list for each grid step of deflection. The key is the number of the step on a logarithmic
+    /// scale.
     columns: HashMap<i32, Vec<Objectives>>,
     /// All incumbents in the order in which they were added.
     all: Vec<Objectives>,
@@ -78,7 +80,7 @@ impl Incumbents {
         &self.all
     }
 
-    /// Whether an incumbent dominates every member of a box.
+    /// Whether an incumbent dominates every member of a box with the bound `box_bound`.
     pub(super) fn dominates(&self, box_bound: &BoxBound) -> bool {
         let best = Objectives::from(*box_bound);
         if let Some((objective, least)) = self.only {
@@ -100,7 +102,8 @@ impl Incumbents {
     }
 }
 
-/// The index of the grid step of a positive number on a logarithmic scale.
+/// The number of the grid step in which a positive number lies, on a logarithmic scale with [`STEPS`] steps in a factor
+/// of two.
 fn step(x: f64) -> i32 {
     (libm::log2(x.max(f64::MIN_POSITIVE)) * STEPS).floor() as i32
 }

@@ -20,11 +20,11 @@ pub(super) const ROUNDING: f64 = 1e-12;
 /// Greatest depth to which a tree of drives is searched for drives that cannot carry a demand.
 const MOST_TREE_STEPS: usize = 6;
 
-/// Intervals of what the drive of a joint carries.
+/// The loads that the drive of a joint carries: the least and the greatest value over the members of a box.
 struct Loads {
-    /// Greatest static torque \[N m\].
+    /// Static torque \[N m\]: its magnitude in the sizing case in which it is greatest.
     static_nm: [f64; 2],
-    /// Greatest inertia about the axis \[kg m²\].
+    /// Inertia of everything outboard about the joint's axis \[kg m²\], in the sizing case in which it is greatest.
     inertia_kgm2: [f64; 2],
 }
 
@@ -147,7 +147,8 @@ impl Problem<'_> {
         Some(())
     }
 
-    /// The loads on a joint over the sizing cases.
+    /// The static torque and the inertia that the drive of a joint carries, each in the sizing case in which it is
+    /// greatest.
     fn loads(&self, piece: usize, work: &BoxWork) -> Loads {
         let (mut static_nm, mut inertia_kgm2) = ([0.0f64; 2], [0.0f64; 2]);
         for (pose, weights) in self.poses.iter().zip(&work.weights).filter(|(p, _)| p.sizing) {

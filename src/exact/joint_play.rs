@@ -52,8 +52,8 @@ impl JointPlay {
         }
     }
 
-    /// Whether lost motion has the same slope for small oscillations under all torques up to the magnitude `most_nm`
-    /// \[N m\].
+    /// Whether the slope of the lost motion is practically the same under all torques up to the magnitude `most_nm` \[N
+    /// m\]. This slope is the stiffness of the lost motion for small oscillations.
     pub(super) fn stays(&self, most_nm: f64) -> bool {
         self.lost_motion.is_none_or(|lost| most_nm <= AT_REST * lost.torque_nm)
     }

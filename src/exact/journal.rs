@@ -85,7 +85,8 @@ impl<'s> Journal<'s> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The result of the next part of the search, if an earlier process finished this part.
+    /// The result of the next part of the search, which this call marks as used. `None` if no earlier process finished
+    /// this part.
     pub(super) fn next_finished(&self) -> Option<FoundInShard> {
         let mut state = self.lock();
         let found = state.finished.get(state.used).cloned()?;
@@ -93,7 +94,8 @@ impl<'s> Journal<'s> {
         Some(found)
     }
 
-    /// The progress that an earlier process made with the next part. `None` if that part was not begun.
+    /// Takes the progress that an earlier process made with the next part out of the journal. `None` if that part was
+    /// not begun.
     pub(super) fn begun(&self) -> Option<Begun> {
         self.lock().begun.take()
     }

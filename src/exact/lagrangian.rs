@@ -58,8 +58,8 @@ impl Rows<'_> {
     /// upper limit by as much as possible. They are the solution of a matrix game between the rows and the relaxed
     /// designs.
     pub(super) fn best_multipliers(&self, members: &[RelaxedDesign], upper: &LocalUpperBound) -> Game {
-        /// If the value of a scaled row is further below its limit than this, this number is used for the difference. A
-        /// row so far below its limit has no influence on the game.
+        /// Least difference between a scaled row and its limit that the game sees. A row that is further below its
+        /// limit has no influence on the game.
         const NO_SAY: f64 = -10.0;
         let row_limits: Vec<f64> = self.row_limits_now(upper).collect();
         let mut above = Vec::with_capacity(members.len() * row_limits.len());
@@ -135,7 +135,8 @@ impl Rows<'_> {
         for (piece, part) in self.problem.parts.iter().enumerate() {
             let level = levels.len();
             let price = || self.price(piece, &multipliers, self.lambda);
-            // The amount that the piece adds to each row is needed for the choice of a branching.
+            // The choice of a branching needs the amount that the piece adds to each row. `adds` first stores the
+            // values of the rows before the piece is added.
             let before = member.adds.len();
             member.adds.extend_from_slice(&member.values[..self.first_mode]);
             total += match part {

@@ -128,7 +128,7 @@ impl LocalUpperBounds {
         Some([self, Self(high)])
     }
 
-    /// Removes the objectives that the designs `found` dominate from the region of the group. A bound with such
+    /// Removes from the region of the group all objectives that a design in `found` dominates. A bound with such
     /// designs below it is replaced by the local upper bounds of the region that these designs leave undominated.
     pub(super) fn cut_by(&mut self, found: &[Objectives]) {
         let mut cut = Vec::new();
@@ -166,19 +166,20 @@ struct Stairs {
 }
 
 impl Stairs {
-    /// Adds a design that is at least as heavy as all designs before it. Local upper bounds that are complete now are
-    /// appended to `upper_bounds`. Returns whether no earlier design dominates this design.
+    /// Adds a design that is at least as heavy as all designs added before. Local upper bounds that are complete now
+    /// are appended to `upper_bounds`. Returns false if an earlier design dominates this design, and true otherwise.
     fn add(&mut self, design: &Objectives, upper_bounds: &mut Vec<LocalUpperBound>) -> bool {
         let (tip_m, hz) = (design.tip_deflection_m, design.lowest_mode_hz);
         // Steps before `from` deflect less than the design. Steps before `to` have no higher mode.
         let from = self.steps.partition_point(|step| step[0] < tip_m);
         let to = self.steps.partition_point(|step| step[1] <= hz);
-        // In these cases an incumbent dominates the design: it deflects no more, has no lower mode, and is no heavier.
+        // If one of these conditions is true, an incumbent dominates the design: it deflects no more, has no lower
+        // mode, and is no heavier.
         if to < from || self.steps.get(from).is_some_and(|step| step[0] == tip_m && step[1] >= hz) {
             return false;
         }
-        // Bound k lies between the steps k - 1 and k. The design cuts off the bounds from `from` to `to`, and replaces
-        // the steps between them.
+        // Bound k lies between the steps k - 1 and k. The bounds from `from` to `to` end at the mass of the design. The
+        // design becomes a new step, in the place of the steps that it dominates.
         upper_bounds.extend((from..=to).map(|k| self.bound_before(k, design.mass_kg)));
         self.steps.splice(from..to, [[tip_m, hz]]);
         true

@@ -55,7 +55,8 @@ impl CaseInertia {
     }
 
     /// The lowest eigenvalue of an arm \[1/s²\]. `quotient` is the Rayleigh quotient of a trial shape, which is an
-    /// upper bound. In most cases the eigenvalue equals it, so that is tested first.
+    /// upper bound of the eigenvalue. Mostly the eigenvalue equals this bound, so the function first tests whether no
+    /// eigenvalue lies below it by more than the tolerance.
     pub(super) fn lowest(&self, pose: &Pose, arm: &Ideal, quotient: f64) -> f64 {
         let scaled = self.scaled(pose, arm);
         let (mut low, mut high) = (quotient * (1.0 - TOLERANCE), quotient);

@@ -99,7 +99,7 @@ struct Seeker {
     most: usize,
     /// The greatest shortfall with which a design can still be listed (relative). It falls as nearer designs are found.
     reach: f64,
-    /// Number of near designs found so far.
+    /// Number of near designs found so far, including designs that are no longer stored.
     found: u64,
     nearest: Vec<NearDesign>,
 }

@@ -322,8 +322,8 @@ impl Bounds for DriveBox {
         }
     }
 
-    /// The numbers by which the tree separates drives. The numbers of the torsion curve come first, because all
-    /// drives with the same gear have the same curve. Mass and capacity follow.
+    /// The numbers by which the tree separates drives. The first three describe the torsion curve, because all drives
+    /// with the same gear have the same curve. Mass and the load that the drive can carry follow.
     fn key(&self) -> Key {
         let k = self.curve.map_or([0.0; 3], |c| {
             let w = &c.stiff.windup;

@@ -21,9 +21,11 @@ const SLACKS: [f64; 25] = [
 /// Slacks below this are used only in a search by regions. In a search by boxes, passes with such slacks find no
 /// further designs.
 const FINE_SLACK: f64 = 0.02;
-/// Greatest number of slacks of the list that are skipped between two passes.
+/// Greatest number of slacks of the list that are skipped between two passes, if the search is to end with the whole
+/// front (a gap of zero).
 const MOST_PASSED_OVER: usize = 4;
-/// Greatest number of slacks that are skipped between two passes if the search is to end at a gap that was asked for.
+/// Greatest number of slacks of the list that are skipped between two passes, if the search is to end at a gap above
+/// zero.
 const PASSED_OVER_TO_A_GAP: usize = 8;
 /// Exponent `g` of the growth `t ∝ ε^-g` of a pass's time. This value is assumed until two passes are completed. An
 /// exponent measured later is limited to the interval from `LEAST_GROWTH` to `MOST_GROWTH`.

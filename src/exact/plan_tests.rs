@@ -9,7 +9,7 @@ fn planned(gap: f64, growth: f64, first_s: f64, limit_s: Option<f64>) -> Vec<(f6
     let plan = Plan::new(gap, true);
     let (mut done, mut out, mut now_s) = (Vec::<Pass>::new(), Vec::new(), 0.0);
     while let Some(slack) = plan.next(&done, limit_s.map(|limit_s| limit_s - now_s)) {
-        // a pass without slack takes as long as one with a slack of 0.1 %
+        // A pass without slack takes as long as a pass with a slack of 0.1 %.
         let took_s = first_s * libm::pow(slack.max(1e-3), -growth);
         now_s += took_s;
         if limit_s.is_some_and(|limit_s| now_s > limit_s) {

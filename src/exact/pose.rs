@@ -8,7 +8,7 @@ use super::parts::INERTIAS;
 use crate::mechanics::{Twist, Wrench};
 use nalgebra::{DMatrix, Matrix3, Matrix6, SMatrix, Vector3};
 
-/// Coefficients below this fraction of the largest one count as rounding.
+/// A coefficient whose magnitude is below this fraction of the largest coefficient counts as rounding.
 const ROUNDING: f64 = 1e-12;
 
 /// Number of strain coordinates of a tube: curvatures of the bending along z and along y (4 each), shears along z and y
@@ -61,7 +61,8 @@ pub(super) struct Pose {
     pub judged: bool,
     /// Whether drives and stresses are checked in this case.
     pub sizing: bool,
-    /// Whether no two contributions to the tip's displacement can oppose each other.
+    /// Whether all contributions to the tip's displacement add up: no two of them have a negative dot product, whatever
+    /// the weights of the parts are.
     pub contributions_align: bool,
     /// Density of the water around the arm \[kg/m³\], 0 in air. The net weight of a tube per length is
     /// `g (mass per length - water · outer area)`.
@@ -69,8 +70,8 @@ pub(super) struct Pose {
     pub pieces: Vec<PosedPiece>,
     /// Inertia of the payload about the world's origin.
     pub payload_inertia: Matrix6<f64>,
-    /// The rows of this case: one for each strain coordinate that some load deflects, and one for the torsion of each
-    /// joint, tip first. A row gives the force on its coordinate.
+    /// The rows of this case, tip first. A row gives the generalized force on one strain coordinate. There is a row for
+    /// each coordinate that some load deflects, and in any case for the torsion of each joint.
     pub rows: Vec<Row>,
     /// Loads on the end sections of the tubes whose section is chosen, tip first.
     pub stress: Vec<StressRow>,
@@ -161,7 +162,7 @@ pub(super) struct Row {
     /// Part of the generalized force that does not depend on the weight of any part, for example the force due to the
     /// payload \[N or N m\].
     pub fixed: f64,
-    /// For each piece from the tip to `piece` itself, the generalized force per newton of the piece's weight.
+    /// The generalized force per newton of each piece's weight, for every piece from the tip to `piece` itself.
     pub per_n: Vec<f64>,
     /// Displacement of the tip per unit of the strain coordinate, in x, y and z.
     pub tip_m: Vector3<f64>,
@@ -211,8 +212,8 @@ impl Pose {
             && loads.into_iter().all(|(fixed, per_n)| sign(*fixed, per_n).is_some())
     }
 
-    /// Whether no two contributions to the tip's displacement can oppose each other. Then the tip moves further if any
-    /// part becomes more compliant.
+    /// Whether all contributions to the tip's displacement add up: no two of them have a negative dot product. Then the
+    /// tip moves further if any part becomes more compliant.
     pub(super) fn contributions_align(&self) -> bool {
         let rows = self.relevant_rows();
         let ways: Vec<_> = rows.map(|row| row.tip_m * sign(row.fixed, &row.per_n).unwrap_or(0.0)).collect();

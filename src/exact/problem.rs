@@ -72,8 +72,7 @@ pub(super) enum Lever {
     OfLink(usize),
 }
 
-/// Where the space for gear and motor of a joint comes from. It is the space that the link outboard of the joint
-/// leaves.
+/// Where the space for gear and motor of a joint is stored. It is the space that the link outboard of the joint leaves.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Room {
     /// The space is the same for all options.
@@ -133,7 +132,7 @@ impl<'c> Problem<'c> {
             match &mut narrower.parts[piece] {
                 Part::Drives { tree, .. } => *tree = Tree::over(tree, nodes)?,
                 Part::Links { tree, .. } => *tree = Tree::over(tree, nodes)?,
-                // Given parts and first fits have no options of their own.
+                // Parts whose drive or section is given have no options, and neither have first fits.
                 _ => {}
             }
         }

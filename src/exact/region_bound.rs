@@ -120,7 +120,8 @@ impl Rows<'_> {
                             continue;
                         }
                     }
-                    // From here on the multipliers serve only to exclude options.
+                    // With a value of at most zero, the multipliers cannot prove the region empty. They then serve only
+                    // to exclude options.
                     to_reduce += usize::from(game.value <= ROUNDING);
                     if proofs.points.len() >= most
                         || to_reduce > MOST_TO_REDUCE
@@ -142,10 +143,10 @@ impl Rows<'_> {
         }
     }
 
-    /// Removes from a group the local upper bounds below which a box is proved to have no design. Every set of
-    /// multipliers found so far is tried on all bounds. Then new multipliers are sought for the bound that is nearest
-    /// to a refutation, until they refute none. The bounds that are left are better searched in two halves of the
-    /// group, with fewer options.
+    /// Removes from the group `below` the local upper bounds below which a box is proved to have no design. First,
+    /// every set of multipliers found so far is tried on all bounds. Then new multipliers are sought for the bound that
+    /// is nearest to a refutation, until they refute no bound. The bounds that remain are searched better in two halves
+    /// of the group, with fewer options.
     fn refute_one_by_one(&mut self, design_box: &[u32], below: &mut LocalUpperBounds, proofs: &mut Proofs) {
         let mut open: Vec<(f64, LocalUpperBound)> = Vec::new();
         let first: Vec<Plane> = proofs.points.iter().map(|point| self.plane(point)).collect();

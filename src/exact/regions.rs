@@ -8,9 +8,9 @@
 //! options the bounds are sharper, and more options can be excluded.
 //!
 //! A local upper bound is *refuted* if no design is below it. Local upper bounds are refuted several at a time, by one
-//! bound that covers all of them. A set of bounds that is not
-//! refuted is divided into two. A region below a single bound that is not refuted is branched on options or on a torque
-//! ([`branching`](super::branching)) until few designs are left. These are searched box by box.
+//! bound that covers all of them. A set of bounds that is not refuted is divided into two. A region below a single
+//! bound that is not refuted is branched on options or on a torque ([`branching`](super::branching)) until few designs
+//! are left. These are searched box by box.
 
 use super::bound::{BoxBound, DesignBox, Verdict};
 use super::box_work::BoxWork;
@@ -118,7 +118,7 @@ impl<'p> Search<'_, 'p> {
         regions_to: f64,
         findings: &mut Findings,
     ) -> Vec<Task<'p>> {
-        // Incumbents that were found since the bounds were made cut them.
+        // Incumbents that were found after the bounds were made reduce the region below them.
         let all = self.state.incumbents.all();
         let since = all[subproblem.incumbents_seen..].iter().map(|o| improved_by_slack(o, self.slack));
         below.cut_by(&since.collect::<Vec<_>>());
@@ -136,8 +136,8 @@ impl<'p> Search<'_, 'p> {
             let [first, second] = halves.map(|below| Task::Region { below, subproblem: subproblem.clone() });
             return vec![second, first];
         }
-        // The options that are left belong to the bound that covers the whole group. They do not tell how to divide
-        // the options for the single bound that is left, so the region of this bound is bounded anew.
+        // The options that are left were found for the bound that covers the whole group. They do not tell how to
+        // divide the options for the single bound that is left, so the region of this bound is bounded anew.
         if !was_single {
             return vec![Task::Region { below, subproblem }];
         }

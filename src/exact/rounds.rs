@@ -7,7 +7,8 @@
 
 use rayon::prelude::*;
 
-/// Number of tasks in a round. With more tasks more threads are busy, but the findings of each task become known later.
+/// Number of tasks in a round. With more tasks in a round more threads are busy, but the findings of each task reach
+/// the other tasks later.
 const TASKS_PER_ROUND: usize = 32;
 
 /// The result of a task: its findings, and the new tasks that it leaves. The last of the new tasks is done first.

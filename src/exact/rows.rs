@@ -88,9 +88,9 @@ pub(super) struct Rows<'a> {
 /// A generalized force that the weights cause in a judged case. It has two rows, one for its least and one for its
 /// greatest value.
 pub(super) struct Force<'a> {
-    /// Index of the judged case.
+    /// Index of the case among the judged cases (those that count for deflection and lowest mode).
     pub judged: usize,
-    /// Force per newton of each piece's weight, tip first.
+    /// For each piece, tip first: the force \[N or N m\] per newton of the weight of the piece.
     pub per_n: &'a [f64],
     /// Index of the first of the two rows.
     pub row: usize,
@@ -98,7 +98,7 @@ pub(super) struct Force<'a> {
 
 /// A trial shape (motion of the arm) that bounds the modes in a judged case, with what is needed to make its row.
 pub(super) struct Mode {
-    /// Index of the judged case.
+    /// Index of the case among the judged cases.
     pub judged: usize,
     /// Index of the starting acceleration from which the shape came.
     pub start: usize,
@@ -111,7 +111,7 @@ pub(super) struct Mode {
 /// A minimizer of the weighted sum of rows over a box. It need not be a member of the box. The torques at which its
 /// gears are evaluated need not agree with its weights, and its node of a level may stand for several options.
 pub(super) struct RelaxedDesign {
-    /// The node of each level.
+    /// The node of each level, in that level's tree of options.
     pub design_box: DesignBox,
     /// The value of every row, divided by the row's scale.
     pub values: Vec<f64>,
@@ -139,14 +139,14 @@ impl RelaxedDesign {
         &self.weights_n[self.place(judged, 0)..self.place(judged + 1, 0)]
     }
 
-    /// Stiffnesses of each piece in a judged case.
+    /// Stiffnesses of each piece, tip first, in the judged case with index `judged`.
     pub(super) fn stiffness_in(&self, judged: usize) -> &[[f64; STIFFNESSES]] {
         &self.stiffness[self.place(judged, 0)..self.place(judged + 1, 0)]
     }
 }
 
-/// A point of the dual function: the multipliers of all rows, the least weighted sum over the box, and the amount that
-/// each level adds to this sum.
+/// A point of the dual function: the multipliers of all rows, the least weighted sum `least` over the box, and in
+/// `levels` the amount that each level adds to this sum.
 pub(super) struct DualPoint {
     pub multipliers: Vec<f64>,
     /// Eigenvalue for which the mode rows were made \[1/s²\].
@@ -222,7 +222,8 @@ impl<'a> Rows<'a> {
         rows
     }
 
-    /// The feasible drives of each level with the states of their gears.
+    /// The feasible drives of each level with the states that their gears may have in the box; `None` for a level of
+    /// links.
     fn priced_drives(&self) -> Vec<Option<PricedDrives>> {
         let of = |(&piece, drives): (&usize, &Option<FeasibleDrives>)| {
             let gears: Vec<&Gear> = self.gears.iter().filter(|gear| gear.piece == piece).collect();

@@ -237,7 +237,7 @@ impl<'p> Exact<'p> {
                 subtrees = names_and_boxes.0;
                 ended = self.search((whole, &names_and_boxes.1), is_new, &mut state, live);
             }
-            // a space without designs has one subtree, and the first shard has it
+            // A space without designs has one subtree with an empty name. It belongs to the first shard.
             None if self.shard.number == 1 => subtrees.push(String::new()),
             None => {}
         }
@@ -268,7 +268,7 @@ impl<'p> Exact<'p> {
             None => (front, true),
         };
         front.sort_unstable_by_key(|c| c.number);
-        // Tied kinds may stand for the same design.
+        // An undecided design may be in the list more than once, because a probe and a box can find it independently.
         front.dedup_by_key(|c| c.number);
         ExactOutcome {
             // This is the number of designs in the study, even if the space was not compiled because a level has no

@@ -144,8 +144,9 @@ pub(super) fn nondominated(mut front: Vec<Candidate>) -> Vec<Candidate> {
     clear(&mut front);
     front.sort_unstable_by_key(|c| c.number);
     front.dedup_by_key(|c| c.number);
-    // A design that would have been pruned had it come later is removed too, so that the result does not
-    // depend on the order of discovery.
+    // A design that is better than another by less than a small margin does not prune it. So whether both were found
+    // depends on the order of discovery. Every design that another design of the list would have pruned is removed, so
+    // that the result does not depend on this order.
     let all = front.clone();
     front.retain(|c| !all.iter().any(|other| is_better(&other.objectives, &c.objectives)));
     front

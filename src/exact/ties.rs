@@ -19,8 +19,8 @@ impl Problem<'_> {
         for (candidate, lists) in &with_ties {
             let mut chosen: Vec<Vec<u32>> = vec![Vec::new()];
             for list in lists {
-                // The choice must not be arbitrary: either all ties of all designs are listed, or one design of each
-                // set of ties.
+                // Either all ties of all designs are listed, or one design of each set of ties. A list that ends
+                // somewhere in between would be arbitrary.
                 let choices = if lists_all { &list[..] } else { &list[..1] };
                 let longer = |start: Vec<u32>| choices.iter().map(move |o| [&start[..], &[*o]].concat());
                 chosen = chosen.into_iter().flat_map(longer).collect();
@@ -56,8 +56,8 @@ impl Problem<'_> {
                         let holds = |drive: &&u32| sized.table.limits(**drive as usize).hold(&asked.demand);
                         let mut drives: Vec<u32> =
                             kinds.drives(option).iter().filter(holds).copied().collect();
-                        // Drives that carry even the greatest demand come first: rounding cannot change the result for
-                        // them.
+                        // A drive that carries even the greatest demand carries the demand whatever the rounding is.
+                        // Such drives come first.
                         let surely = |drive: &u32| {
                             let limits = sized.table.limits(*drive as usize);
                             work.greatest_demands[piece].as_ref().is_some_and(|most| limits.hold(most))

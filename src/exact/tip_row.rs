@@ -6,10 +6,10 @@ use super::parts::STIFFNESSES;
 use super::problem::{Part, Problem};
 
 /// The displacement of the tip in a judged case along a fixed direction, as a linear function of the numbers of the
-/// parts. It is the direction of the tip's least displacement over the box. A judged case counts for deflection and
-/// lowest mode.
+/// parts. The direction is the direction of the tip's least displacement over the box. A judged case counts for
+/// deflection and lowest mode.
 pub(super) struct TipRow {
-    /// Index of the case.
+    /// Index of the case among all cases of the study.
     pub case: usize,
     /// Displacement of the tip along the direction per newton of each piece's weight \[m/N\]. The deflections of tubes,
     /// bearings and those gears that keep a single slope contribute to it.

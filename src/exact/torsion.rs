@@ -3,8 +3,8 @@
 use super::joint_play::JointPlay;
 use crate::arm::joint_law::{Curve, JointLaw, Segment, Windup};
 
-/// Stiffness that stands for a rigid gear in series with lost motion \[N m/rad\]. It changes no compliance by more than
-/// a fraction of 1e-9.
+/// Stiffness that stands for a rigid gear in series with lost motion \[N m/rad\]. Its compliance is so small that it
+/// changes no compliance of a joint by more than a fraction of 1e-9.
 const RIGID_NM_PER_RAD: f64 = 1e18;
 
 /// A torsion curve with precomputed compliances, so that its evaluation needs no division.
@@ -21,7 +21,8 @@ impl Torsion {
     fn new(windup: Windup) -> Self {
         let compliance = windup.segments().map(|s| 1.0 / s.stiffness_nm_per_rad);
         let second = windup.t1_nm * compliance[0];
-        // A second segment that never begins has no length.
+        // A curve with a single slope has infinite T1 and T2, whose difference is NaN. `max` turns it into a length of
+        // 0.
         let third = second + (windup.t2_nm - windup.t1_nm).max(0.0) * compliance[1];
         Self { windup, compliance, begins_rad: [second, third] }
     }
@@ -172,7 +173,7 @@ fn rising_below(w: &Windup) -> Windup {
 /// The slopes of those segments of `w` \[N m/rad\] that contain a torque whose magnitude lies between `least_nm` and
 /// `most_nm` \[N m\].
 fn slopes(w: &Windup, least_nm: f64, most_nm: f64) -> impl Iterator<Item = f64> {
-    // A break point belongs to the segment below it
+    // A break point belongs to the segment below it.
     let touched = move |s: &Segment| least_nm <= s.to_nm && (most_nm > s.from_nm || s.from_nm == 0.0);
     w.segments().into_iter().filter(touched).map(|s| s.stiffness_nm_per_rad)
 }

@@ -9,11 +9,11 @@ use std::sync::Arc;
 
 /// The bounds of a box of parts: intervals that enclose the numbers of all its members.
 pub(super) trait Bounds: Clone {
-    /// The box around two boxes.
+    /// The smallest bounds that enclose all members of this box and of the box of `other`.
     fn join(&self, other: &Self) -> Self;
 
-    /// Coordinates by which options are separated into halves. A coordinate that matters more to the objectives is
-    /// scaled up, so that its spread is larger.
+    /// Coordinates by which options are separated into halves. The options are divided at the coordinate with the
+    /// greatest spread. A coordinate that matters more to the objectives is therefore scaled up.
     fn key(&self) -> Key;
 }
 
@@ -239,7 +239,7 @@ impl<B: Bounds> Tree<B> {
     }
 }
 
-/// An option, or a node of the base tree, during the construction of a tree. Its bounds are stored elsewhere, so that
+/// An option, or a node of the base tree, during the construction of a tree. Its bounds are not stored here, so that
 /// items are quick to sort.
 struct Item {
     /// Index of the option, or number of the node of the base tree.
@@ -270,12 +270,12 @@ fn grow<'b, B: Bounds + 'b>(
     items.select_nth_unstable_by(middle, |a, b| a.key[axis].total_cmp(&b.key[axis]).then(a.at.cmp(&b.at)));
     let (low, high) = items.split_at_mut(middle);
     let halves = [grow(low, nodes, leaf), grow(high, nodes, leaf)];
-    // A half whose node is in the base tree is a single item.
+    // If the node of a half is in the base tree, the half is a single item, and `leaf` returns its bounds.
     let of =
         |half: &[Item], at: u32| nodes.get(at as usize).map_or_else(|| leaf(&half[0]).1, |node| &node.bounds);
     let bounds = of(low, halves[0]).join(of(high, halves[1]));
-    // Only nodes of the base tree need keys, because other trees are built over them. The logarithms of a key take
-    // time.
+    // Only nodes of the base tree store keys, because other trees are built over these nodes. For any other node a key
+    // would be computed in vain, and its logarithms take time.
     let key = kind.map(|_| bounds.key());
     let members = items.iter().map(|item| item.members).sum();
     nodes[here] = Node { bounds, key, members, kind: NodeKind::Split(halves) };

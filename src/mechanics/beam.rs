@@ -90,7 +90,8 @@ impl LineInertia {
     }
 }
 
-/// Weight of the rigid bodies that are mounted on a link, as loads in the section frame of the link.
+/// Weight of the rigid bodies that are mounted on a link, as loads in the section frame of the link. It does not depend
+/// on the pose.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct CarriedWeight {
     /// Work of the weight per unit of each strain coordinate (columns) if gravity acts along x, y or z (rows)
@@ -117,7 +118,7 @@ pub(crate) struct PreparedBeam {
     /// Axes of the section (columns x, y, z), in the carried frame of the link: the frame that turns with the joints
     /// inboard of it.
     pub frame: Matrix3<f64>,
-    /// Compliance of each strain coordinate.
+    /// Compliance of each strain coordinate: the coordinate per unit of its generalized force.
     pub compliances: Vec<f64>,
     /// Displacement (rows 0-2) and rotation (rows 3-5) of the end of the link per unit of each strain coordinate, in
     /// the section frame.
@@ -172,7 +173,8 @@ impl PreparedBeam {
         let mut out = Matrix6xX::zeros(6 + self.coordinates.len());
         out.fill_with_identity();
         let x = xi * self.length_m;
-        // a positive rotation of the root about y moves the point along -z; one about z moves it along +y
+        // A positive rotation of the root about y moves the point along -z. A positive rotation about z moves it along
+        // +y.
         out[(2, 4)] = -x;
         out[(1, 5)] = x;
         for (column, &(strain, degree)) in self.coordinates.iter().enumerate() {
@@ -284,9 +286,9 @@ pub(crate) fn pull_on(
     (xi, stack(&force_n, &(frame.tr_mul(&load.moment_nm) + arm_m.cross(&force_n))))
 }
 
-/// Slope `L ∫P_i` and deflection `L² ∬P_i` of a link at `xi` (0 to 1), if its curvature is the Legendre polynomial of
-/// this degree. Both are integrated from the root, where they are zero. The integrals follow from
-/// `(2i+1) ∫P_i = P_(i+1) - P_(i-1)` over `s = 2ξ-1`, with dξ = ds/2.
+/// Slope `L ∫P_i` and deflection `L² ∬P_i` of a link at `xi` (0 to 1), if its curvature is the Legendre polynomial
+/// `P_i` of this degree. Both are integrated from the root, where they are zero. The integrals follow from `(2i+1) ∫P_i
+/// = P_(i+1) - P_(i-1)` over `s = 2ξ-1`, with dξ = ds/2.
 fn shape(degree: usize, xi: f64, length_m: f64) -> (f64, f64) {
     let s = 2.0 * xi - 1.0;
     let integral = |i: usize| match i {
@@ -311,21 +313,21 @@ fn legendre(degree: usize, s: f64) -> f64 {
     here
 }
 
-/// Cosine of the angle between a link and the z axis above which the link counts as along this axis.
+/// A link counts as being along the z axis if the cosine of the angle between them is above this number.
 pub(crate) const ALONG_COSINE: f64 = 0.99;
 
 /// The section frame (columns x, y, z) of a link along `vector_m`, in the frame in which this vector is given. The x
 /// axis is along the link. The z axis is as near as possible to the z axis of the given frame.
 pub(crate) fn section_frame(vector_m: &Vector3<f64>) -> Matrix3<f64> {
     let x = vector_m.normalize();
-    // for a link (nearly) along z, the x axis of the given frame is used instead
+    // The z axis of the given frame cannot be used for a link along z (or nearly so). The x axis takes its place.
     let up = if x.z.abs() > ALONG_COSINE { Vector3::x() } else { Vector3::z() };
     let z = (up - x * x.dot(&up)).normalize();
     Matrix3::from_columns(&[x, z.cross(&x), z])
 }
 
-/// Compliance (squared coordinate per twice the strain energy) of each strain coordinate of a link, in the order of
-/// [`PreparedBeam::compliances`]. Empty for a rigid link.
+/// Compliance of each strain coordinate of a link: the squared coordinate divided by twice the strain energy. The order
+/// is the order of [`PreparedBeam::compliances`]. Empty for a rigid link.
 pub(crate) fn compliances(link: &LinkPiece, model: LinkModel) -> Vec<f64> {
     let length_m = link.vector_m.norm();
     let coordinates = link.beam.map_or_else(Vec::new, |beam| coordinates(&beam, length_m, model));
@@ -408,8 +410,8 @@ pub(crate) fn tube_inertia(beam: &Beam, model: LinkModel) -> LineInertia {
     let section = beam.section.properties(beam.material.poisson);
     let density = beam.material.density_kg_m3;
     let mass = density * section.area_m2;
-    // Euler-Bernoulli theory neglects the rotary inertia about axes at right angles to the beam; the rotary inertia
-    // about the axis of the beam stays
+    // Euler-Bernoulli theory neglects the rotary inertia about axes at right angles to the beam. The rotary inertia
+    // about the axis of the beam stays.
     let across = if model == LinkModel::Bending { 0.0 } else { density };
     LineInertia {
         along_kg_per_m: mass,

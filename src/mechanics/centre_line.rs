@@ -49,7 +49,7 @@ impl Posed<'_> {
                     walk.rotation *= Rotation3::from_axis_angle(&joint.axis, joint.angle.of(pose_rad));
                 }
                 Prepared::Prismatic(joint) => {
-                    // the part that travels is drawn rigid: the springs are at one of its ends
+                    // The springs are at one end of the part that travels, so this part is drawn rigid.
                     let travel = walk.rotation * joint.axis.into_inner() * pose_rad[joint.entry];
                     out.push(walk.station(&joint.name, walk.at_m, None));
                     if joint.moves == Moves::Carriage {

@@ -237,7 +237,7 @@ impl Chain {
     ) -> Posed<'_> {
         let springs = self.spring_loads(pose_rad, &deflections);
         let mut walk = self.walk(pose_rad, springs, deflections);
-        // the payload is the last body, so every element moves it
+        // The payload is the last body, so every element moves it.
         walk.items.push(Item::Body(self.payload_body(payload, &walk)));
         Posed {
             chain: self,
@@ -388,8 +388,8 @@ impl Walk {
         self.point_mass(link.point_mass_kg, self.at_m + vector / 2.0);
         let end_m = self.at_m + vector;
         let element = beam.map(|beam| self.beam_element(piece, link, beam, &end_m));
-        // bodies on a tube are part of its beam, where each moves with a point of the axis; only bodies on a rigid
-        // offset are added here
+        // Bodies on a tube are part of its beam, where each moves with a point of the axis. Only bodies on a rigid
+        // offset are added here.
         if link.beam.is_none() {
             self.bodies(&link.bodies);
             self.load(Side::Moving(piece));
@@ -557,7 +557,7 @@ fn own_mass(
     root_m: &Vector3<f64>,
     down: &Vector3<f64>,
 ) -> OwnMass {
-    // converts a twist about the world's origin to translation and rotation of the root in the section frame
+    // The matrix from a twist about the world's origin to translation and rotation of the root in the section frame.
     let to_local = {
         let mut x = Matrix6::zeros();
         let turn = frame.transpose();
@@ -571,7 +571,7 @@ fn own_mass(
     let local_coupling = beam.inertia.view((0, 6), (6, n));
     let along = frame.transpose() * (*down * beam.weight_n_per_m);
     let local_down = frame.transpose() * down;
-    // the work of a uniform weight is its value per length times the area under the deflected shape
+    // The work of a uniform weight is the weight per length times the area under the deflected shape.
     let areas = beam.area_fields.column_iter().map(|f| f.dot(&along));
     let bodies = beam.bodies.fields.column_iter().map(|f| f.dot(&local_down));
     let weight_work = areas.zip(bodies).map(|(tube, bodies)| tube + bodies).collect();

@@ -32,14 +32,14 @@ pub(crate) struct CondensedLink {
     pub inertia: [Inertia12; 3],
     /// Displacement (rows 0-2) and rotation (rows 3-5) of the end per unit of each end coordinate: the matrix `L`.
     pub end: Matrix6<f64>,
-    /// End coordinates caused by a uniform load along the link of 1 N/m, in the direction of each axis of the section
-    /// \[1/(N/m)\].
+    /// Values of the end coordinates under a uniform load along the link of 1 N/m, in the direction of each axis of the
+    /// section \[1/(N/m)\]: one column for each axis.
     pub end_per_line_load: SMatrix<f64, 6, 3>,
-    /// End coordinates caused by the weight of the bodies on the link, if gravity acts along each axis of the
-    /// section.
+    /// Values of the end coordinates under the weight of the bodies on the link, if gravity acts along an axis of the
+    /// section: one column for each axis.
     pub end_under_bodies: SMatrix<f64, 6, 3>,
-    /// For each point of the axis at which a spring acts: end coordinates per unit of force (columns 0-2) and of moment
-    /// (columns 3-5) at this point, in the section frame.
+    /// For each point of the axis at which a spring acts: values of the end coordinates per unit of force (columns 0-2)
+    /// and of moment (columns 3-5) at this point, in the section frame.
     pub end_per_pull: Vec<Matrix6<f64>>,
     /// Sum of `1/λ` over the inner modes with root and end held \[s²\]. As a sum of positive numbers it is an upper
     /// bound of each `1/λ`.
@@ -54,10 +54,10 @@ impl CondensedLink {
         let end_fields = DMatrix::from_iterator(6, n, beam.end_fields.iter().copied());
         let flexibility = &end_fields * &compliance * end_fields.transpose();
         let end = semidefinite_cholesky(&Matrix6::from_iterator(flexibility.iter().copied()));
-        // strain coordinates per unit of each end coordinate: C Eᵀ L⁻ᵀ
+        // Strain coordinates per unit of each end coordinate: C Eᵀ L⁻ᵀ.
         let spread = &compliance * end_fields.transpose() * inverse_transpose(&end);
         let inner = &compliance - &spread * spread.transpose();
-        // converts root motion and g to root motion and q
+        // This matrix converts root motion and end coordinates `g` to root motion and strain coordinates `q`.
         let mut expand = DMatrix::zeros(6 + n, 12);
         expand.view_mut((0, 0), (6, 6)).fill_with_identity();
         expand.view_mut((6, 6), (n, 6)).copy_from(&spread);
@@ -77,7 +77,7 @@ impl CondensedLink {
             end_per_line_load: SMatrix::from_iterator((spread.transpose() * areas).iter().copied()),
             end_under_bodies: SMatrix::from_iterator((spread.transpose() * bodies).iter().copied()),
             end_per_pull: pulled_at.iter().map(|xi| end_per_pull(beam, &spread, *xi)).collect(),
-            // without inner shapes, rounding may make the trace slightly negative
+            // Without inner shapes the trace is zero, but rounding may make it slightly negative.
             inner_trace_s2: (&inner * inner_mass).trace().max(0.0),
         }
     }
@@ -112,8 +112,8 @@ impl CondensedLink {
     }
 }
 
-/// End coordinates per unit of force and moment at the point `xi` (0 to 1) of the axis. `spread` has the strain
-/// coordinates of the link per unit of each end coordinate.
+/// Values of the end coordinates per unit of force and moment at the point `xi` (0 to 1) of the axis: one column for
+/// each component. `spread` has the strain coordinates of the link per unit of each end coordinate.
 fn end_per_pull(beam: &PreparedBeam, spread: &DMatrix<f64>, xi: f64) -> Matrix6<f64> {
     let fields = beam.fields(xi).columns_range(6..).into_owned();
     let per_end = fields * spread;
@@ -127,9 +127,10 @@ pub(crate) struct PlacedLink {
     pub inertia: [Inertia12; 3],
     /// Motion of everything outboard of the link per unit of each end coordinate.
     pub end: Matrix6<f64>,
-    /// End coordinates caused by the weight of the bodies on the link.
+    /// Values of the six end coordinates under the weight of the bodies on the link.
     pub end_under_bodies: Vector6<f64>,
-    /// End coordinates caused by a weight, with buoyancy subtracted, of 1 N per metre of the link \[1/(N/m)\].
+    /// Values of the six end coordinates under a weight, with buoyancy subtracted, of 1 N per metre of the link
+    /// \[1/(N/m)\].
     pub end_per_weight: Vector6<f64>,
     /// Sum of `1/λ` over the inner modes with root and end held \[s²\].
     pub inner_trace_s2: f64,
@@ -153,7 +154,7 @@ fn semidefinite_cholesky(a: &Matrix6<f64>) -> Matrix6<f64> {
     let mut lower = Matrix6::zeros();
     for j in 0..6 {
         let pivot = a[(j, j)] - (0..j).map(|k| lower[(j, k)] * lower[(j, k)]).sum::<f64>();
-        // a link model that leaves out a kind of strain makes a direction rigid
+        // A link model that leaves out a kind of strain may leave a direction without compliance.
         if pivot <= 1e-12 * a[(j, j)] {
             continue;
         }

@@ -4,7 +4,7 @@
 use super::{Twist, angular, displacement_at};
 use nalgebra::{Rotation3, Vector3};
 
-/// The deflections that a walk from base to tip applies to the arm.
+/// The deflections by which a walk from base to tip moves the arm out of its undeflected pose.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Deflections {
     /// The strain coordinates (deflections) of all elements, base to tip. The coordinate of a passive joint includes
@@ -40,7 +40,7 @@ pub(super) fn screw(motion: &Twist, at_m: &mut Vector3<f64>, rotation: &mut Rota
     let by_m = displacement_at(motion, at_m);
     *at_m += match angle_rad > 0.0 {
         true => {
-            // the velocity of the frame's origin turns with the motion, so it is integrated over the motion
+            // The velocity of the frame's origin turns during the motion, so it is integrated over the motion.
             let cross = turn.cross_matrix() / angle_rad;
             let (sin, cos) = (libm::sin(angle_rad), libm::cos(angle_rad));
             by_m + cross * by_m * ((1.0 - cos) / angle_rad) + cross * cross * by_m * (1.0 - sin / angle_rad)

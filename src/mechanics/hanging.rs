@@ -39,8 +39,8 @@ pub(crate) fn hanging_tip_m<'a>(posed: impl Fn(Deflections) -> Posed<'a>) -> Vec
     tip_m
 }
 
-/// Error of the position of the tip by linear statics \[m\]: the position of the tip as the arm hangs, minus its
-/// position by linear statics.
+/// Error of the linear statics at the tip \[m\]: the position of the tip as the arm hangs, minus its position by linear
+/// statics. The vector is in world axes.
 pub(crate) fn beyond_linear_m<'a>(posed: impl Fn(Deflections) -> Posed<'a>) -> Vector3<f64> {
     let Hanging { tip_m, straight_tip_m, displacement_m } = Hanging::new(posed);
     tip_m - straight_tip_m - displacement_m
@@ -174,8 +174,8 @@ mod tests {
         };
         let mut q = Vector3::zeros();
         for _ in 0..200 {
-            // the springs are far stiffer than gravity's part of the energy, so a step uses the stiffness of the
-            // springs alone
+            // The springs are far stiffer than gravity's part of the energy. A step therefore uses the stiffness of the
+            // springs alone.
             q -= slope(&q).component_div(&Vector3::from(stiffness));
         }
         let tip_m = chain.hanging_tip_m(&pose_rad, &payload(8.0));

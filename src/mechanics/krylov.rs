@@ -66,7 +66,7 @@ impl Tridiagonal {
     /// The largest eigenvalue, to the last digit, by bisection.
     fn largest(&self) -> f64 {
         let mut below = self.diagonal.iter().copied().fold(0.0, f64::max);
-        // no eigenvalue exceeds the largest sum over a row
+        // No eigenvalue exceeds the largest sum of the numbers in a row.
         let next = |i: usize| self.next.get(i).copied().unwrap_or(0.0);
         let row = |i: usize| self.diagonal[i] + next(i) + if i > 0 { next(i - 1) } else { 0.0 };
         let mut above = (0..self.diagonal.len()).map(row).fold(below, f64::max);
@@ -164,7 +164,7 @@ mod tests {
 
     #[test]
     fn few_products_are_enough_for_many_coordinates() {
-        // as for a beam: the frequencies grow with the squares of whole numbers, in two planes
+        // The frequencies are as for a beam: they grow with the squares of whole numbers, in two planes.
         let values: Vec<f64> = (0..240).map(|i| 1.0 / ((i / 2 + 1) as f64).powi(4)).collect();
         let (value, products) = found(&with_eigenvalues(&values));
         assert!((value - 1.0).abs() < 1e-13, "{value}");

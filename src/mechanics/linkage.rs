@@ -58,8 +58,8 @@ impl LinkedCoordinates {
 }
 
 impl ElasticElement {
-    /// Whether the element is the torsion spring of the revolute joint `name`. To compare the name is not enough,
-    /// because the element of a base may have the same name as a joint.
+    /// Whether the element is the torsion spring of the revolute joint `name`. The name alone is not enough, because
+    /// the element of a base may have the same name as a joint.
     fn is_joint(&self, name: &str) -> bool {
         matches!(self.compliance, Compliance::Joint(_)) && self.name == name
     }
@@ -163,7 +163,7 @@ mod tests {
         let payload = Payload { mass_kg: 5.0, ..Payload::default() };
         let posed = chain.pose_rad(&[0.0], &payload, Vector3::zeros());
         let statics = posed.statics();
-        // the hand stays level, so weight and deflection act at the lever of the wrist, 0.6 m, and not at 0.8 m
+        // The hand stays level. Weight and deflection therefore act at the lever of the wrist, 0.6 m, and not at 0.8 m.
         let (weight_n, lever_m) = (5.0 * 9.81, 0.6);
         assert!((statics.joint_torques_nm[0].1 - weight_n * lever_m).abs() < 1e-9);
         let deflection_m = weight_n * lever_m / 1e4 * lever_m;

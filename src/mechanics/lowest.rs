@@ -116,12 +116,12 @@ fn quick_root<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> Option<f6
     let (mut step_before, mut step_two_before) = (UNKNOWN_STEP * x, UNKNOWN_STEP * x);
     for _ in 0..QUICK_PASSES {
         let here = pass(steps, 1.0 / x);
-        // beyond a pole the last pivot belongs to another branch of the curve, so the secant would mislead
+        // Beyond a pole the last pivot belongs to another branch of the curve, so the secant would mislead.
         if !here.inner_sound {
             return None;
         }
         let y = here.last * x;
-        // for the first step `w` is taken as constant; then 1/λ - w has the slope 1
+        // For the first step `w` is taken as constant. Then 1/λ - w has the slope 1.
         let slope = before.map_or(1.0, |(x0, y0)| (y - y0) / (x - x0));
         let next = x - y / slope;
         let step = (next - x).abs();
@@ -148,20 +148,20 @@ fn careful_root<const N: usize>(steps: &[Step<'_, N>], trace_s2: f64) -> f64 {
         let here = pass(steps, 1.0 / x);
         here.below_all().then_some((x, here.last * here.inner_product, here.count))
     };
-    // the bound is exact for a single spring, so rounding may place the root just above the bound
+    // For a single spring the bound is exact, so rounding may place the root just above the bound.
     let (Some(mut far), Some(mut near)) = (product(2.0 * trace_s2), product((1.0 + 1e-9) * trace_s2)) else {
         return 1.0 / trace_s2;
     };
     let mut beyond = 0.0;
     for _ in 0..MOST_PASSES {
-        // ratio of the polynomial at `far` to the polynomial at `near`
+        // Ratio of the polynomial (about `Π (x - x_i)`) at `far` to the polynomial at `near`.
         let ratio = far.1 / near.1 * (far.0 / near.0).powi(near.2);
         let secant = near.0 - (far.0 - near.0) / (ratio - 1.0);
         let next = if secant > beyond && secant < near.0 { secant } else { 0.5 * (beyond + near.0) };
         if near.0 - next <= 1e-15 * near.0 {
             return 1.0 / next;
         }
-        // the root stays between `beyond`, which is smaller, and `near`, which is larger
+        // The root stays between `beyond` and `near`: `beyond` is smaller than the root, and `near` is larger.
         match product(next) {
             Some(point) => (far, near) = (near, point),
             None => beyond = next,
@@ -216,7 +216,7 @@ fn through_link<const N: usize>(
         s[(i, i)] += 1.0;
     }
     let mut p = (at(&link.cross) + moved).transpose();
-    // LDLᵀ of 1 - λS and forward substitution of P in the same loop
+    // This loop does two things at once: the LDLᵀ factorization of 1 - λS and the forward substitution of P.
     *apparent += at(&link.root);
     for k in 0..N {
         let pivot = s[(k, k)];

@@ -4,7 +4,7 @@
 //! computes the apparent inertia from the tip to the base, with one pivot for each strain coordinate (each elastic
 //! degree of freedom). One pass serves all eight chains, each at its own `λ`. The shared part is read from memory once.
 
-// loops over row and column indices read better here than iterators
+// Loops over row and column indices read better here than iterators.
 #![allow(clippy::needless_range_loop)]
 
 use super::lanes::{Eight, LANES, Lanes};
@@ -145,7 +145,7 @@ pub(crate) fn pass<V: Lanes, const N: usize>(
             Shared::Link(link) => state.compliant_link(&**link),
         }
     }
-    // in the same walk, because the pivots of shared and inboard pieces form one sequence
+    // The inboard pieces are added to the same walk, because the pivots of shared and inboard pieces form one sequence.
     inner.add_to(&mut state);
     LanePass { below_all: !state.negative, near_first: !state.twice_negative, product: state.product }
 }
@@ -298,7 +298,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
             own = own + momentum[i] * V::splat(twist[i]);
         }
         let softness = self.lambda * compliance;
-        // the pivot is 1 - λ c tᵀWt, with c the compliance of the joint
+        // The pivot is 1 - λ c tᵀWt, where c is the compliance of the joint.
         let pivot = V::splat(1.0) - softness * own;
         self.release_by(pivot, &momentum, softness / pivot);
     }
@@ -323,7 +323,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
     #[inline(always)]
     fn compliant_link<L: LinkNumbers<N>>(&mut self, link: &L) {
         let lambda = self.lambda;
-        // the product W t of the formula
+        // The product W t of the formula.
         let mut moved = [[V::zero(); N]; N];
         for g in 0..N {
             for k in 0..N {
@@ -333,7 +333,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
                 }
             }
         }
-        // the lower triangle of 1 - λS, and Pᵀ with one row for each end coordinate
+        // `s` is the lower triangle of 1 - λS, and `p` is Pᵀ with one row for each end coordinate.
         let (mut s, mut p) = ([[V::zero(); N]; N], [[V::zero(); N]; N]);
         for g in 0..N {
             for h in 0..=g {
@@ -348,7 +348,7 @@ impl<V: Lanes, const N: usize> Walk<V, N> {
             }
         }
         add_lower!(self.apparent, |i, j| at_lambda!(link.root(i, j), lambda));
-        // LDLᵀ of 1 - λS and forward substitution of P in the same loop
+        // This loop does two things at once: the LDLᵀ factorization of 1 - λS and the forward substitution of P.
         for k in 0..N {
             let pivot = s[k][k];
             let inverse = V::splat(1.0) / pivot;
@@ -382,7 +382,7 @@ pub(crate) fn roots<V: Lanes, const N: usize>(
     let one = V::splat(1.0);
     let mut open = wanted;
     let mut x = one / guess;
-    // the first step takes the slope 1, which is exact if the other modes are far away
+    // The first step uses the slope 1, which is exact if the other modes are far away.
     let (mut result, mut slope) = (x, one);
     let (mut x_before, mut y_before) = (V::zero(), V::zero());
     let unknown = V::splat(UNKNOWN_STEP) * x;
@@ -392,7 +392,7 @@ pub(crate) fn roots<V: Lanes, const N: usize>(
         let here = pass(outboard, inner, one / x);
         let y = here.product * x;
         let secant = (y - y_before) / (x - x_before);
-        // a point beyond a pole belongs to another branch of the curve, so no secant is drawn through it
+        // A point beyond a pole belongs to another branch of the curve, so no secant is drawn through it.
         slope = V::choose(has_before & here.near_first & open, secant, slope);
         let next = x - y / slope;
         let step = (next - x).abs();
@@ -405,11 +405,11 @@ pub(crate) fn roots<V: Lanes, const N: usize>(
         if open == 0 {
             break;
         }
-        // a step must not lead beyond a pole, and must not change x by more than a factor of four
+        // A step must not lead beyond a pole, and must not change x by more than a factor of four.
         let in_reach = next.less(V::splat(4.0) * x) & (V::splat(0.25) * x).less(next) & here.near_first;
         let drawn_back = V::choose(V::zero().less(y) & here.near_first, V::splat(0.5) * x, V::splat(1.5) * x);
         has_before = here.near_first;
-        // the length of a step that was cut short does not show the error
+        // The length of a step that was cut short does not show the error.
         step_two_before = step_before;
         step_before = V::choose(in_reach, step, V::splat(UNKNOWN_STEP) * x);
         (x_before, y_before) = (x, y);

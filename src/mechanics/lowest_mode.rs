@@ -47,7 +47,7 @@ impl<'a> MassProduct<'a> {
             match (item, stages.last_mut()) {
                 (Item::Elastic(element), _) => stages.push(Stage { element, bodies: Matrix6::zeros() }),
                 (Item::Body(body), Some(stage)) => stage.bodies += body.inertia(),
-                // bodies inboard of every element do not move
+                // Bodies inboard of every element do not move.
                 (Item::Body(_), None) | (Item::Load(_), _) => {}
             }
         }

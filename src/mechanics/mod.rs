@@ -86,7 +86,7 @@ pub(crate) fn angular(six: &Vector6<f64>) -> Vector3<f64> {
 
 /// Two unit vectors perpendicular to `axis` and to each other.
 pub(crate) fn across(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
-    // the cross product is best conditioned with the world axis that is least parallel to `axis`
+    // The cross product has the least rounding error with the world axis that is least parallel to `axis`.
     let least = axis.iamin();
     let first = axis.cross(&Vector3::ith(least, 1.0)).normalize();
     [first, axis.cross(&first)]

@@ -53,8 +53,8 @@ impl Posed<'_> {
     /// has an example.
     pub fn modes(&self, statics: &Statics, count: usize) -> Vec<Mode> {
         let modes = self.solve_modes(statics);
-        // the lowest frequency comes from the function that computes it alone, so that its last digits are the same as
-        // in a front; no other mode may then be lower
+        // The lowest frequency comes from the function that computes it alone, so that its last digits are the same as
+        // in a front. No other mode may then have a lower frequency.
         let lowest_hz = self.lowest_frequency_hz(statics);
         let frequency = |k: usize, hz: f64| if k == 0 { lowest_hz } else { hz.max(lowest_hz) };
         modes
@@ -73,7 +73,7 @@ impl Posed<'_> {
         }
         let eigen = SymmetricEigen::new(a);
         let mut order: Vec<usize> = (0..roots.len()).collect();
-        // equal eigenvalues are put into a fixed order, so that equal inputs give equal files
+        // Equal eigenvalues are put into a fixed order, so that equal inputs give equal files.
         order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]).then(i.cmp(&j)));
         let mut shapes = DMatrix::zeros(roots.len(), roots.len());
         for (k, &i) in order.iter().enumerate() {
@@ -193,8 +193,8 @@ impl Posed<'_> {
                 }
             }
         }
-        // a motion along one axis lies in two planes: the plane with more energy of rotation is taken, else the first
-        // one
+        // A motion along one axis lies in two planes. The plane with more energy of rotation is taken, or the first
+        // plane if both have the same.
         let fractions = PLANES.map(|(name, normal)| (name, energy.fraction(normal)));
         let most = fractions.iter().map(|(_, f)| *f).fold(0.0, f64::max);
         fractions.iter().find(|(_, f)| *f >= PLANAR && *f >= most - 1e-9).map(|(name, _)| *name)
@@ -234,8 +234,8 @@ fn add_element(
         mass[(start + i, start + j)] = entry;
         mass[(start + j, start + i)] = entry;
     }
-    // the own mass of a link also moves with the elements inboard of it; between the link's own coordinates it is in
-    // `inner`
+    // The own mass of a link also moves with the elements inboard of it. Between the link's own coordinates, its
+    // inertia is in `inner`.
     if let Some(own) = &element.own {
         momentum += &own.coupling;
     }

@@ -74,7 +74,7 @@ impl Walk {
         });
         self.point_mass(joint.mass_kg, self.at_m);
         self.bodies(&joint.bodies.rotating);
-        // a spring that is attached to this joint acts on the part that travels
+        // A spring that is attached to this joint acts on the part that travels.
         self.frames.push(ElementFrame { at_m: self.at_m, rotation: self.rotation, hinge: None });
         self.load(Side::Moving(index));
     }

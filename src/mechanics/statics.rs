@@ -181,7 +181,7 @@ impl Posed<'_> {
         out.shares_m.push((element.name.clone(), displacement_at(&motion, &self.tip_m)));
         out.deformations.push(strains);
         out.tangent_compliances.push(tangents);
-        // the work of a link's own weight is already counted above; from here on this weight loads everything inboard
+        // The work of a link's own weight is already counted above. From here on, this weight loads everything inboard.
         if let Some(own) = &element.own {
             *wrench += own.weight;
             let moment = angular(wrench) - own.root_m.cross(&linear(wrench));
@@ -201,7 +201,7 @@ struct Strained {
     forces: Vec<f64>,
     /// Value of each strain coordinate.
     strains: Vec<f64>,
-    /// Motion of everything outboard.
+    /// Motion that the strains give to everything outboard of the element.
     motion: Twist,
 }
 
@@ -213,7 +213,7 @@ impl ElasticElement {
         let mut forces: Vec<f64> = self.twists.iter().map(|twist| twist.dot(wrench)).collect();
         let strains: Vec<f64> = match &self.compliance {
             Compliance::Joint(law) => {
-                // a driving joint also holds the torque that the linkage transfers from its passive joint
+                // A driving joint also holds the torque that the linkage transfers from its passive joint.
                 forces[0] += self.torque_nm;
                 let mut passive_twist = Twist::zeros();
                 for passive in transferred.iter().filter(|c| c.driver == self.name) {

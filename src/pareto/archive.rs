@@ -1,9 +1,9 @@
 //! Archive: a table that rejects dominated designs within a few nanoseconds.
 //!
-//! The table is over mass and deflection. Each cell has the highest value that the lowest mode of a design at or
-//! below its mass and deflection has had so far. Both scales divide each octave (factor of two) into equal steps,
-//! which are the leading bits of a floating-point number. The map from numbers to steps is monotone and exact, and
-//! needs no logarithm.
+//! The table is over mass and deflection. Each cell stores the highest lowest mode among the designs entered so far
+//! whose mass and deflection are at most those of the cell. Both scales divide each octave (factor of two) into equal
+//! steps, which are the leading bits of a floating-point number. The map from numbers to steps is monotone and exact,
+//! and needs no logarithm.
 //!
 //! A design is entered at the next grid point above its mass and deflection. It is looked up at the next grid point
 //! below them. Its frequency is rounded down on entry. The table therefore rejects a design only if another one
@@ -67,8 +67,8 @@ impl Archive {
         );
         let (Some(row), Some(column)) = (row, column) else { return };
         let hz = round_down(o.lowest_mode_hz);
-        // if a cell has as high a mode already, so have all cells of larger mass and deflection, and none of them
-        // changes
+        // If a cell has as high a mode already, all cells of larger mass and deflection have one too, and none of them
+        // changes.
         for cells in self.best_hz.chunks(self.columns).skip(row) {
             let worse = |cell: &&AtomicU32| cell.load(Ordering::Relaxed) < hz;
             let mut entered = false;
@@ -82,8 +82,9 @@ impl Archive {
         }
     }
 
-    /// The index of the grid step next to the positive number `x`: the step at or below it, or at or above it, as
-    /// `side` says. `low` and `high` are the ends of the scale in powers of two. `None` outside of the scale.
+    /// The index of the grid step next to the positive number `x`. With `Corner::Below` it is the step at or below `x`,
+    /// with `Corner::Above` the step at or above it. `low` and `high` are the ends of the scale in powers of two.
+    /// `None` if `x` is outside of the scale.
     #[inline]
     fn corner(&self, x: f64, (low, high): (i32, i32), side: Corner) -> Option<usize> {
         let shift = f64::MANTISSA_DIGITS - 1 - self.bits;

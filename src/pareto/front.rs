@@ -11,7 +11,7 @@ use rayon::prelude::*;
 /// Number of significant decimal digits that count when two objectives are compared. Smaller differences are rounding
 /// errors.
 const DIGITS_COMPARED: i32 = 12;
-/// If two numbers differ by at least this fraction, they surely differ after rounding to twelve digits.
+/// Two numbers that differ by at least this fraction surely differ after rounding to twelve digits.
 const SURELY_APART: f64 = 1e-10;
 
 /// The error for a point with an objective that is not a number (NaN), which cannot be compared with others.
@@ -76,15 +76,15 @@ pub fn nondominated(points: &[[f64; 3]]) -> Result<Vec<Vec<usize>>, NotANumber> 
     Ok(tied.map(|group| group.iter().map(|&i| sieved[i as usize] as usize).collect()).collect())
 }
 
-/// Indices of the points that no other point dominates, in the order of the sweep. Equal points follow each other, with
-/// ascending indices.
+/// Indices of the points that no other point dominates, in the order in which the sweep visits the points. Equal points
+/// follow each other, with ascending indices.
 fn swept(points: &[[f64; 3]]) -> Vec<u32> {
     let Ranking { order, second } = Ranking::new(points);
     let mut stairs = Staircase::new(second.len());
     let mut kept: Vec<u32> = Vec::new();
     for Ranked { point: i, rank } in order {
         let point = &points[i as usize];
-        // a point that was swept before is no larger in the first objective, so the other two decide
+        // A point that was swept before is no larger in the first objective, so the other two objectives decide.
         if !stairs.covers(rank, point[2]) {
             stairs.insert(rank, point[2], |_, _| ());
             kept.push(i);
@@ -121,8 +121,8 @@ pub fn not_clearly_beaten(points: &[[f64; 3]], slack: f64) -> Vec<usize> {
     kept
 }
 
-/// Takes the value of each rank of the second objective, applies `lowered` to it, and finds the largest rank whose
-/// value is not above the result. `None` if there is no such rank.
+/// For each rank of the second objective, the largest rank whose value is at most the lowered value of this rank, as
+/// `lowered` computes it. `None` if there is no such rank.
 fn reaches(second: &[f64], lowered: impl Fn(f64) -> f64) -> Vec<Option<u32>> {
     let mut below = 0;
     let count = second.iter().map(|&x| {

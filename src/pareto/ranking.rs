@@ -34,7 +34,9 @@ impl Ranking {
         let mut order = by(1, order);
         let mut second = rank(&mut order, points);
         if second.len() < order.len() / 16 {
-            // with many ties, a radix sort by the third objective costs less than the comparisons that it saves
+            // If only few different values of the second objective occur, many points are equal in it. The sort below
+            // would need many comparisons between them. A radix sort by the third objective costs less than these
+            // comparisons.
             order = by(1, by(2, order));
             second = rank(&mut order, points);
         }
@@ -82,7 +84,7 @@ fn sorted<O: Ord + Send>(
 ) -> Vec<Ranked> {
     let keys = || order.par_iter().map(&key);
     let (low, high) = (keys().min().unwrap_or(0), keys().max().unwrap_or(0));
-    // bits above the range of the keys are equal in all points, so the code leaves them out
+    // Bits above the range of the keys are equal in all points, so the code leaves them out.
     let shift = 32 - (high - low).leading_zeros().min(32);
     let coded = order.par_iter().map(|r| Coded { code: ((key(r) - low) >> shift) as u32, ranked: *r });
     let mut coded = by_code(coded.collect());

@@ -29,7 +29,7 @@ pub(crate) fn sieve(points: &[[f64; 3]], slack: f64) -> Vec<u32> {
     let table = Table::new(points, &bins);
     let stays = |p: &[f64; 3]| {
         let lowered = p.map(|x| x - slack * x.abs());
-        // an infinite objective cannot be lowered, and such a point stays
+        // An infinite objective cannot be lowered. A point with such an objective stays.
         table.best_below(bins[0].of(lowered[0]), bins[1].of(lowered[1])).partial_cmp(&lowered[2])
             != Some(Ordering::Less)
     };
@@ -46,7 +46,7 @@ struct Bins {
 impl Bins {
     /// Divides the objective with the index `objective` into bins.
     fn new(points: &[[f64; 3]], objective: usize) -> Self {
-        // the sample is every n-th point: the sample, and with it the result, is then the same in every run
+        // The sample is every n-th point, so that the sample and the result are the same in every run.
         let stride = points.len().div_ceil(SAMPLE);
         let mut sample: Vec<f64> =
             points.iter().step_by(stride).map(|p| p[objective]).filter(|x| x.is_finite()).collect();
@@ -70,7 +70,7 @@ impl Bins {
         (((x - self.low) * self.steps_per_unit) as usize).min(STEPS - 1)
     }
 
-    /// The bin of a number.
+    /// The index of the bin that contains `x`.
     fn of(&self, x: f64) -> usize {
         self.bin[self.step(x)].into()
     }

@@ -32,8 +32,9 @@ impl Staircase {
         self.best(rank).is_some_and(|best| best <= third)
     }
 
-    /// Adds a step that no other step covers, and removes the steps that it covers. `see` is called for each of the
-    /// following steps that is removed, and for the first one that stays, with its rank and its third objective.
+    /// Adds a step that no other step covers, and removes the steps that it covers. The steps with larger ranks are
+    /// examined in ascending order. `see` is called with the rank and the third objective of each step that is removed,
+    /// and of the first step that stays.
     pub(crate) fn insert(&mut self, rank: u32, third: f64, mut see: impl FnMut(u32, f64)) {
         self.steps.insert(rank);
         self.third[rank as usize] = third;
@@ -86,7 +87,8 @@ impl RankSet {
     /// The largest member that is at most `number`; `None` if there is none.
     fn at_or_below(&self, number: u32) -> Option<u32> {
         let mut place = number as usize;
-        // the lowest level includes the number itself; the levels above include only words before it
+        // The lowest level includes the number itself. The levels above include only words before the word of the
+        // number.
         let mut kept = u64::MAX >> (63 - place % 64);
         for (height, level) in self.levels.iter().enumerate() {
             let word = level[place / 64] & kept;

@@ -41,16 +41,17 @@ impl Parts {
         Self { alive, known: known.to_vec(), mass_kg, bearings }
     }
 
-    /// Leaves every bearing, and every motor that stands elsewhere, only the options that its drive still has, because
-    /// it comes with this drive.
+    /// Drops the options of every bearing, and of every motor that stands elsewhere, that their drive no longer has.
+    /// Bearing and motor come with the drive, so they have the same options.
     pub(super) fn follow_drives(&mut self) {
         for &(bearing, joint) in &self.bearings {
             self.alive[bearing] = self.alive[joint].clone();
         }
     }
 
-    /// The inequality `row` with the coefficients of each bearing added to the coefficients of its drive, and then set
-    /// to zero. The linear program has one weight for both. [`Self::follow_drives`] must have been called before.
+    /// The inequality `row`, rewritten for a program in which a drive and its bearings have the same weights. The
+    /// coefficients of each bearing are added to the coefficients of its drive and then set to zero.
+    /// [`Self::follow_drives`] must have been called before.
     pub(super) fn with_drives(&self, mut row: Row) -> Row {
         for &(bearing, joint) in &self.bearings {
             for at in 0..self.alive[joint].len() {
@@ -61,7 +62,7 @@ impl Parts {
         row
     }
 
-    /// The weights of all options in a mixture. The weights of each drive are copied to its bearing.
+    /// The weights of all options in a mixture. A bearing gets the weights of the drive to which it belongs.
     pub(super) fn with_bearings(&self, weights: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let mut out = weights.to_vec();
         for &(bearing, joint) in &self.bearings {
@@ -94,8 +95,8 @@ impl Parts {
         let mut dropped = false;
         for (slot, coefficients) in row.coefficients.iter().enumerate() {
             if coefficients.len() != self.alive[slot].len() {
-                // An earlier row has dropped options here, so the coefficients no longer match. The next
-                // round builds this row again.
+                // An earlier row has dropped options of this slot, so the coefficients no longer match the options. The
+                // next round builds this row again.
                 continue;
             }
             let room = row.limit - (total - least[slot]) + 1e-12 * row.limit.abs();

@@ -23,15 +23,15 @@ const OPTIONS_ADDED: usize = 3;
 pub(super) struct Program {
     masses: Vec<Vec<f64>>,
     rows: Vec<Row>,
-    /// For each slot, the options in the solver's program, as indices among the remaining options.
+    /// For each slot, the options that are in the solver's program, as indices among the remaining options.
     seen: Vec<Vec<usize>>,
     /// The best lower bound so far \[kg\], and the multipliers of the rows that give it.
     best: (f64, Vec<f64>),
 }
 
-/// What the solver finds over the options that it has.
+/// The solution of the linear program over those options that are in the solver's program.
 struct Solved {
-    /// The weights of these options, slot by slot.
+    /// The weights of these options in the mixture, slot by slot.
     weights: Vec<f64>,
     /// The multipliers of the rows, all at least zero.
     multipliers: Vec<f64>,

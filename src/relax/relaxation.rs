@@ -69,7 +69,7 @@ impl<'a> Relaxation<'a> {
             first_kg: 0.0,
         };
         search.run();
-        // If only the known design is left, it is the lightest.
+        // If every other option is excluded, only the known design is left, and the bound is its mass.
         let alone = search.parts.alive.iter().all(|options| options.len() == 1);
         Some(MassBound {
             mass_lower_bound_kg: if alone { self.problem.mass_kg(&arm) } else { search.best_kg }
@@ -85,7 +85,7 @@ struct Search<'a> {
     problem: &'a ArmProblem<'a>,
     asked: &'a Objectives,
     cases: &'a [CaseLoads],
-    /// For each judged case, the direction in which the tip of the known design moves.
+    /// The index of each judged case, and the direction in which the tip of the known design moves in this case.
     directions: Vec<(usize, nalgebra::Vector3<f64>)>,
     models: &'a [ShapeModel],
     parts: Parts,

@@ -3,8 +3,8 @@
 /// Margin for rounding of an inequality, relative to its largest terms.
 const ROUNDING: f64 = 1e-9;
 
-/// The inequality `Σ coefficient · weight ≤ limit` over the weights of options. Coefficients are given slot by slot,
-/// for the remaining options.
+/// The inequality `Σ coefficient · weight ≤ limit` over the weights of options in a mixture. There is one list of
+/// coefficients for each slot, with one coefficient for each remaining option.
 #[derive(Clone)]
 pub(super) struct Row {
     pub coefficients: Vec<Vec<f64>>,

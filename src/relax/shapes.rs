@@ -36,7 +36,8 @@ pub(super) struct ShapeModel {
 struct JointShape {
     slot: usize,
     column: usize,
-    /// Velocity of the joint's mass per unit of each coordinate.
+    /// Displacement of the joint's mass per unit of each coordinate: three rows (x, y, z), and one column for each
+    /// coordinate.
     motion: DMatrix<f64>,
 }
 
@@ -47,7 +48,7 @@ struct LinkShape {
     /// Displacement and rotation at each Gauss point per unit of each coordinate, times the square root of the
     /// point's weight.
     fields: Vec<Matrix6xX<f64>>,
-    /// Inertias per length of each option.
+    /// For each option, its inertia per length for each of the six components of motion.
     densities: Vec<[f64; 6]>,
     /// For each option, the stiffness of each of the tube's coordinates.
     stiffness: Vec<Vec<f64>>,
@@ -117,7 +118,7 @@ impl ShapeModel {
                     twist.set_column(column, &joint.twist);
                     column += 1;
                 }
-                // bodies on a tube move with points of the tube, and are added with it
+                // Bodies on a tube move with points of the tube, and are added together with the tube.
                 StationSlot::Body { .. } if is_on_tube(&layers[slot].1) => {}
                 StationSlot::Body { inertia, .. } => model.given += twist.transpose() * inertia * &twist,
                 StationSlot::Link { place, .. } => {
@@ -267,8 +268,8 @@ fn mixture(weights: &[f64]) -> impl Iterator<Item = (usize, f64)> + Clone + '_ {
     weights.iter().copied().enumerate().filter(|(_, w)| *w > 0.0)
 }
 
-/// Velocity of the point `at_m` per unit of each coordinate of the arm. Each column of `twist` is the motion of the
-/// chain inboard of the point for one coordinate.
+/// Displacement of the point `at_m` per unit of each coordinate of the arm: three rows (x, y, z), and one column for
+/// each coordinate. Each column of `twist` is the motion of the chain inboard of the point for one coordinate.
 fn point_motion(twist: &DMatrix<f64>, at_m: &Vector3<f64>) -> DMatrix<f64> {
     let columns: Vec<Vector3<f64>> =
         twist.column_iter().map(|t| displacement_at(&t.fixed_rows::<6>(0).into_owned(), at_m)).collect();

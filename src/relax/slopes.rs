@@ -40,7 +40,7 @@ fn as_it_twists(law: &JointLaw) -> JointLaw {
     JointLaw { curve, ..*law }
 }
 
-/// Least and greatest magnitude of a torque in an interval \[N m\].
+/// Least and greatest magnitude of a torque in an interval \[N m\], widened by the margin for rounding.
 fn size_range([low, high]: [f64; 2]) -> [f64; 2] {
     [low.max(-high).max(0.0) * (1.0 - ROUNDING), high.max(-low) * (1.0 + ROUNDING)]
 }

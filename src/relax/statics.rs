@@ -129,7 +129,8 @@ impl CaseLoads {
         })
     }
 
-    /// Least and greatest inertia of everything outboard of the joint in `slot` about the joint's axis \[kg m²\].
+    /// Least and greatest inertia, over the remaining options, of everything outboard of the joint in `slot` about the
+    /// joint's axis \[kg m²\].
     pub(super) fn inertia_range(&self, problem: &ArmProblem, parts: &Parts, slot: usize) -> [f64; 2] {
         let Some(joint) = self.joint(problem, slot) else { return [0.0; 2] };
         let start = joint.twist.dot(&(problem.stations()[self.case].start_inertia * joint.twist));
@@ -261,7 +262,7 @@ impl CaseLoads {
                 ),
             ];
             for ([torque, inertia], allowed) in demands {
-                // with a brake the static torque is not limited
+                // With a brake the static torque has no limit, so it gives no row.
                 if allowed.iter().any(|nm| nm.is_infinite()) {
                     continue;
                 }
@@ -287,8 +288,9 @@ impl CaseLoads {
     }
 }
 
-/// Inertia of every option of every slot outboard of the joint in `slot` about the joint's axis \[kg m²\]. `amount` has
-/// the load of each option, which is the mass for a joint.
+/// Inertia about the axis of the joint in `slot` \[kg m²\] of every option of every slot outboard of it; first index
+/// the outboard slot, second its option. `amount` has the load of each option, which is the mass for a joint. Empty if
+/// `slot` has no joint.
 fn inertias(station: &Station, slot: usize, amount: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let StationSlot::Joint(StationJoint { twist, .. }) = &station.slots[slot] else { return Vec::new() };
     let about = |inertia: &Matrix6<f64>| twist.dot(&(inertia * twist));

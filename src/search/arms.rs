@@ -18,20 +18,20 @@ use crate::space::problem::ArmProblem;
 pub(crate) struct EightArms {
     /// Bit mask, one bit per arm: the arms that have met every limit checked so far.
     pub held: u8,
-    /// Used if no arm is left in `held`: the number of drives chosen by the search inboard of the row level that had
-    /// been added when the last arm failed. A row with the same arm outboard and the same drives up to this number
-    /// fails too, so the sweep skips it.
+    /// Number of drives chosen by the search inboard of the row level that had been added when the last arm failed. The
+    /// number has a meaning only if no arm is left in `held`. A row with the same arm outboard and the same drives up
+    /// to this number fails too, so the sweep skips it.
     pub failed_with: usize,
     /// Mass of each arm, summed over the slots added so far \[kg\].
     pub mass_kg: Eight,
     /// Mass \[kg\] of the drive in each inner slot (the slots from the row level to the base). The masses of given
     /// drives are set from the beginning.
     pub masses_kg: Vec<Eight>,
-    /// The largest of the terms that single joints and tube coordinates add to Dunkerley's sums \[s²\]. Dunkerley's
-    /// sum of a block is the sum of `1/λ` over the block's eigenvalues `λ`. The lowest eigenvalue is at most the
-    /// reciprocal of this term.
+    /// The largest term that a single joint or tube coordinate adds to a Dunkerley sum \[s²\]. Dunkerley's sum of a
+    /// block is the sum of `1/λ` over the block's eigenvalues `λ`. The lowest eigenvalue is at most the reciprocal of
+    /// this largest term.
     pub largest_s2: Eight,
-    /// The eight arms in each case.
+    /// The numbers of the eight arms that differ from case to case.
     pub cases: Vec<CaseArms>,
     /// Tip deflection of the complete arms \[m\], the largest over the judged cases, which count for deflection and
     /// lowest mode.
@@ -40,12 +40,12 @@ pub(crate) struct EightArms {
     pub lowest_mode_hz: Eight,
 }
 
-/// Eight arms in one case: the numbers that change as slots are added.
+/// Eight arms in one case (a pose with its loads): the numbers that change as slots are added.
 #[derive(Clone)]
 pub(crate) struct CaseArms {
     /// Displacement of the tip \[m\] in x, y and z, caused by the slots added so far.
     pub tip_m: [Eight; 3],
-    /// Torque \[N m\] on each hinge. It stays zero at hinges that no load turns.
+    /// Torque \[N m\] on each hinge; the index is the number of the hinge. It stays zero at hinges that no load turns.
     pub torque_at: Vec<Eight>,
     /// Inertia \[kg m²\] of everything outboard of each hinge, about the axis of this hinge.
     pub inertia_at: Vec<Eight>,
@@ -58,7 +58,7 @@ pub(crate) struct CaseArms {
 }
 
 impl EightArms {
-    /// Memory for eight arms of a problem. All numbers are zero, except for the masses of given drives.
+    /// Allocates memory for eight arms of a problem. All numbers are zero, except for the masses of given drives.
     pub(crate) fn new(problem: &ArmProblem) -> Self {
         let zeros = [0.0; LANES];
         let inner = &problem.slots()[problem.row_slot().unwrap_or(0)..];

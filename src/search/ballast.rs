@@ -4,11 +4,10 @@
 //! past a break point of this curve. Its tangent stiffness then rises, and the lowest mode with it. A design can be on
 //! a front for that reason alone.
 //!
-//! A part is reported as ballast under two conditions. A lighter part that is at least as stiff in every way exists for
-//! its place. And the design with this lighter part weighs less and deflects no more, so that only its lowest mode is
-//! lower. The reason is
-//! that a gear inboard gets into a softer segment of its torsion curve, or that the play of a joint (its lost motion)
-//! is less closed under the smaller torque.
+//! A part is reported as ballast if a lighter part that is at least as stiff in every way exists for its place, and if
+//! two more conditions hold. First, the design with this lighter part weighs less and deflects no more, so that only
+//! its lowest mode is lower. Second, the mode is lower because a joint inboard becomes softer under the smaller torque:
+//! its gear gets into a softer segment of the torsion curve, or its play (lost motion) is less closed.
 
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::mechanics::Wrench;
@@ -50,7 +49,7 @@ struct Relieved {
     by_segment: bool,
 }
 
-/// The design that is searched for ballast.
+/// The design that is searched for ballast, with the numbers with which lighter designs are compared.
 struct Weighed<'p, 'c> {
     problem: &'p ArmProblem<'c>,
     options: Vec<u32>,
@@ -128,7 +127,8 @@ impl<'p, 'c> Weighed<'p, 'c> {
         let mut options = self.options.clone();
         options[level] = option;
         let lighter = self.problem.walk(&options, |_, _| {}).ok()?;
-        // less weight outboard may change the lightest drive that fits inboard; then the part alone is not the reason
+        // Less weight outboard may change the lightest drive that fits inboard. Then the exchanged part alone is not
+        // the reason.
         let others_stay =
             (0..lighter.options.len()).all(|s| s == slot || lighter.options[s] == self.arm.options[s]);
         let o = self.problem.objectives(&lighter)?;
@@ -158,7 +158,8 @@ impl<'p, 'c> Weighed<'p, 'c> {
             let torque_nm = self.torques_nm[joint][case];
             let change_nm = place.twist.dot(&self.change_of_weight(station, slot, option));
             let [now, then] = [torque_nm, torque_nm + change_nm];
-            // the curve without play or friction shows whether the gear changes its segment; otherwise the play opens
+            // If the curve without play and friction becomes softer, the gear gets into a softer segment. Otherwise the
+            // play opens.
             let softer = |of: &dyn Fn(f64) -> f64| of(then) > of(now);
             let by_segment = softer(&|t| law.curve.tangent_compliance_rad_per_nm(t));
             let is_softer = by_segment || softer(&|t| law.tangent_compliance_rad_per_nm(t));
@@ -166,13 +167,14 @@ impl<'p, 'c> Weighed<'p, 'c> {
         })
     }
 
-    /// The joint law (angle as a function of torque) that the joint in a slot has in this design.
+    /// The joint law (angle as a function of torque) of the joint in a slot, with the drive of this design. `None` if
+    /// the slot has no joint.
     fn law(&self, slot: usize) -> Option<&JointLaw> {
         self.problem.slots()[slot].law(self.arm.options[slot] as usize)
     }
 
-    /// Wrench (force and moment) by which the weight in `slot` changes if the slot takes `option` in place of its
-    /// present option.
+    /// Change of the wrench of the weight in `slot`, about the world's origin, if the slot takes `option` in place of
+    /// its present option.
     fn change_of_weight(&self, station: &Station, slot: usize, option: u32) -> Wrench {
         let now = self.arm.options[slot] as usize;
         match (&station.slots[slot], &self.problem.slots()[slot]) {

@@ -11,7 +11,8 @@ use crate::mechanics::lanes::in_lanes;
 use crate::space::levels::{DesignRow, Keep, OutwardIn};
 use crate::space::problem::{ArmProblem, Partial};
 
-/// A tree of designs in which all designs of a row can be completed and evaluated together.
+/// A tree of designs in which all designs of a row (the designs that differ in the row level alone) can be completed
+/// and evaluated together.
 pub trait FinishRows: OutwardIn {
     /// The row level (whose options are evaluated together) and the levels inboard of it, with every number that is the
     /// same in all rows.
@@ -19,7 +20,7 @@ pub trait FinishRows: OutwardIn {
     /// Working space of a worker. It is used again for each row, so that memory is allocated once.
     type Scratch: Send;
 
-    /// Computes the numbers that are the same in all rows.
+    /// Computes once the numbers that are the same in all rows.
     fn compile(&self) -> Self::Compiled;
 
     /// Allocates the working space of one worker.

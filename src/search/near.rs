@@ -103,7 +103,7 @@ pub struct NearDesigns {
     pub total: Option<u64>,
 }
 
-/// How near the designs must be, and how many are returned.
+/// What is asked of a search for near designs: how near they must be, and how many are returned.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slack {
     /// Largest shortfall of a near design, as a fraction.
@@ -150,7 +150,7 @@ pub fn near_designs<P: FinishRows>(
     (!stop.load(Ordering::Relaxed)).then_some(NearDesigns { nearest, total: Some(total) })
 }
 
-/// The inputs and the shared results of all tasks of a search for near designs.
+/// The inputs of a search for near designs, and the list of findings that all tasks share.
 struct Seeker<'s> {
     constraints: &'s Constraints,
     archive: Archive,

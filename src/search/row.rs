@@ -38,12 +38,13 @@ pub(crate) struct Row {
     pub chosen: Vec<Option<usize>>,
     /// The options of the row's link, eight in a chunk; empty if the row level is the drive of a joint.
     pub chunks: Vec<Chunk>,
-    /// For each case, the numbers that do not depend on the option of the row level.
+    /// The numbers of each case that do not depend on the option of the row level.
     pub cases: Vec<RowCase>,
     /// Masses and torsion curves of the drives that each inner slot can have, one entry for each inner slot. An entry
     /// for a link or an offset has no drives.
     pub drives: Vec<DriveAttributes>,
-    /// Indices of the inner slots that deflect elastically. The link of the row level is left out.
+    /// Indices of the inner slots (from the row level to the base) that deflect elastically. The link of the row level
+    /// is left out.
     pub compliant: Vec<usize>,
     /// The hinges (elastic coordinates) of all inner slots. The link of the row level is left out.
     pub hinges: Vec<Hinge>,
@@ -51,9 +52,9 @@ pub(crate) struct Row {
     pub fixed_kg: f64,
     /// Form of the torsion curves of the drives in each inner slot. It decides how their twist is computed.
     pub twisting: Vec<Twisting>,
-    /// The checked output bearings of the joints inboard of the row level.
+    /// The output bearings with limits to be checked, of the joints inboard of the row level.
     pub bearings: Vec<RowBearing>,
-    /// The largest widths that the links leave for gear and motor at the joints inboard of the row level.
+    /// The space that links leave for gear and motor at the joints inboard of the row level.
     pub rooms: Vec<RowRoom>,
 }
 
@@ -153,7 +154,7 @@ fn twisting(slot: &Slot, drives: &DriveAttributes, k: usize, cases: &[RowCase]) 
         Slot::Sized(sized) => sized.laws.iter().any(JointLaw::has_play),
         _ => false,
     };
-    // only judged cases need the angle of a joint; cases that only size drives need the torque alone
+    // Only judged cases need the angle of a joint. Cases that only size drives need nothing but its torque.
     let turned = cases.iter().filter(|case| case.judged).any(|case| case.turned[k]);
     let [first, second, third] = &drives.compliance;
     match (has_play, turned) {

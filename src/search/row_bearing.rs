@@ -32,8 +32,8 @@ pub(crate) struct RowBearing {
 /// Source of the lever: the distance \[m\] along the joint's axis from the face of its flange to the point at which the
 /// link attaches.
 enum RowLever {
-    /// The lever does not depend on the link of the row: it is stated, or the link is given or outboard of the row.
-    /// The number is the slot of the joint.
+    /// The lever does not depend on the link of the row, because the study states it, or because the link at the joint
+    /// is given or outboard of the row. The number is the slot of the joint.
     OfSlot(usize),
     /// The lever depends on the link of the row: one lever \[m\] for each option, eight in a chunk.
     OfChunk(Vec<Eight>),
@@ -140,8 +140,8 @@ impl BearingCase {
             .map(|(mover, moving)| match &station.slots[moving.slot] {
                 StationSlot::Joint(of) if moving.slot >= first => {
                     let motion = of.twist * moving.acceleration_rad_s2;
-                    // a joint accelerates only what is outboard of it, and a bearing is loaded only by what is
-                    // outboard of the bearing
+                    // A joint accelerates only the pieces outboard of it, and a bearing is loaded only by the pieces
+                    // outboard of the bearing. The limit is therefore the more outboard of the two slots.
                     let limit = slot.min(moving.slot);
                     let source = Source::new(problem, station, first, limit, &|inertia, _| {
                         joint.components(&(inertia * motion))
@@ -188,8 +188,8 @@ impl RowBearing {
     }
 
     /// Writes to `out` the loads that come from the arm `from`, which is outboard of the row. There is one list for
-    /// each sizing case: the load at rest first, then the load from the acceleration of each mover (joint that
-    /// accelerates).
+    /// each sizing case: first the load at rest, then the additional load during the acceleration of each mover (a
+    /// joint that accelerates).
     pub(crate) fn begin(&self, from: &Partial, out: &mut Vec<Vec<Components>>) {
         out.resize_with(self.cases.len(), Vec::new);
         for ((case, of), out) in self.cases.iter().zip(out) {
@@ -210,8 +210,9 @@ impl RowBearing {
     }
 }
 
-/// Loads from the arm outboard of a row. First index the bearing, second the sizing case, third the cause: the load at
-/// rest first, then the load of each mover (joint that accelerates).
+/// Loads on the output bearings from the arm outboard of a row. The first index is the bearing, the second the sizing
+/// case, the third the cause: first the load at rest, then the additional load during the acceleration of each mover (a
+/// joint that accelerates).
 pub(crate) type BearingsBegun = Vec<Vec<Vec<Components>>>;
 
 impl RowBearing {

@@ -1,7 +1,8 @@
 //! The numbers of a row that depend on the arm outboard of it. They are computed once for all designs of the row.
 //!
 //! A row is the set of designs that differ in the choice of one part alone, the row level. Its designs have the arm
-//! outboard of the row level in common.
+//! outboard of the row level in common. If the row level is a link, this link is the row's link. Inner slots are the
+//! places of the arm from the row level to the base, and a hinge is one elastic coordinate of an inner slot.
 
 use super::arms::EightArms;
 use super::row::Row;
@@ -25,7 +26,7 @@ pub struct RowScratch {
 
 /// The numbers of a row that depend on the arm outboard of it.
 pub(crate) struct Begun {
-    /// The numbers that depend on the case, one entry for each case.
+    /// The numbers of each case (a pose with its loads).
     pub cases: Vec<CaseBegun>,
     /// For each inner joint (from the row level to the base), the place of the last design's drive in the ladder of the
     /// drive table. The ladder lists, lightest first, the drives that can be the lightest for some demand. The
@@ -134,12 +135,12 @@ impl Begun {
             }
             begun.spread.clear();
             begun.spread.extend(case.spread_entries.iter().map(|&Entry { row, column, .. }| {
-                // the matrix is symmetric, and only its lower triangle is listed: an entry off the diagonal counts
-                // twice
+                // The matrix is symmetric, and only the entries of its lower triangle are listed. An entry off the
+                // diagonal stands for two, so it counts twice.
                 let both = if row == column { 1.0 } else { 2.0 };
                 both * state.inertia[(row, column)]
             }));
-            // a case that is not judged needs no modes
+            // A case that is not judged needs no modes.
             if !case.judged {
                 continue;
             }

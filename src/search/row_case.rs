@@ -23,9 +23,9 @@ pub(crate) struct Hinge {
 /// units are those of a joint that turns.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct AtJoint {
-    /// Torque about the joint's axis that these pieces make \[N m\].
+    /// Torque of the loads on these pieces about the axis of the hinge \[N m\].
     pub torque_nm: f64,
-    /// Inertia of these pieces about the joint's axis \[kg m²\].
+    /// Inertia of these pieces about the axis of the hinge \[kg m²\].
     pub inertia_kgm2: f64,
 }
 
@@ -86,7 +86,7 @@ pub(super) fn hinges(slots: &[Slot]) -> Vec<Hinge> {
             Slot::Given { .. } | Slot::Sized(_) | Slot::Bearing { .. } => {
                 hinges.push(Hinge { number: slot, slot, end: None });
             }
-            // the first slot may be the link of the row, which is not a hinge
+            // The first slot may have the link of the row, which has no hinges.
             Slot::Link { .. } if slot > 0 => {
                 hinges.extend((0..6).map(|end| Hinge { number: tubes + end, slot, end: Some(end) }));
                 tubes += 6;
@@ -137,7 +137,7 @@ impl RowCase {
             _ => [0.0; 4],
         };
         let spread_entries = if links_are_compliant { spread_entries(&station.modal) } else { Vec::new() };
-        // the entries of block 0 come first
+        // The entries of block 0 stand before those of block 1.
         let of_first = spread_entries.partition_point(|entry| entry.block == 0);
         let (turned, link_torque) = turning(station, slots, hinges, numbers, &link_weight);
         Self {
@@ -179,11 +179,11 @@ fn at_joints_of_pieces(
             }
             StationSlot::Link { .. } => continue,
         };
-        // the mass of a drive is inboard of its own joint, so a piece loads only hinges that are inboard of the piece
+        // The mass of a drive is inboard of its own joint, so a piece loads only hinges that are inboard of the piece.
         for hinge in hinges.iter().filter(|hinge| hinge.slot > k) {
             let own = AtJoint::new(&hinge.twist(slots), inertia, weight);
-            // masses that are known are added once for all rows; the mass of a sized drive differs from design to
-            // design
+            // The torque of a given mass is added once for all rows. The mass of a drive that is chosen or sized
+            // differs from design to design, so its torque is stored per kilogram.
             match fixed_times {
                 Some(times) => fixed[hinge.number].add(own, times),
                 None => per_kg[k][hinge.number] = own,
@@ -259,7 +259,8 @@ fn turning(
     let (mut turned, mut link_torque) = (vec![false; numbers], vec![0.0; numbers]);
     for hinge in hinges {
         let twist = hinge.twist(slots);
-        // compared with exact zeros: a torque that is zero by symmetry is left out, one that is merely small is not
+        // The twist is compared with exact zeros, so that only a torque that is zero by symmetry is left out. A torque
+        // that is merely small counts.
         turned[hinge.number] = (0..6).any(|i| loaded[i] && twist[i] != 0.0);
         link_torque[hinge.number] = twist.dot(link_weight);
     }
@@ -296,7 +297,7 @@ fn last_compliant<const N: usize>(block: &Block<N>, first: usize, links_are_comp
         BlockSlot::Links(options) => options[0].is_compliant(),
         BlockSlot::Body(_) => false,
     };
-    // the first slot may be the link of the row, of which some options may be compliant
+    // The first slot may have the link of the row. This link counts if some of its options are compliant.
     let inner = block.slots[first + 1..].iter().rposition(is_compliant).map(|last| last + 2);
     let of_row = match &block.slots[first] {
         BlockSlot::Links(_) => links_are_compliant,

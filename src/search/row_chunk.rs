@@ -25,7 +25,7 @@ pub(crate) struct Chunk {
     pub slender: u8,
     /// For each option, the factors that turn the loads on the link into its stress.
     pub stress: StressEight,
-    /// The eight options in each case.
+    /// The numbers of the eight options that differ from case to case.
     pub cases: Vec<CaseChunk>,
 }
 
@@ -83,7 +83,7 @@ impl Chunk {
         c: usize,
     ) -> Self {
         let first = problem.row_slot().unwrap_or_default();
-        // lanes beyond the last option repeat it; their results are ignored
+        // Lanes beyond the last option repeat the last option. Their results are ignored.
         let at = |lane: usize| (LANES * c + lane).min(options.len() - 1);
         let lanes =
             |of: &dyn Fn(&OptionAttributes) -> f64| std::array::from_fn(|lane| of(&options[at(lane)]));
@@ -91,7 +91,7 @@ impl Chunk {
             (0..LANES).fold(0, |bits, lane| bits | u8::from(of(&options[at(lane)])) << lane)
         };
         let stress = |of: &dyn Fn(&StressCheck) -> f64| {
-            // the stress of a material of unknown strength is not checked: its ratio is 0
+            // The stress of a material of unknown strength is not checked, so its ratio of stress to strength is 0.
             lanes(&|o| o.stress.as_ref().map_or(0.0, |s| of(s) / s.strength_pa))
         };
         let materials: [Option<usize>; LANES] = std::array::from_fn(|lane| options[at(lane)].material);
@@ -140,7 +140,7 @@ impl CaseChunk {
         }
         let trace = |block: usize| {
             lanes(&|l| {
-                // the end coordinates have unit stiffness, so their inertias are the terms of the sum
+                // The end coordinates have unit stiffness, so their inertias are the terms of Dunkerley's sum.
                 let ends: f64 = (0..6).filter(|&g| l.block[g] == block).map(|g| l.end_inertia[g]).sum();
                 ends + l.inner_trace_s2
             })

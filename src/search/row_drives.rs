@@ -4,8 +4,8 @@ use crate::arm::joint_law::{Curve, JointLaw};
 use crate::space::slot::Slot;
 
 /// Mass and torsion curve of every drive that a joint can have; the index in each list is the index of the drive. A
-/// curve has three segments, each with the compliance of the connection in series. Each quantity has a list of its
-/// own, so that eight values of it can be loaded at once.
+/// curve has three segments. Their compliances include the connection between drive and link, which is in series with
+/// the gear. Each quantity has a list of its own, so that eight values of it can be loaded at once.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct DriveAttributes {
     /// Mass of each drive \[kg\].

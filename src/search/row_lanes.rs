@@ -25,7 +25,7 @@ use crate::space::slot::{SizedJoint, Slot};
 use crate::space::station::{Station, StationJoint, StationSlot};
 use std::f64::consts::TAU;
 
-/// Rows whose designs are to be evaluated.
+/// Rows whose designs are to be evaluated, with everything that the evaluation needs.
 pub(crate) struct RowsWork<'a, 'c, K> {
     pub problem: &'a ArmProblem<'c>,
     pub row: &'a Row,
@@ -43,8 +43,8 @@ pub(crate) struct RowsWork<'a, 'c, K> {
 struct FinishedEight {
     /// Designs that meet all limits.
     held: u8,
-    /// Designs that meet all limits, but whose lowest mode is below the bar: with their mass and deflection, they are
-    /// dominated. Their modes are not computed.
+    /// Designs that meet all limits, but whose lowest mode is below the bar. The bar of a design is the lowest mode
+    /// below which a design of its mass and deflection is dominated. The modes of these designs are not computed.
     below_bar: u8,
     /// Designs that meet all limits, but whose iteration for the lowest mode did not converge. They are computed
     /// again, one by one.
@@ -58,13 +58,13 @@ impl<K: Keep> LaneWork for RowsWork<'_, '_, K> {
     fn run<V: Lanes>(self) {
         let RowsWork { problem, row, rows, options, scratch, keep } = self;
         let (mut excluded, mut below_bar) = (0, 0);
-        // the outer loop runs over chunks and the inner one over rows, so that a chunk is read from memory once for
-        // all rows
+        // The outer loop is over chunks and the inner loop over rows, so that each chunk is read from memory once for
+        // all rows.
         for chunk in 0..(options as usize).div_ceil(LANES) {
             let lanes = LANES.min(options as usize - chunk * LANES);
             let valid = u8::MAX >> (LANES - lanes);
-            // if all eight designs of one row fail with the first drives, they fail in every row with the same arm
-            // and first drives
+            // If all eight designs of a row fail with the first drives, they also fail in every other row with the same
+            // arm outboard and the same first drives.
             let mut ruled_out: Option<(&DesignRow<Partial>, usize)> = None;
             for (designs, begun) in rows.iter().zip(&mut scratch.rows) {
                 if ruled_out.is_some_and(|(other, levels)| designs.begins_like(other, levels)) {
@@ -106,7 +106,7 @@ impl RowChunk<'_, '_> {
         if arms.held == 0 {
             return FinishedEight::default();
         }
-        // deflections are compared as squares first: most designs are decided without the square root
+        // Squares of the deflections are compared first, because they decide about most designs without a square root.
         let mut tip_m2 = V::zero();
         for (_, lanes) in self.row.cases.iter().zip(&arms.cases).filter(|(case, _)| case.judged) {
             let [x, y, z]: [V; 3] = load_all(&lanes.tip_m);
@@ -118,7 +118,7 @@ impl RowChunk<'_, '_> {
             return FinishedEight { held, below_bar, unsure: 0 };
         }
         arms.tip_deflection_m = tip_m2.sqrt().store();
-        // Dunkerley's sums (of 1/λ over all modes) are computed only now, because few designs get this far
+        // Dunkerley's sums (of 1/λ over all modes) are computed only here, because few designs get so far.
         self.sum_traces::<V>(begun, arms);
         let question = Question::new(*self, begun, arms);
         below_bar |= question.below_bar::<V>(keep, held & !below_bar);
@@ -160,7 +160,7 @@ impl RowChunk<'_, '_> {
         let slots = &self.problem.slots()[self.row.first..];
         let mut largest_s2 = V::zero();
         let mut indices = [0; LANES];
-        // the row level is either a link or a drive, and none of the other inner slots is a link with options
+        // The row level is either a link or a drive. None of the other inner slots is a link with options.
         match self.row.chunks.get(self.chunk) {
             Some(chunk) => self.start_with_link::<V>(chunk, begun, arms),
             None => self.start::<V>(begun, arms),
@@ -171,7 +171,7 @@ impl RowChunk<'_, '_> {
                 largest_s2 = largest_s2.max(self.add_tube(k, arms));
                 continue;
             }
-            // the springs of a bearing take the index of the drive that they belong to
+            // The springs of a bearing take the index of the drive to which they belong.
             indices = match &slots[k] {
                 Slot::Sized(sized) => self.pick::<V>(k, sized, begun, arms),
                 Slot::Bearing { .. } => indices,
@@ -223,7 +223,7 @@ impl RowChunk<'_, '_> {
             let weight = V::load(&own.weight_n);
             for &Hinge { number: j, .. } in &self.row.hinges {
                 let AtJoint { torque_nm, inertia_kgm2 } = begun.at[j];
-                // a joint that no load or weight turns has a torque of zero in every arm
+                // A joint that no load or weight turns has zero torque in every arm.
                 if case.turned[j] {
                     let own = weight * V::splat(case.link_torque[j]);
                     lanes.torque_at[j] = (V::splat(torque_nm) + own).store();
@@ -264,13 +264,13 @@ impl RowChunk<'_, '_> {
             }
             let at_end: V = stress_squared(&chunk.stress, splat_all(begun.cases[k].at_end));
             let largest = at_end.max(stress_squared(&chunk.stress, at_root));
-            // in a sizing case the arm accelerates; in the other cases it is at rest
+            // In a sizing case the arm accelerates. In the other cases it is at rest.
             match case.sizing {
                 true => moving = moving.max(largest),
                 false => standing = standing.max(largest),
             }
         }
-        // the largest squares over the cases are taken first, so that two square roots are enough
+        // The square roots are taken after the largest squares over the cases, so that two roots are enough.
         let own = standing.sqrt().max(moving.sqrt() * V::splat(self.problem.peak_factor()));
         own.max(V::splat(self.from.stress_ratio))
     }
@@ -356,7 +356,7 @@ impl RowChunk<'_, '_> {
         for (case, lanes) in self.row.cases.iter().zip(&mut arms.cases) {
             for &Hinge { number: j, .. } in self.row.hinges.iter().filter(|hinge| hinge.slot > k) {
                 let AtJoint { torque_nm, inertia_kgm2 } = case.per_kg[k][j];
-                // both numbers are the same for all lanes, and often zero
+                // Torque and inertia per kilogram are the same for all lanes, and often zero.
                 if torque_nm != 0.0 {
                     add(&mut lanes.torque_at[j], V::splat(torque_nm) * mass);
                 }
@@ -375,7 +375,7 @@ impl RowChunk<'_, '_> {
         let all_same = all_equal(&indices);
         let first: V = at_places(&drives.compliance[0], &indices, all_same);
         let twisting = self.row.twisting[k];
-        // the curves are loaded once for all cases
+        // The wind-up curves do not depend on the case, so they are loaded once for all cases.
         let curves = match twisting {
             Twisting::Segments => Curves::<V>::gather(drives, &indices, all_same),
             _ => Curves::line(first),
@@ -449,7 +449,7 @@ impl RowChunk<'_, '_> {
                         (StationSlot::Joint(joint), _) if joint.block == b => {
                             sum = sum + V::load(&lanes.compliance[hinge.slot]) * inertia;
                         }
-                        // an end coordinate has unit stiffness, so its compliance is 1
+                        // An end coordinate has unit stiffness, so its compliance is 1.
                         (StationSlot::Link { options, .. }, Some(end)) if options[0].block[end] == b => {
                             sum = sum + inertia;
                         }

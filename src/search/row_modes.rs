@@ -102,7 +102,7 @@ impl<'a, 'c> Question<'a, 'c> {
     #[inline(always)]
     fn below<V: Lanes>(&self, bars: &Eight, held: u8) -> u8 {
         let below = V::load(bars);
-        // a bar of zero means that no known design could dominate
+        // A bar of zero means that no known design can dominate a design of this mass and deflection.
         let asked = held & V::zero().less(below);
         let mut above = asked & !self.sluggish(below);
         if above == 0 {
@@ -139,9 +139,9 @@ impl<'a, 'c> Question<'a, 'c> {
         (lowest, unsure)
     }
 
-    /// The arms in which a single joint is so compliant that the lowest eigenvalue must be below the bar `below`
-    /// \[1/s²\]. The reason: the reciprocal of the lowest eigenvalue is the largest eigenvalue of flexibility times
-    /// mass (in its symmetric form). No diagonal entry of a symmetric matrix exceeds its largest eigenvalue.
+    /// Bit mask of the arms in which a single joint is so compliant that the lowest eigenvalue must be below the bar
+    /// `below` \[1/s²\]. The reason: the reciprocal of the lowest eigenvalue is the largest eigenvalue of flexibility
+    /// times mass (in its symmetric form). No diagonal entry of a symmetric matrix exceeds its largest eigenvalue.
     #[inline(always)]
     fn sluggish<V: Lanes>(&self, below: V) -> u8 {
         V::splat(1.0).less(V::load(&self.arms.largest_s2) * below)
@@ -194,7 +194,8 @@ impl<'a, 'c> Question<'a, 'c> {
                 };
                 self.solve(&self.pieces(case, block, pieces, link), outboard, ask)
             }
-            // a case is always planar or always spatial; otherwise these arms would be solved one by one
+            // A case is always planar or always spatial, so this arm of the match is never reached. If it were, the
+            // eight designs would be solved one by one.
             _ => (ask.below, ask.open),
         }
     }
@@ -230,11 +231,12 @@ impl<'a, 'c> Question<'a, 'c> {
         let Ask { mut open, below, guess } = ask;
         let known = open & below.less(V::splat(f64::INFINITY));
         if known != 0 {
-            // if no pivot is negative at `below`, the lowest eigenvalue is above it and the arm is decided
+            // If no pivot is negative at `below`, the lowest eigenvalue is above `below`, and the question is answered
+            // for this arm.
             let here = pass(outboard, inner, V::choose(known, below, guess.unwrap_or(below)));
             open &= !(known & here.below_all);
         }
-        // without a guess the question was only on which side of `below` the eigenvalue is
+        // Without a guess, the question is only whether an eigenvalue is below `below`.
         let Some(guess) = guess.filter(|_| open != 0) else { return (below, open) };
         let found = roots(outboard, inner, guess, open);
         (V::choose(open, found.eigenvalue, below), found.unsure)
@@ -279,15 +281,15 @@ impl<V: Lanes, const N: usize> Inner<V, N> for Pieces<'_, N> {
                     if twist.amax() > 0.0 {
                         walk.joint(twist, V::load(&self.compliance[k]));
                     }
-                    // the drive of the last compliant joint is inboard of every compliance, so its mass stands still
-                    // in every mode
+                    // The drive of the last compliant joint is inboard of all elastic coordinates, so its mass stands
+                    // still in every mode.
                     if k + 1 < self.end {
                         walk.mass(V::load(&self.masses_kg[k]), inertia_per_kg);
                     }
                 }
                 BlockSlot::Body(inertia) => walk.body(inertia),
-                // only the first slot may be the link of the row: any other is a given tube, the same in all eight
-                // arms
+                // Only the first slot may have the link of the row. A link in any other slot is a given tube, the same
+                // in all eight arms.
                 BlockSlot::Links(options) if k > 0 => walk.shared_link(&options[0]),
                 BlockSlot::Links(_) => match self.link {
                     Some(link) if self.case.links_are_compliant => walk.link(link),

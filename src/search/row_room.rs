@@ -10,11 +10,11 @@ use crate::space::slot::Slot;
 pub(crate) struct RowRoom {
     /// Index of the joint among the inner slots (the slots from the row level to the base).
     pub k: usize,
-    /// Which link determines the room.
+    /// The link that determines how much room the joint has.
     of: RoomOf,
 }
 
-/// Which link determines the room.
+/// The link that determines how much room a joint has.
 enum RoomOf {
     /// A link that is given or outboard of the row. The number is the slot of the joint.
     Slot(usize),

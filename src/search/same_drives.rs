@@ -45,8 +45,8 @@ impl ArmProblem<'_> {
         let levels: Vec<u32> = self.level_slots().iter().map(|&slot| arm.options[slot]).collect();
         let sized_anew = self.walk(&levels, |_, _| {}).ok()?;
         let oversized = self.pieces_where(&sized_anew, &arm);
-        // if first fit gives it the same drives, the lighter arm is a design of the study, which an unfinished search
-        // did not list
+        // If first fit gives the lighter arm the same drives, this arm is a design of the study. Only an unfinished
+        // search can have failed to list it.
         (!oversized.is_empty()).then_some(OnSameDrives { exchanged, oversized, arm })
     }
 

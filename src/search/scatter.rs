@@ -130,7 +130,7 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
         let factor = |rating: Rating| factors.get(&rating).copied().unwrap_or(1.0);
         let mut law = *self.problem.slots()[slot].law(option as usize)?;
         if let Some((rating, nominal_rad_per_nm)) = self.bearing(slot, option) {
-            // applied as a difference, so that a factor of 1 gives exactly the nominal compliance
+            // The factor is applied as a difference, so that a factor of 1 gives exactly the nominal compliance.
             law.connection_rad_per_nm += nominal_rad_per_nm * (1.0 / factor(rating) - 1.0);
         }
         let stiffness = self.gear(slot, option).map_or(1.0, |gear| factor(Rating::GearStiffness(gear)));
@@ -139,7 +139,8 @@ impl<'p, 'c> ChosenParts<'p, 'c> {
             Slot::Sized(sized) => {
                 let (drive, mass_kg) =
                     (sized.table.drive(option as usize), sized.table.mass_kg(option as usize));
-                // applied as differences from the mass in the table, so that factors of 1 give exactly this mass
+                // The factors are applied as differences from the mass in the table, so that factors of 1 give exactly
+                // this mass.
                 let motor_kg = drive.motor.mass_kg.unwrap_or(0.0);
                 let gear_kg = drive.mass_kg().map_or(0.0, |both_kg| both_kg - motor_kg);
                 let gear_off = factor(Rating::GearMass(drive.gear.id.clone())) - 1.0;

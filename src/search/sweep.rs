@@ -54,7 +54,8 @@ impl Status {
     }
 }
 
-/// A design that no other design found so far clearly dominates.
+/// A design that no other design found so far clearly dominates, that is, beats in all three objectives by more than
+/// the fraction [`SLACK`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Candidate {
     /// Number of the design in its design space.
@@ -177,7 +178,7 @@ pub struct Sweep<'p, P: FinishRows> {
 struct Pool {
     /// Table that rejects dominated candidates at once.
     archive: Archive,
-    /// The candidates, and how many of them were left after the last removal of dominated candidates.
+    /// The candidates, and the number of them that were left after the last removal of dominated candidates.
     candidates: Mutex<(Vec<Candidate>, usize)>,
 }
 
@@ -202,7 +203,7 @@ impl Pool {
 
     /// Moves the candidates from the buffer of a task into the pool.
     fn empty(&self, buffer: &mut Vec<Candidate>) {
-        // a task compares its own candidates first, so that the lock is held only for the few that remain
+        // A task compares its own candidates first, so that it holds the lock only for the few that remain.
         clear_dominated(buffer);
         let mut pool = lock(&self.candidates);
         let (all, settled) = &mut *pool;
@@ -223,9 +224,9 @@ impl Pool {
     fn candidates(&self) -> Vec<Candidate> {
         let mut all = lock(&self.candidates).0.clone();
         clear_dominated(&mut all);
-        // tasks end in any order; sorting makes the result independent of it
+        // Tasks end in any order. Sorting makes the result independent of this order.
         all.sort_unstable_by_key(|c| c.number);
-        // a design is here twice if an earlier process found it in a task and stopped before the end of this task
+        // A candidate is in the list twice if an earlier process found it in a task that it did not complete.
         all.dedup_by_key(|c| c.number);
         all
     }
@@ -243,7 +244,7 @@ fn share(all: u128, shards: u32, of: u32) -> u128 {
     all / of * shards + all % of * shards / of
 }
 
-/// Drops the candidates that another candidate clearly dominates.
+/// Drops each candidate that another candidate beats in all three objectives by more than [`SLACK`].
 pub(crate) fn clear_dominated(candidates: &mut Vec<Candidate>) {
     let points: Vec<[f64; 3]> = candidates.iter().map(|c| c.objectives.minimized()).collect();
     let kept = not_clearly_beaten(&points, SLACK);
@@ -334,7 +335,7 @@ impl<'p, P: FinishRows> Sweep<'p, P> {
 
     /// The present state, from which another process can continue.
     pub fn state(&self) -> SweepState {
-        // tasks are read first: the candidates of these tasks are in the pools already
+        // The completed tasks are read first. Their candidates are in the pools already.
         let (done, Tally { evaluated, excluded }) = lock(&self.done).clone();
         SweepState {
             tasks: self.tasks().number,
@@ -351,7 +352,7 @@ impl<'p, P: FinishRows> Sweep<'p, P> {
     pub fn run(&self) -> SweepOutcome {
         let sizes = self.problem.level_sizes();
         let before = lock(&self.done).clone();
-        // if the sweep is stopped, the designs of tasks that are not completed count too
+        // If the sweep is stopped, the designs that were visited in uncompleted tasks count too.
         let tally = match self.problem.root() {
             None => {
                 let range = self.range();
@@ -426,7 +427,7 @@ impl Keep for Worker<'_> {
             return;
         }
         let candidate = Candidate { number, objectives };
-        // a design that another of its own group dominates is dominated in the front of all designs too
+        // A design that another design of its own group dominates is dominated in the front of all designs too.
         let dominated =
             group.is_some_and(|group| !self.groups[group].offer(candidate, &mut self.group_buffers[group]));
         if !dominated {

@@ -29,7 +29,7 @@ const TASK_DESIGNS: u128 = 1 << 24;
 /// A visit to all designs of a tree. Other threads can read its progress and stop it.
 pub(crate) struct Visit<'p, P: FinishRows> {
     pub problem: &'p P,
-    /// The row level with every number that is the same in all rows.
+    /// The numbers of the row level that are the same in all rows.
     pub compiled: P::Compiled,
     /// Number of designs visited or excluded so far.
     pub visited: &'p AtomicU64,
@@ -83,7 +83,7 @@ pub(crate) struct Tasks {
 }
 
 impl Tasks {
-    /// Divides some [blocks] of designs into tasks.
+    /// Divides the designs of a range of [blocks] into tasks. `blocks` is the range of the block numbers.
     pub(crate) fn of(problem: &impl FinishRows, blocks: Range<u128>) -> Self {
         let Levels { row, inner, .. } = Levels::of(problem);
         let choices = product(inner);
@@ -177,7 +177,8 @@ impl<'v, 'p, P: FinishRows, K: Keep> Walker<'v, 'p, P, K> {
         }
         let Levels { outer, row: length, inner } = Levels::of(problem);
         let batch = (BATCH_DESIGNS / length.max(1) as usize).clamp(1, ROWS_PER_BATCH);
-        // the rows with the same arm outboard follow each other, one for each combination of options inboard
+        // Rows with the same arm outboard follow each other. There is one for each combination of options inboard of
+        // the row level.
         let choices = product(inner);
         let mut row = rows.start;
         while row < rows.end && !self.visit.stop.load(Ordering::Relaxed) {
@@ -194,7 +195,8 @@ impl<'v, 'p, P: FinishRows, K: Keep> Walker<'v, 'p, P, K> {
                     row + 1
                 }
                 Err(level) => {
-                    // every row with the same options up to this level fails too: skip to the first row that differs
+                    // Every row with the same options up to this level fails too, so the next row is the first that
+                    // differs.
                     let rows_of_level = product(&outer[level + 1..]) * choices;
                     let next = ((row / rows_of_level + 1) * rows_of_level).min(rows.end);
                     let designs = (next - row) * u128::from(length);
@@ -219,8 +221,7 @@ impl<'v, 'p, P: FinishRows, K: Keep> Walker<'v, 'p, P, K> {
     /// The level at which the arm breaks a limit, whatever the options of the later levels are.
     fn begin(&mut self, outer: &[u32], arm: u128) -> Result<(), usize> {
         let wanted = options(outer, arm).unwrap_or_default();
-        // neighbouring rows differ in their last levels, so the partial arms up to the first difference are used
-        // again
+        // Neighbouring rows differ in their last levels. The partial arms up to the first difference are used again.
         let shared = self.options.iter().zip(&wanted).take_while(|(a, b)| a == b).count();
         self.options.truncate(shared);
         for (level, &option) in wanted.iter().enumerate().skip(shared) {

@@ -5,7 +5,8 @@ use super::design_space::{DesignSpace, LinkOption};
 use super::station::Place;
 use nalgebra::{Vector3, Vector6};
 
-/// Properties of a link option that limits and objectives need in addition to its mechanics.
+/// Properties of a link option on which the limits and the objectives of a study depend, in addition to stiffness and
+/// inertia.
 pub(crate) struct OptionAttributes {
     /// Mass of the link \[kg\].
     pub mass_kg: f64,
@@ -57,8 +58,8 @@ impl StressCheck {
     pub(crate) fn ratio(&self, wrench: &Vector6<f64>, at_m: &Vector3<f64>, place: &Place) -> f64 {
         let [axial_n, torsion_nm, moment_y_nm, moment_z_nm] = place.local(wrench, at_m);
         let (y, z) = (moment_y_nm.abs() * self.per_moment_y, moment_z_nm.abs() * self.per_moment_z);
-        // in a corner of a rectangle the stresses of both bending moments add; in a circle their maxima are at
-        // different points
+        // In a corner of a rectangle the stresses of both bending moments add. In a circle the two stresses have their
+        // maxima at different points.
         let bending = if self.round { libm::hypot(y, z) } else { y + z };
         let normal = axial_n.abs() * self.per_axial_n + bending;
         let shear = torsion_nm.abs() * self.per_torsion;
@@ -71,8 +72,8 @@ pub(crate) fn von_mises(normal: f64, shear: f64) -> f64 {
     (normal * normal + 3.0 * shear * shear).sqrt()
 }
 
-/// The properties of `option` as the section of a link with the length `length_m` \[m\], checked against the limits of
-/// `space`.
+/// The properties of a link of the length `length_m` \[m\] with the material and section of `option`. The limit of
+/// `space` on the slenderness of walls is checked.
 pub(crate) fn attributes_of(space: &DesignSpace, option: &LinkOption, length_m: f64) -> OptionAttributes {
     let mass_kg = option.mass_kg_per_m() * length_m;
     OptionAttributes {

@@ -17,7 +17,7 @@ use super::state::StationState;
 use super::station::StationSlot;
 use crate::sizing::bearing::{BearingDemand, BearingLoad};
 
-/// The largest loads found so far, each as three numbers: the square of the moment \[N² m²\], the square of the
+/// The largest loads found so far. Each load has three numbers: the square of the moment \[N² m²\], the square of the
 /// radial force \[N²\], and the axial force \[N\].
 #[derive(Default)]
 struct Largest {
@@ -72,8 +72,7 @@ fn take(largest: &mut [f64; 3], load: [f64; 3]) {
 impl ArmProblem<'_> {
     /// Loads on the output bearing of the joint in `slot`: the largest over the cases with the indices `cases`. The arm
     /// outboard of the joint has the states `states`, one for each case, and the options `options`, one for each slot
-    /// (piece of the arm, tip first).
-    /// The loads are zero if the joint has no bearing.
+    /// (piece of the arm, tip first). The loads are zero if the joint has no bearing.
     pub(crate) fn bearing_demand(
         &self,
         cases: &[usize],

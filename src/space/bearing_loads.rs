@@ -16,7 +16,7 @@ use crate::sizing::bearing::{BearingLimits, BearingLoad};
 use crate::sizing::demand::JointMotion;
 use nalgebra::Vector3;
 
-/// What must be known of a space, in addition to poses and masses, to compute the loads on output bearings.
+/// The data of a space that the loads on output bearings depend on, in addition to poses and masses.
 pub(crate) struct BearingLoads {
     /// The joints of the chain that move by themselves, turning or sliding, tip first. A passive joint, which moves only
     /// together with its driving joints, is none of them.
@@ -36,7 +36,7 @@ pub(crate) struct Mover {
     pub slot: usize,
     /// Acceleration of the joint in normal operation \[rad/s²\].
     pub acceleration_rad_s2: f64,
-    /// Ratio of the deceleration in its emergency stop to this acceleration, at least 1.
+    /// Ratio of the deceleration in the joint's emergency stop to `acceleration_rad_s2`, at least 1.
     pub stop_factor: f64,
 }
 
@@ -81,7 +81,8 @@ impl Lever {
             Some(SpacePiece::Link(Link { vector_m, body: LinkBody::Tube { section, .. }, .. })) => {
                 Self { link_slot, lever_m: vec![half_m(vector_m, section)] }
             }
-            // without a tube next to the joint, the force acts at the point that the chain's geometry gives
+            // Without a tube next to the joint, the force acts at the point that the geometry of the chain gives, so
+            // the lever is zero.
             _ => Self { link_slot: None, lever_m: vec![0.0] },
         }
     }
@@ -120,7 +121,8 @@ pub(crate) fn at_centre(load: &JointLoad, bearing: &Bearing) -> BearingLoad {
 fn half_width_m(axis: &Vector3<f64>, vector_m: &Vector3<f64>, section: &Section) -> f64 {
     let along = section_frame(vector_m).tr_mul(axis);
     let (width_m, height_m) = section.outer_m();
-    // exact for a box with one side at right angles to the axis, and for a round tube at right angles to the axis
+    // The result is exact for a rectangular section with one side at right angles to the axis, and for a round tube at
+    // right angles to the axis.
     libm::hypot(width_m / 2.0 * along.y, height_m / 2.0 * along.z)
 }
 
@@ -167,14 +169,15 @@ fn has_bearing(slot: &Slot, joint: &SpaceJoint) -> bool {
     }
 }
 
-/// Whether some rating of the bearing of a joint is known, so that the bearing can fail a check. For a sized joint,
-/// whether this is so with some drive.
+/// Whether some rating of the output bearing of a joint is known, so that the bearing can fail a check. For a sized
+/// joint, it is enough that a rating is known with some drive.
 fn is_checked(slot: &Slot, joint: &SpaceJoint) -> bool {
     match slot {
         Slot::Sized(sized) => {
             (0..sized.table.len()).any(|i| sized.table.limits(i).bearing != BearingLimits::NONE)
         }
-        // every known rating gives a finite limit, whatever speed and life are; so 1 is good enough for both
+        // Every known rating gives a finite limit, whatever speed and life are. The value 1 for both is therefore good
+        // enough.
         _ => BearingLimits::of(joint.bearing.stated().as_ref(), 1.0, 1.0) != BearingLimits::NONE,
     }
 }

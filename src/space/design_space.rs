@@ -130,7 +130,8 @@ pub struct DesignSpace {
     pub pieces: Vec<SpacePiece>,
     /// Every case of the study: the cases in which the arm is judged and the cases in which it is sized.
     pub cases: Vec<Case>,
-    /// Indices of the cases over which the objectives are taken. Of these cases the worst one counts.
+    /// Indices of the judged cases, over which the objectives are taken: the largest deflection and the smallest lowest
+    /// mode of these cases count.
     pub judged_cases: Vec<usize>,
     /// Indices of the cases in which joints are sized and stress is checked.
     pub sizing_cases: Vec<usize>,
@@ -313,7 +314,7 @@ pub struct LinkChoice {
     pub excerpt: Option<Excerpt>,
 }
 
-/// Which options of the whole list of a link were kept in a reduced space.
+/// The options of a link that were kept in a reduced space, as places in the whole list of the link.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Excerpt {
     /// Index of each kept option in the whole list, ascending.
@@ -463,7 +464,7 @@ impl LinkOption {
     }
 }
 
-/// A driven joint, and another joint that it turns along.
+/// A driven joint, and another joint that turns along with it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SpaceLinkage {
     /// Number of the piece that is the driven joint.
@@ -481,8 +482,8 @@ impl DesignSpace {
         self.joints().any(|(_, joint)| joint.coupled.is_some() || !joint.turns_with.is_empty())
     }
 
-    /// Whether the motor of some sized drive stands elsewhere than at its joint. The motor of a sized prismatic joint
-    /// always does: it stays where the joint begins.
+    /// Whether the motor of some sized drive does not stand at its joint. This is always so for a sized prismatic
+    /// joint: its motor stays where the joint begins.
     pub fn has_motors_elsewhere(&self) -> bool {
         self.pieces.iter().any(|piece| piece.motor_place(0).is_some())
     }
@@ -510,7 +511,7 @@ impl DesignSpace {
         })
     }
 
-    /// All pairs of a driven joint and another joint that it turns along.
+    /// All pairs of a driven joint and another joint that turns along with it.
     pub(crate) fn linkages(&self) -> Vec<SpaceLinkage> {
         let named = |name: &str| self.joints().find(|(_, joint)| joint.name == name);
         let direct = |name: &str| {

@@ -20,14 +20,15 @@ use crate::mechanics::across;
 use crate::mechanics::beam::section_frame;
 use nalgebra::{Rotation3, Vector3};
 
-/// A layer: what the search adds to an arm in one step. Each layer becomes one slot of the arm ([`slot`](super::slot)).
+/// A layer: one element that the search adds to an arm in one step. Each layer becomes one slot of the arm
+/// ([`slot`](super::slot)).
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Layer<'s> {
     /// A rotary joint, link or prismatic joint of the chain.
     Piece(&'s SpacePiece),
     /// A spring that lets a joint tilt about an axis at right angles to the joint's axis.
     Tilt(Tilt<'s>),
-    /// A rotational spring of the guide of a prismatic joint.
+    /// A rotational spring of the guide (rail and runner blocks) of a prismatic joint.
     Guide(GuideSpring<'s>),
     /// A spring of the output bearing that comes with the gear chosen for a joint.
     Bearing(BearingSpring<'s>),
@@ -112,9 +113,9 @@ pub(crate) struct Tilt<'s> {
 /// One of the two springs of the output bearing of a joint whose gear is chosen.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BearingSpring<'s> {
-    /// The joint that has the bearing.
+    /// The joint to which the bearing belongs.
     pub joint: &'s SpaceJoint,
-    /// Which of the two axes at right angles to the joint's axis the spring turns about (0 or 1).
+    /// Number of the axis about which the spring turns: 0 or 1 for the two axes at right angles to the joint's axis.
     which: usize,
 }
 
@@ -199,7 +200,7 @@ impl Tilt<'_> {
 /// Where a motor stands on a piece.
 #[derive(Clone, Copy, PartialEq)]
 enum Stands {
-    /// It moves with the piece.
+    /// The motor moves with the piece.
     MovingWith,
     /// The motor stands where the piece begins, and does not move with it.
     AtStartOf,
@@ -326,7 +327,7 @@ impl DesignSpace {
         out.extend(self.motors_on(index, Stands::AtStartOf));
     }
 
-    /// A prismatic joint with the effects that act on it.
+    /// A prismatic joint, changed by the effects that act on it.
     fn prismatic_piece(&self, slide: &SpacePrismatic) -> PrismaticPiece {
         let nominal = slide.joint.piece(0);
         match self.affected(Piece::Prismatic(nominal.clone())) {
@@ -357,15 +358,15 @@ impl DesignSpace {
         here.map(|end| along(&vector_m, &end.point_m)).collect()
     }
 
-    /// The layer with the forces of the springs that act on `on`, which is one side of a joint, a link or the base. The
-    /// layer belongs to the piece number `piece`. `None` if no spring acts on `on`.
+    /// The layer with the forces of the springs that act on `on`: one side of a joint, a link or the base. The layer
+    /// belongs to the piece with the number `piece`. `None` if no spring acts there.
     fn pulled(&self, piece: usize, on: Side) -> Option<(usize, Layer<'_>)> {
         let is_pulled = self.springs.iter().any(|spring| spring.sides().contains(&on));
         is_pulled.then_some((piece, Layer::Springs(on)))
     }
 
-    /// The layers of the motors that stand on the piece number `piece`, on the side that `stands` says. The layer of the motor of a sized
-    /// prismatic joint includes its screw or rack.
+    /// The layers of the motors that stand on the piece with the number `piece`, on the side that `stands` gives. The
+    /// layer of the motor of a sized prismatic joint includes its screw or rack.
     fn motors_on(&self, piece: usize, stands: Stands) -> impl Iterator<Item = (usize, Layer<'_>)> {
         let is_joint = !matches!(self.pieces[piece], SpacePiece::Link(_) | SpacePiece::Choice(_));
         let moves = stands == Stands::MovingWith;
@@ -395,12 +396,12 @@ impl DesignSpace {
             Some(Piece::Joint(joint)) => joint,
             _ => nominal,
         };
-        // an effect may replace the curve, so the joint model is applied to it again
+        // An effect may replace the torsion curve, so the joint model is applied to the new curve too.
         affected.law.curve = affected.law.curve.reduced(self.joints);
         affected
     }
 
-    /// A link with the effects that act on it.
+    /// A link, changed by the effects that act on it.
     pub(crate) fn link_piece(&self, link: &Link) -> LinkPiece {
         let nominal = link_piece(link);
         match self.affected(Piece::Link(nominal.clone())) {
@@ -409,7 +410,7 @@ impl DesignSpace {
         }
     }
 
-    /// Gravity, base and water around the arm with all effects, as a structure without pieces.
+    /// Gravity, base and water around the arm, as a structure without pieces. Effects that act on them are included.
     pub(crate) fn surroundings(&self) -> Structure {
         self.with_effects(Vec::new())
     }
@@ -481,13 +482,14 @@ fn nominal_joint(joint: &SpaceJoint, curve: Curve) -> JointPiece {
     }
 }
 
-/// The springs of a joint's housing that tilts about axes of its own; none if it is rigid.
+/// The springs of a joint's housing that tilts about axes of its own; none if the housing is rigid.
 fn leans<'s>(joint: &JointPiece) -> impl Iterator<Item = Layer<'s>> + use<'s> {
     let springs = across(&joint.axis).into_iter().zip(joint.lean_rad_per_nm).filter(|(_, c)| *c > 0.0);
     springs.map(|(axis, c)| Layer::Tilt(Tilt::linear(About::Fixed(axis), c)))
 }
 
-/// The two springs of a bearing or base that tilts; none if it is rigid. The compliance of each is `rad_per_nm`.
+/// The two springs of a bearing or base that tilts about the axes `axes`, each with the compliance `rad_per_nm`; none
+/// if the compliance is 0.
 fn tilts(axes: [About<'_>; 2], rad_per_nm: f64) -> impl Iterator<Item = Layer<'_>> {
     let present = axes.into_iter().filter(move |_| rad_per_nm > 0.0);
     present.map(move |about| Layer::Tilt(Tilt::linear(about, rad_per_nm)))

@@ -155,7 +155,7 @@ impl ArmProblem<'_> {
     /// Number that a design of this (reduced) space has in the whole space.
     pub fn whole_number(&self, design: u128) -> u128 {
         let here = options(self.level_sizes_slice(), design).unwrap_or_default();
-        // a level that was not reduced has the same size and the same options in both spaces
+        // A level that was not reduced has the same size and the same options in both spaces.
         let (sizes, places): (Vec<u32>, Vec<u32>) = self
             .excerpts()
             .zip(here.iter().zip(self.level_sizes_slice()))

@@ -12,7 +12,7 @@ use crate::sizing::fit::{FitRequirement, LinkRoom};
 use nalgebra::{Unit, Vector3};
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// The room that the link of one joint leaves for gear and motor: their largest widths.
+/// The space that the link of one joint leaves for gear and motor: their largest widths.
 pub(crate) struct RoomAtJoint {
     /// Slot of the link whose section limits the widths of gear and motor.
     pub link_slot: usize,
@@ -57,8 +57,8 @@ impl RoomAtJoint {
     }
 }
 
-/// Number of the link that belongs to the joint with number `place` in the chain; `None` if there is no tube before
-/// the next joint.
+/// Number of the link that belongs to the joint with the number `place` in the chain: the first tube outboard of the
+/// joint. `None` if there is no tube before the next joint.
 pub(crate) fn carried_link(pieces: &[SpacePiece], place: usize) -> Option<usize> {
     let outboard = pieces.iter().enumerate().skip(place + 1);
     let mut before_next_joint =
@@ -71,8 +71,8 @@ pub(crate) fn carried_link(pieces: &[SpacePiece], place: usize) -> Option<usize>
     before_next_joint.find(|(_, piece)| is_tube(piece)).map(|(link, _)| link)
 }
 
-/// Length of the tubes that begin at the link of the joint with number `place` and go on in its direction, up to the next
-/// joint \[m\]; `None` if there are none.
+/// Length \[m\] of the tubes from the link of the joint with the number `place` up to the next joint. Only tubes that
+/// follow each other in the direction of this link count. `None` if the joint has no link.
 pub(crate) fn carried_length_m(pieces: &[SpacePiece], place: usize) -> Option<f64> {
     let first = carried_link(pieces, place)?;
     let tube = |piece: &SpacePiece| match piece {
@@ -118,7 +118,7 @@ fn width_across_m(axis: &Unit<Vector3<f64>>, vector_m: &Vector3<f64>, section: &
     if along.x.abs() > ALONG_COSINE {
         return width_m.min(height_m);
     }
-    // exact for a box with one side along the axis, and for a round tube
+    // The result is exact for a rectangular section with one side along the axis, and for a round tube.
     libm::hypot(width_m * along.z, height_m * along.y) / libm::hypot(along.y, along.z)
 }
 

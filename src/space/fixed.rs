@@ -49,14 +49,15 @@ impl ArmProblem<'_> {
         let joints_before =
             space.pieces[..piece].iter().filter(|p| matches!(p, SpacePiece::Joint(_))).count();
         let reach_m = reaches_m(space, sizing)[joints_before];
-        // the study states a single mass for the drive; it shows which of the two masses of the gear was used
+        // The study states a single mass for the drive. This mass shows whether the gear is counted with the mass of a
+        // component set or of a housed unit.
         let set_mass_kg = gear.mass_component_set_kg.zip(motor.mass_kg).map(|(g, m)| g + m);
         let gear_mass = match set_mass_kg.is_some_and(|m| (m - mass_kg).abs() < 1e-9) {
             true => GearMass::ComponentSet,
             false => GearMass::HousedUnit,
         };
         let (joint_motion, after) = (joint.motion(&space.motion, reach_m), joint.stages.after);
-        // the bearing of a gear at the motor is not the bearing of the joint
+        // With a stage behind the gear, the bearing of the gear is not the bearing of the joint.
         let bearing = if after == Stage::NONE { joint.bearing } else { BearingSource::Stated(None) };
         Some(FixedDrive {
             drive: Drive {

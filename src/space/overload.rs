@@ -7,11 +7,11 @@ use crate::sizing::check::{Check, CheckState};
 use crate::sizing::checks::{binding, checks};
 
 impl ArmProblem<'_> {
-    /// The first piece from the tip that is overloaded in one of `cases`, for an arm with these `options`, one for each
-    /// slot (piece of the arm, tip first). Drives that the study gives by name count too, as far as their ratings in
-    /// `catalogs` are known. `None` if no piece is overloaded. Otherwise the number of the piece (base to tip) and the
-    /// check that its drive fails. The check is `None` for a link whose stress is too high, and for a drive of which no
-    /// check can be made.
+    /// Finds the first piece from the tip that is overloaded in one of `cases`. The arm has these `options`, one for
+    /// each slot (piece of the arm, tip first). Drives that the study gives by name are checked too, as far as their
+    /// ratings in `catalogs` are known. Returns the number of the piece (base to tip) and the check that its drive
+    /// fails. The check is `None` for a link whose stress is too high, and for a drive of which no check can be made.
+    /// The result is `None` if no piece is overloaded.
     pub(crate) fn overload(
         &self,
         options: &[u32],
@@ -50,7 +50,7 @@ impl ArmProblem<'_> {
         slot: usize,
         catalogs: &Catalogs,
     ) -> Option<Check> {
-        // the slots of effects and bearings have no drive
+        // Slots of effects and bearings have no drive.
         self.piece_in_slot(slot)?;
         let fixed = self.fixed_drive(self.piece_of_slot(slot), catalogs)?;
         let mut failed =

@@ -4,9 +4,9 @@ use super::problem::{ArmProblem, Partial};
 use super::slot::Slot;
 
 impl ArmProblem<'_> {
-    /// Mass of each piece of a complete arm with everything outboard of it \[kg\], base to tip. The drive, the bearing
-    /// and the bodies of the piece count, as do stages, and motors of other joints that stand on it. A motor that does
-    /// not stand at its joint counts where it stands. The payload does not count.
+    /// Mass of each piece of a complete arm together with everything outboard of it \[kg\], base to tip. A piece has
+    /// its drive, bearing, bodies and stages, and the motors of other joints that stand on it. A motor that does not
+    /// stand at its joint counts where it stands. The payload does not count.
     pub(crate) fn masses_inward_kg(&self, complete: &Partial) -> Vec<f64> {
         let mut out = vec![0.0; self.space().pieces.len()];
         let mut total_kg = 0.0;

@@ -123,7 +123,7 @@ struct Posed {
 impl Posed {
     fn new(space: &DesignSpace, case: &Case, layers: &[(usize, Layer)]) -> Self {
         let around = space.surroundings();
-        // the water of the case replaces the water that an effect states
+        // The water of the case takes the place of the water that an effect states.
         let structure = Structure { water: case.water.or(around.water), ..around };
         let walk = Walk::new(space, case);
         let (start_wrench, start_inertia) = payload_in(space, case, structure.water, &walk);
@@ -164,8 +164,8 @@ impl Posed {
         let StationSlot::Link { options, place, carried } = &mut self.station.slots[slot] else { return };
         let placed = |tube: &Tube| {
             let mut placed = tube.condensed.place(&place.root_m, &place.end_m, &place.frame, down);
-            // the bodies move with the root of the tube and have a slot of their own inboard, so their inertia is
-            // subtracted here
+            // The bodies on the tube move with its root and have a slot of their own inboard of the tube. Their inertia
+            // is therefore subtracted here.
             let mut root = placed.inertia[0].fixed_view_mut::<6, 6>(0, 0);
             root -= carried.inertia;
             placed
@@ -269,7 +269,7 @@ impl Builder<'_> {
             own_nm: 0.0,
             inertia_per_kg: body_inertia(1.0, at_m, &Matrix3::zeros()),
             weight_per_kg: weight_wrench(self.structure.gravity_m_s2, &self.structure.down, at_m),
-            // rounding leaves small components of the other plane in an axis that was rotated
+            // Rounding gives a rotated axis small components of the other plane. Such components do not count.
             block: usize::from(PLANES[1].iter().any(|&i| twist[i].abs() > ROUNDING * twist.amax())),
             turns: Vec::new(),
             is_passive: false,
@@ -294,7 +294,7 @@ impl Builder<'_> {
             return self.tube(number, (&link.vector_m, &link.bodies), 1);
         }
         let StationSlot::Body { inertia, weight } = point else { return point };
-        // a harness on a rigid offset has mass but no compliance, so both together are one rigid body
+        // A harness on a rigid offset has mass but no compliance, so offset and harness are one rigid body.
         let place = self.place_of(&link.vector_m);
         let down = &self.structure.down;
         let placed = tube.condensed.place(&place.root_m, &place.end_m, &place.frame, down);
@@ -355,10 +355,10 @@ fn station_link(
     let tips: Vec<Vector3<f64>> =
         (0..6).map(|g| displacement_at(&placed.end.column(g).into(), tip_m)).collect();
     StationLink {
-        // the part of the inertia that does not depend on the frequency, for motions of the root: the inertia of the
-        // link as a rigid body
+        // This part of the inertia does not depend on the frequency and is taken for motions of the root: it is the
+        // inertia of the link as a rigid body.
         inertia: placed.inertia[0].fixed_view::<6, 6>(0, 0).into_owned(),
-        // the weight of a uniform tube acts at mid-length
+        // The weight of a uniform tube acts at mid-length.
         weight: weight_wrench(tube.weight_n_per_m * tube.length_m, down, &place.centre_m),
         end: placed.end,
         own_weight_end: placed.end_per_weight * tube.weight_n_per_m + placed.end_under_bodies,
@@ -369,7 +369,7 @@ fn station_link(
     }
 }
 
-/// Lists at every driven joint in `slots` the joints that it turns along.
+/// Enters, at every driven joint in `slots`, the joints that turn along with it.
 fn link_up(space: &DesignSpace, layers: &[(usize, Layer)], slots: &mut [StationSlot]) {
     let of_piece = |piece: usize| {
         layers
@@ -437,8 +437,8 @@ fn ends_by_block(placed: &PlacedLink) -> [usize; 6] {
         let motions = placed.end.column(column);
         PLANES[plane].iter().map(|&i| motions[i].abs()).fold(0.0, f64::max)
     };
-    // a coordinate that moves nothing (a direction without compliance) can be in either block; such coordinates come
-    // last and fill up the blocks
+    // A coordinate that moves nothing (a direction without compliance) can be in either block. Such coordinates come
+    // last and fill up the blocks.
     let mut order = ALL;
     order.sort_by_key(|&g| part(g, 0).max(part(g, 1)) == 0.0);
     let (mut blocks, mut counts) = ([0; 6], [0; 2]);
@@ -478,7 +478,8 @@ impl<const N: usize> Block<N> {
 /// to them.
 fn block_link<const N: usize>(placed: &PlacedLink, motions: [usize; N]) -> BlockLink<N> {
     let mut ends = [0; N];
-    // one block of six motions has all end coordinates; of two blocks, each has the three coordinates that move it
+    // A single block of six motions has all end coordinates. Of two blocks, each has the three end coordinates that
+    // move it.
     if N == 6 {
         ends.copy_from_slice(&ALL[..N]);
     } else {
@@ -490,7 +491,8 @@ fn block_link<const N: usize>(placed: &PlacedLink, motions: [usize; N]) -> Block
     let part = |rows: [usize; N], columns: [usize; N]| {
         placed.inertia.map(|m| SMatrix::<f64, N, N>::from_fn(|i, j| m[(rows[i], columns[j])]))
     };
-    // in the matrices of a condensed link, rows 0-5 are the motion of the root and rows 6-11 the end coordinates
+    // In the matrices of a condensed link, rows 0 to 5 belong to the motions of the root and rows 6 to 11 to the end
+    // coordinates.
     let inner = ends.map(|g| 6 + g);
     BlockLink {
         root: part(motions, motions),

@@ -33,7 +33,7 @@ impl RailDrive {
 }
 
 /// The motion of a joint that slides, with metres in the place of radians. The tip moves as far as the joint does, so
-/// the lever is 1 whatever the smallest lever of joints that turn.
+/// the lever is 1. The smallest lever that the study sets is for joints that turn, and does not apply.
 fn along_its_way(asked: &MotionRequirement, speed_m_s: f64) -> JointMotion {
     MotionRequirement { min_lever_m: 1.0, ..asked.clone() }.joint_motion(1.0, Some(speed_m_s))
 }

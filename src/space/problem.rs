@@ -109,7 +109,7 @@ impl<'c> ArmProblem<'c> {
             }
             slots.push(match layer {
                 Layer::Piece(SpacePiece::Joint(_) | SpacePiece::Prismatic(_)) => {
-                    // every joint of the space is tabulated
+                    // The table has every joint of the space, so a slot is always found.
                     joints.slot(piece).unwrap_or(Slot::Offset { mass_kg: 0.0 })
                 }
                 Layer::Piece(SpacePiece::Link(link)) => link_slot(space, link),
@@ -120,7 +120,7 @@ impl<'c> ArmProblem<'c> {
                 Layer::Bodies(carried) => Slot::Offset { mass_kg: carried.mass_kg() },
                 Layer::Tilt(tilt) => Slot::Given { law: tilt.law(), mass_kg: 0.0 },
                 Layer::Guide(spring) => Slot::Given { law: spring.law(), mass_kg: 0.0 },
-                // the station has the weights and inertias of these layers, which do not count in the mass of a design
+                // These layers have weight and inertia in the station, but no mass that counts in a design.
                 Layer::Mass(_) | Layer::Travelling(_) | Layer::Springs(_) => Slot::Offset { mass_kg: 0.0 },
             });
         }
@@ -335,7 +335,7 @@ impl<'c> ArmProblem<'c> {
             Slot::Link { options, .. } => self.add_link(slot, option, &options[option as usize], to),
             Slot::Offset { mass_kg } => self.add_offset(slot, *mass_kg, to),
         };
-        // every slot adds mass or leaves it the same, so the limit on mass can be checked after each slot
+        // No slot reduces the mass, so the limit on mass can be checked after each slot.
         added && self.space.constraints.mass_max_kg.is_none_or(|max| to.mass_kg <= max)
     }
 
@@ -356,11 +356,11 @@ impl<'c> ArmProblem<'c> {
         self.add_joint(slot, &sized.laws[index], sized.table.mass_kg(index) - sized.away_kg[index], to)
     }
 
-    /// Demand on a joint over the sizing cases. It is made of the largest static torque (Eq 7, plus torque that acts
-    /// on the joint in addition to weight and load) and of the largest inertia outboard. The motion turns both into
-    /// torques (Eqs 8-12). The largest torque and the
-    /// largest inertia may come from different cases, so the demand is on the safe side. As in the paper,
-    /// Eq 8 uses the torque of weight and load alone: a counterbalance does not reduce what must be accelerated.
+    /// Demand on a joint over the sizing cases. It is made of the largest static torque (Eq 7, plus torque that acts on
+    /// the joint in addition to weight and load) and of the largest inertia outboard. The motion turns both into
+    /// torques (Eqs 8-12). The largest torque and the largest inertia may come from different cases, so the demand is
+    /// on the safe side. As in the paper, Eq 8 uses the torque of weight and load alone: a counterbalance does not
+    /// reduce the mass that is accelerated.
     pub(crate) fn demand(
         &self,
         outboard: &Partial,
@@ -423,7 +423,7 @@ impl<'c> ArmProblem<'c> {
             return false;
         }
         to.mass_kg += link.mass_kg;
-        // with a limit on cost, a study with a material of unknown cost was refused when it was read
+        // If the study limits the cost, it has no material of unknown cost: such a study is refused when it is read.
         to.cost_eur += link.cost_eur.unwrap_or(0.0);
         to.group = to.group.with(link.material);
         if self.space.constraints.material_cost_max_eur.is_some_and(|max| to.cost_eur > max) {
@@ -434,10 +434,10 @@ impl<'c> ArmProblem<'c> {
             let outboard = state.wrench;
             state.add_link(&options[option as usize]);
             let Some(stress) = &link.stress else { continue };
-            // in a sizing case the arm accelerates; in the other cases it is at rest
+            // In a sizing case the arm accelerates. In the other cases it is at rest.
             let factor = if self.space.sizing_cases.contains(&case) { self.peak_factor } else { 1.0 };
-            // between the ends, only the weight of the link, its bodies and the springs change force and moment: so
-            // the stress is checked at both ends and at the points where springs pull
+            // Between the ends, only the weight of the link, its bodies and the springs change force and moment. The
+            // stress is therefore checked at both ends and at the points where springs pull.
             let at_root = state.wrench + carried.weight;
             for (wrench, at_m) in [(&outboard, &place.end_m), (&at_root, &place.root_m)] {
                 to.stress_ratio = to.stress_ratio.max(stress.ratio(wrench, at_m, place) * factor);
@@ -461,9 +461,9 @@ impl<'c> ArmProblem<'c> {
     }
 }
 
-/// Selects the row level, whose options are evaluated eight at a time. It is the innermost link. If this link has fewer
-/// than eight options and fewer than the innermost level, it is the innermost level. The drives inboard of the row
-/// level are the same for a whole row.
+/// Selects the row level, whose options are evaluated eight at a time. It is the level of the innermost link, or the
+/// innermost level if this link has fewer than eight options and fewer options than the innermost level. The drives
+/// inboard of the row level are the same for a whole row.
 fn row_level(slots: &[Slot], level_slots: &[usize], level_sizes: &[u32]) -> usize {
     let innermost = level_slots.len().saturating_sub(1);
     let link = level_slots.iter().rposition(|&slot| matches!(slots[slot], Slot::Link { .. }));
@@ -560,8 +560,8 @@ impl OutwardIn for ArmProblem<'_> {
     }
 
     fn objectives(&self, complete: &Partial) -> Option<Objectives> {
-        // the fast computation of the lowest mode covers neither linkages nor masses that depend on the drive of
-        // another joint
+        // The fast computation of the lowest mode does not know linkages, nor masses that depend on the drive of
+        // another joint.
         if self.space.has_linkages() || self.space.has_motors_elsewhere() {
             return Some(full_objectives(&self.arm_of(complete)?, &self.load_cases()));
         }

@@ -2,9 +2,9 @@
 //!
 //! The couplings are the entries of the arm's mass matrix: `M_ij` is the inertia between the motions of the joints i
 //! and j. While joint j accelerates by `α_j` and all others stand still, the drive of joint i must hold `M_ij α_j` in
-//! addition to its static torque. Drives are sized for the acceleration of their own joint
-//! ([`demand`](crate::sizing::demand)), since the vendors' procedures size one axis at a time. So this torque is no
-//! part of their demand.
+//! in addition to its static torque. Drives are sized for the acceleration of their own joint
+//! ([`demand`](crate::sizing::demand)), because the vendors' procedures size one axis at a time. The torque due to
+//! another joint is therefore not part of the demand.
 
 use super::bearing_loads::Mover;
 use super::problem::ArmProblem;
@@ -15,7 +15,7 @@ use super::station::{StationJoint, StationSlot};
 pub(crate) struct Reaction {
     /// Piece of the joint that stands still, counted from the base.
     pub piece: usize,
-    /// Piece of the joint whose ramp gives the largest torque in a ramp.
+    /// Piece of the joint whose ramp (acceleration in normal operation) gives the largest torque in a ramp.
     pub ramps: usize,
     /// Piece of the joint whose emergency stop gives the largest torque in a stop.
     pub stops: usize,
@@ -53,8 +53,8 @@ impl ArmProblem<'_> {
         })
         .ok()?;
         let largest = |here: usize| {
-            // the largest torque that joint `here` holds if accelerations are `times` as large as in ramps,
-            // with the index of the joint that moves
+            // The largest torque that joint `here` holds if accelerations are `times` as large as in ramps, with the
+            // piece of the joint that moves.
             let with_mover = |times: fn(&Mover) -> f64| {
                 let held = |other: usize| {
                     let acceleration = times(&movers[other]) * movers[other].acceleration_rad_s2;

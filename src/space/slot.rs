@@ -53,12 +53,12 @@ impl SizedJoint<'_> {
         self.all_fits
     }
 
-    /// The drives of the joint, sorted into kinds. The drives of a kind have equal mass and an equal torsion curve,
-    /// so no objective differs between them, but each has torque limits of its own. Kinds are in the order of their
-    /// first drives. The drives of a kind are in ascending order.
+    /// The drives of the joint, sorted into kinds. The drives of a kind have equal mass, an equal torsion curve and an
+    /// equal bearing compliance, so no objective differs between them. Each drive has torque limits of its own. Kinds
+    /// are in the order of their first drives. The drives of a kind are in ascending order.
     pub(crate) fn kinds(&self) -> Vec<Vec<u32>> {
         let mut kinds: Vec<Vec<u32>> = Vec::new();
-        // drives are sorted by mass, so a drive can belong only to a kind of the same mass
+        // Drives are sorted by mass, so a drive can belong only to a kind of the same mass.
         let mut first_of_mass = 0;
         for index in 0..self.table.len() {
             let of_kind = |kind: &&mut Vec<u32>| self.are_ties(kind[0] as usize, index);
@@ -73,8 +73,8 @@ impl SizedJoint<'_> {
         kinds
     }
 
-    /// The drives that meet `demand` and are ties of the drive `index`, that is, equal to it in mass, torsion curve and
-    /// bearing. The drive itself is among them if it meets the demand.
+    /// The drives that meet `demand` and are ties of the drive `index`: equal to it in mass, torsion curve and bearing
+    /// compliance. The drive itself is among them if it meets the demand.
     pub(crate) fn ties_of<'t>(
         &'t self,
         index: usize,
@@ -83,7 +83,7 @@ impl SizedJoint<'_> {
         self.table.all_fits(demand).filter(move |other| self.are_ties(*other, index))
     }
 
-    /// Whether two drives are ties: equal in mass, torsion curve and bearing compliance.
+    /// Whether two drives are ties: equal in mass (at the joint and elsewhere), torsion curve and bearing compliance.
     pub(crate) fn are_ties(&self, a: usize, b: usize) -> bool {
         self.table.mass_kg(a) == self.table.mass_kg(b)
             && self.laws[a] == self.laws[b]
@@ -240,7 +240,7 @@ pub(crate) fn rail_slot<'c>(
     };
     let laws = (0..table.len()).map(law).collect();
     let tilts_rad_per_nm = vec![0.0; table.len()];
-    // screw and motor stay where the joint begins
+    // Screw and motor stay where the joint begins, so their whole mass counts as mass away from the joint.
     let away_kg = (0..table.len()).map(|i| table.mass_kg(i)).collect();
     Slot::Sized(Arc::new(SizedJoint { table, laws, tilts_rad_per_nm, away_kg, all_fits: false }))
 }

@@ -83,7 +83,7 @@ impl StationState {
     /// which is the same joint or a joint inboard of it.
     pub(crate) fn inertia_between(&self, slot: usize, joint: &StationJoint, moving: &StationJoint) -> f64 {
         let momentum = self.momentum(slot, moving);
-        // everything outboard of a passive joint moves with the rotation of that joint too
+        // Everything outboard of a passive joint moves with the rotation of that joint too.
         let with_passive = |turned: &Turned| {
             let outboard = self.outboard_of(turned.slot);
             outboard.map_or(0.0, |(_, of)| turned.twist.dot(&self.momentum_of(of, turned.slot, moving)))
@@ -125,7 +125,7 @@ impl StationState {
         self.tip_m += link.tip * end;
         let momentum = self.inertia * link.end;
         for g in 0..6 {
-            // the end coordinates have unit stiffness, so their diagonal inertias are the terms of Dunkerley's sum
+            // The end coordinates have unit stiffness, so their diagonal inertias are the terms of Dunkerley's sum.
             let own: f64 = link.end.column(g).dot(&momentum.column(g)) + link.end_inertia[g];
             self.trace_s2[link.block[g]] += own;
         }

@@ -17,7 +17,7 @@ use crate::mechanics::lowest::BlockLink;
 use crate::mechanics::{Twist, Wrench, angular, body_inertia, force_wrench, linear, stack};
 use nalgebra::{Matrix3, Matrix3x6, Matrix6, Rotation3, SMatrix, SVector, Vector3, Vector6};
 
-/// One case (a pose with its load), prepared for the slots (pieces) of an arm.
+/// One case (a pose with its load), prepared for the search.
 pub(crate) struct Station {
     /// The data of each slot in this pose, tip first.
     pub slots: Vec<StationSlot>,
@@ -110,16 +110,16 @@ pub(crate) struct StationJoint {
     /// The block of motions that the joint belongs to: 0 within the x-z plane, 1 across it. It is 0 if the pose is
     /// not planar.
     pub block: usize,
-    /// The joints that this joint turns along, by a linkage or because their motors sit inboard of this joint. All of
-    /// them are outboard of it.
+    /// The joints that turn along with this joint, by a linkage or because their motors sit inboard of this joint. All
+    /// of them are outboard of it.
     pub turns: Vec<Turned>,
-    /// Whether another joint turns this joint along, by a linkage or because the motor of this joint sits inboard of
-    /// that other joint.
+    /// Whether this joint turns along with another joint, by a linkage or because its own motor sits inboard of that
+    /// other joint.
     pub is_passive: bool,
 }
 
-/// A joint that another joint, the driving joint, turns along. It is called the passive joint here, even if it has a
-/// motor of its own.
+/// A joint that turns along with another joint, the driving joint. It is called the passive joint here, even if it has
+/// a motor of its own.
 pub(crate) struct Turned {
     /// Slot of the passive joint.
     pub slot: usize,
@@ -190,7 +190,7 @@ impl StationLink {
     /// Displacement of the tip per unit of each of the six components of the wrench on the link's end \[m/N and m/(N
     /// m)\].
     pub(crate) fn flexibility(&self) -> Matrix3x6<f64> {
-        // the end coordinates have unit stiffness: a wrench w deflects them by endᵀ w
+        // The end coordinates have unit stiffness, so a wrench w deflects them by endᵀ w.
         self.tip * self.end.transpose()
     }
 
@@ -303,7 +303,7 @@ impl Walk {
                     let hinge = ((rotation * joint.axis).into_inner(), self.angles_rad[index]);
                     ElementFrame { at_m, rotation: self.places[index + 1].1, hinge: Some(hinge) }
                 }
-                // a spring on a prismatic joint pulls at the part that travels
+                // A spring on a prismatic joint pulls at the part that travels.
                 SpacePiece::Prismatic(_) => {
                     ElementFrame { at_m: self.places[index + 1].0, rotation, hinge: None }
                 }

@@ -132,7 +132,8 @@ impl BearingRatings {
     pub(super) fn of(bearing: Option<&Bearing>, duty: [f64; 2]) -> Self {
         let Some(bearing) = bearing else { return Self::UNLIMITED };
         let printed = &bearing.ratings;
-        // a lever that the study states is measured from the centre of the bearing, so no further distance is added
+        // A lever that the study states is measured from the centre of the bearing, so the distance R is not added to
+        // it.
         let centre_m = bearing.offset_m.map_or(printed.offset_m.unwrap_or(0.0), |_| 0.0);
         let running_nm = bearing.permissible_moment_nm.unwrap_or(f64::INFINITY);
         let of_moment = Self { centre_m, running_nm, ..Self::UNLIMITED };

@@ -51,8 +51,8 @@ pub(super) struct Mover {
 #[derive(Default)]
 pub(super) struct Largest([[Span; 3]; 3]);
 
-/// The bearings of all joints in a case, base first; `None` for a joint whose bearing is not checked.
-/// `movers` says how each joint and each rail moves.
+/// The output bearings of all joints in a case, base first; `None` for a joint whose bearing is not checked. `movers`
+/// says how each joint and each rail moves.
 pub(super) fn bearings(
     builder: &Builder,
     case: &LoadCase,

@@ -23,7 +23,7 @@ pub(super) const ROUNDING: f64 = 1e-9;
 
 /// The members of a box or region, given by the interval of each number of their parts.
 pub(super) struct Members<'w> {
-    /// For each joint, base first, the range of the drives that may meet its demand.
+    /// For each joint, base first, the least and greatest numbers of the drives that may meet its demand.
     pub drives: Vec<DriveRange>,
     pub tubes: Vec<&'w TubeRange>,
     /// Intervals of the loads: the masses of the drives \[kg\], followed by the weights per length of the tubes
@@ -215,7 +215,7 @@ impl Skeleton {
                 members.tubes[tube].most.stiffnesses[which] * integral_m
             }
             Coordinate::Tilt(joint, _) => members.drives[joint].greatest_tilt_stiffness(),
-            // a shift is a virtual motion for loads: no element deflects in this way
+            // Shifts and travels are virtual motions by which loads are computed. No element deflects in this way.
             Coordinate::Shift(..) | Coordinate::Rail(_) => f64::INFINITY,
             Coordinate::Spring(spring) => self.spring_stiffnesses[spring],
         };
@@ -239,7 +239,7 @@ fn weight(tube: &TubeRange, water: usize) -> Span {
     Span { least: tube.least.around[water].weight_n_per_m, most: tube.most.around[water].weight_n_per_m }
 }
 
-/// Interval of each compliance over a set of tubes.
+/// Interval of each compliance (1 / stiffness) over a set of tubes.
 pub(super) fn compliances(tube: &TubeRange) -> [Span; STIFFNESSES] {
     std::array::from_fn(|i| Span {
         least: 1.0 / tube.most.stiffnesses[i],
@@ -247,8 +247,8 @@ pub(super) fn compliances(tube: &TubeRange) -> [Span; STIFFNESSES] {
     })
 }
 
-/// Approximate direction in which the tip of the stiffest arm moves; `None` if the tip does not move. The
-/// displacement along any direction is a valid lower bound, so the direction need not be exact.
+/// Approximate direction in which the tip of the stiffest arm of the members moves, as a unit vector; `None` if the tip
+/// does not move. The displacement along any direction is a valid lower bound, so the direction need not be exact.
 pub(super) fn direction(pose: &Pose, members: &Members) -> Option<Vector3<f64>> {
     let loads = &members.loads[pose.water];
     let joints = members.drives.iter().zip(&pose.torques).zip(&pose.tip_m_per_rad).map(
@@ -272,7 +272,7 @@ fn tip_along(pose: &Pose, members: &Members, direction: &Vector3<f64>) -> f64 {
     let joints = members.drives.iter().zip(&pose.torques).zip(&pose.tip_m_per_rad).map(
         |((drive, torque), tip_m_per_rad)| {
             let tip_m_per_rad = tip_m_per_rad.dot(direction);
-            // if a joint's twist moves the tip backward along the direction, torque and lever change their signs
+            // If the twist of a joint moves the tip backward along the direction, torque and lever change their signs.
             let torque = torque.over(loads).times(1.0f64.copysign(tip_m_per_rad));
             if tip_m_per_rad == 0.0 { 0.0 } else { drive.least_angle_rad(torque) * tip_m_per_rad.abs() }
         },

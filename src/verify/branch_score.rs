@@ -25,8 +25,8 @@ pub(super) struct BranchScore<'a> {
 }
 
 impl BranchScore<'_> {
-    /// How much worse the ideal point becomes if the level has an average part. The number is a sum of relative
-    /// changes of mass, deflection and squared frequency.
+    /// How much worse the ideal point becomes if the level has an average part: a sum of relative changes of mass,
+    /// deflection and squared frequency, without a unit.
     pub(super) fn score_of(&self, level: usize) -> f64 {
         let node = self.parts.0[level];
         let [mass_kg, tip_m, eigenvalue] = match self.boxes.skeleton.levels[level] {
@@ -44,8 +44,7 @@ impl BranchScore<'_> {
 
     /// By how much the ideal point becomes worse if `joint` has an average drive instead of the best drive. The three
     /// numbers are changes of the mass \[kg\], of the deflection \[m\] and of the squared angular frequency `λ` of the
-    /// lowest mode \[1/s²\]. `node` is the node of
-    /// the joint's tree in the box.
+    /// lowest mode \[1/s²\]. `node` is the node of the joint's tree in the box.
     fn of_joint(&self, joint: usize, node: u32) -> [f64; 3] {
         let (range, whole) = (&self.members.drives[joint], self.boxes.joints[joint].range(node));
         let mass_kg = 0.5 * (whole.most_kg.min(range.most_kg) - range.least_kg);
@@ -72,7 +71,7 @@ impl BranchScore<'_> {
         let coordinates = self.boxes.skeleton.coordinates.iter().zip(&self.slow.mode);
         let tilts = coordinates.filter(|(c, _)| matches!(c, Coordinate::Tilt(j, _) if *j == joint));
         let strain: f64 = tilts.map(|(_, x)| weaker * x * x).sum();
-        // a bearing that may be rigid does not tilt in the mode of the ideal arm
+        // A bearing that may be rigid does not tilt in the lowest mode of the ideal arm.
         if strain.is_finite() { strain } else { 0.0 }
     }
 

@@ -1,14 +1,20 @@
-//! How the speed of a joint runs through the phases of a duty that the study states in numbers.
+//! The speed of a joint at the ends of the phases of a duty that the study states in numbers.
 //!
-//! A study states the mean speed of every phase. In a phase the joint turns at constant speed, or its speed changes evenly.
-//! There is one course without a jump if, followed once through the cycle from a phase of constant speed (rest, or else the
-//! fastest), the speed comes back to where it began, is never negative nor beyond the fastest phase, and never turns from
-//! rising to falling without a phase in between. If there is none, a phase is taken to ramp where its mean is that of its neighbours' speeds; a neighbour that is half of the phase beyond
-//! it ends, or begins, at rest.
+//! A study states the mean speed of every phase. In a phase, the joint turns at constant speed or its speed changes
+//! evenly. The speeds at the ends of the phases are found in one of two ways:
+//!
+//! - *One course without a jump.* The speed is followed once through the cycle. It starts with a phase at rest or, if
+//!   there is none, with the fastest phase. The speed must not become negative, and not exceed the speed of the fastest
+//!   phase. It must not fall in a phase that follows directly after a phase in which it rises. At the end of the cycle
+//!   it must be back at its first value.
+//! - *Phase by phase*, if there is no such course. A phase is a ramp if its mean speed is the mean of the speeds of its
+//!   two neighbours. A neighbour is itself a ramp to or from rest if its speed is half the speed of the phase beyond
+//!   it. On the side of such a neighbour, the phase may begin or end at rest. Every other phase has constant speed.
 
 use super::question::AskedDutyPhase;
 
-/// Printed speeds have few digits, so that two speeds that differ by this fraction of the larger one count as the same.
+/// Two speeds count as the same if they differ by at most this fraction of the larger one, because printed speeds have
+/// few digits.
 const ROUNDED: f64 = 0.05;
 
 /// The course of the speed in one phase.
@@ -16,7 +22,7 @@ const ROUNDED: f64 = 0.05;
 pub(super) struct Course {
     /// Speed at the beginning of the phase \[rpm\].
     pub from_rpm: f64,
-    /// Speed at its end \[rpm\].
+    /// Speed at the end of the phase \[rpm\].
     pub to_rpm: f64,
     time_s: f64,
 }
@@ -42,12 +48,13 @@ pub(super) fn is_same_speed(a_rpm: f64, b_rpm: f64) -> bool {
     (a_rpm - b_rpm).abs() <= ROUNDED * a_rpm.max(b_rpm)
 }
 
-/// The course of the speed in every phase.
+/// The course of the speed in every phase of a duty: one course without a jump if there is one, otherwise phase by
+/// phase.
 pub(super) fn courses(duty: &[AskedDutyPhase]) -> Vec<Course> {
     unbroken(duty).unwrap_or_else(|| (0..duty.len()).map(|place| by_neighbours(duty, place)).collect())
 }
 
-/// The course without a jump; `None` if there is none.
+/// The course without a jump, one entry for each phase; `None` if there is none.
 fn unbroken(duty: &[AskedDutyPhase]) -> Option<Vec<Course>> {
     let slowest_first = |a: &&usize, b: &&usize| duty[**a].speed_rpm.total_cmp(&duty[**b].speed_rpm);
     let places: Vec<usize> = (0..duty.len()).collect();
@@ -74,7 +81,7 @@ fn unbroken(duty: &[AskedDutyPhase]) -> Option<Vec<Course>> {
     is_same_speed(from_rpm, duty[begin].speed_rpm).then_some(courses)
 }
 
-/// The course in the phase at `place`, judged by its neighbours alone.
+/// The course of the speed in the phase at `place`, derived from the speeds of the neighbouring phases alone.
 fn by_neighbours(duty: &[AskedDutyPhase], place: usize) -> Course {
     let rpm = |offset: usize| duty[(place + offset) % duty.len()].speed_rpm;
     let back = |steps: usize| rpm(duty.len() * steps - steps);

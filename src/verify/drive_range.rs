@@ -107,7 +107,7 @@ impl DriveRange {
     /// Greatest tangent stiffness that the joint has with any of the drives \[N m/rad\], under torques with a magnitude
     /// of at most `torque_nm`.
     pub(super) fn largest_slope(&self, torque_nm: f64) -> f64 {
-        // a torque that is below a break point by less than rounding counts as beyond it
+        // A torque that is below a break point by less than rounding counts as being beyond it.
         let reach_nm = torque_nm * (1.0 + 1e-9) + 1e-9;
         let gear = self.stiff.tangent_nm_per_rad(reach_nm).min(self.modal_nm_per_rad);
         let open = self.lost_motion.map_or(0.0, |lost| lost.tangent_compliance_rad_per_nm(reach_nm));

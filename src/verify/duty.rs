@@ -94,7 +94,7 @@ impl Duty {
             life_h: motion.life_h,
             linear_per_inertia,
             linear_per_static,
-            // what holds in a stop must hold in a ramp too
+            // The factor is at least 1, so that the demand in a stop is never less than the demand in a ramp.
             stop_factor: stop_ratio.max(1.0),
             mean: motion.mean_torque(),
             stop_s: ramp_s / stop_ratio,
@@ -162,8 +162,9 @@ fn speed_rad_s(motion: &AskedMotion, reach_m: f64, joint: &AskedJoint) -> f64 {
     }
 }
 
-/// Time in which a joint with a duty stated in numbers would reach its largest speed if it sped up as fast as it ever does
-/// \[s\]. Where the duty jumps from one speed to another, it takes `jump_s` \[s\].
+/// Time in which a joint with a duty stated in numbers would reach its largest speed, if its speed always changed as
+/// fast as in the steepest ramp of the duty \[s\]. A jump from one speed to another counts as a ramp that takes
+/// `jump_s` \[s\]. If the speed never changes, the result is `jump_s`.
 fn ramp_s(duty: &[AskedDutyPhase], jump_s: f64) -> f64 {
     let courses = courses(duty);
     let next = courses.iter().cycle().skip(1);

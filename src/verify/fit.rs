@@ -11,8 +11,8 @@
 //!
 //! The link of a joint is the first tube between it and the next joint. A size that the catalog lacks is not compared.
 //!
-//! Nothing of `sizing` or `space` is used, so that an error in a size there is not repeated here. Only the length of the link
-//! in which a motor is comes with the question.
+//! Nothing of `sizing` or `space` is used, so that an error in a size there is not repeated here. Only the length of
+//! the link in which a motor sits comes with the question.
 
 use super::question::{AskedFit, AskedJoint};
 use crate::arm::section::Section;
@@ -43,7 +43,7 @@ pub(super) fn room(joint: &AskedJoint, vector_m: &Vector3<f64>, section: &Sectio
         let (width_m, height_m) = section.outer_m();
         motor_m = (width_m.min(height_m) - 2.0 * section.wall_m()) * (1.0 + SAME_SIZE);
         let is_round = matches!(section, Section::RoundTube { .. } | Section::RoundBar { .. });
-        // the diagonal of a square in a circle is the diameter of the circle
+        // The diagonal of a square in a circle is the diameter of the circle.
         square_m = if is_round { motor_m / 2f64.sqrt() } else { motor_m };
     }
     [gear_m, motor_m, square_m]

@@ -2,7 +2,7 @@
 
 use crate::pareto::objectives::Objectives;
 
-/// Relative difference up to which two objectives count as equal.
+/// Relative difference up to which two values of an objective count as equal.
 const EQUAL_WITHIN: f64 = 1e-9;
 /// Relative margin by which a design of the front must be better in at least one objective to dominate a design or a
 /// whole box of designs. With this margin, rounding cannot decide.

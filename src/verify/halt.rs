@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-/// The search stops when more single designs than this are left to be judged. The front that is checked is then far
-/// from complete.
+/// The search stops when more single designs than this are left to be judged. So many designs mean that the checked
+/// front lacks a large part of the true front.
 const MOST_DESIGNS: usize = 200_000;
 
 /// Number of boxes that a search has bounded, and number of boxes that it left open.
@@ -27,7 +27,8 @@ impl Found {
 pub(super) struct Halt<'s> {
     pub stop: &'s AtomicBool,
     pub deadline: Option<Instant>,
-    /// Single designs that no bound discarded. `count` is their number, which can be read without a lock.
+    /// Single designs that no bound discarded, each of which is to be judged by the full model. `count` is their
+    /// number, which can be read without a lock.
     pub designs: Mutex<BTreeSet<Design>>,
     pub count: AtomicUsize,
 }

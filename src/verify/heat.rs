@@ -25,13 +25,14 @@ pub(super) struct MotorHeat {
     stated: f64,
 }
 
-/// What a joint asks of its motor over the cycle: torques at the joint and fractions of the cycle's time.
+/// The load that a joint puts on its motor over the cycle: torques at the joint \[N m\], and fractions of the cycle's
+/// time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct HeatDemand {
     pub static_nm: f64,
     pub linear_nm: f64,
     pub shares: CycleShares,
-    /// Factor on the mean square: a margin for rounding.
+    /// Factor by which the mean square is multiplied: a margin for rounding.
     pub room: f64,
 }
 
@@ -131,14 +132,16 @@ pub(super) fn efficiency(gear: &Gear) -> Option<f64> {
     gear.efficiency.or((gear.kind == GearKind::Direct).then_some(1.0))
 }
 
-/// Inertia of the rotor, the stage and the gear's input, all referred to the motor's shaft \[kg m²\].
+/// Inertia of the rotor, the stage and the gear's input, all referred to the motor's shaft \[kg m²\]. `None` if the
+/// catalog leaves an inertia blank.
 pub(super) fn input_inertia_kgm2(gear: &Gear, motor: &Motor, stage: &AskedStage) -> Option<f64> {
     let none = (gear.kind == GearKind::Direct).then_some(0.0);
     let at_gear_kgm2 = gear.inertia_input_kgm2.or(none)?;
     Some(motor.rotor_inertia_kgm2? + stage.inertia_kgm2 + at_gear_kgm2 / stage.ratio.powi(2))
 }
 
-/// The largest torque that a motor can give at every speed from rest up to this speed \[N m\].
+/// The largest torque that a motor can give at every speed from rest up to `speed_rpm` \[N m\]. `None` if the catalog
+/// states no peak torque.
 pub(super) fn peak_nm(motor: &Motor, speed_rpm: f64) -> Option<f64> {
     let points: Vec<(f64, f64)> =
         motor.curve.iter().filter_map(|p| Some((p.speed_rpm, p.peak_torque_nm?))).collect();
@@ -162,8 +165,9 @@ fn on_curve(points: &[(f64, f64)], speed_rpm: f64) -> Option<f64> {
     })
 }
 
-/// Torque that a motor gives continuously at a speed \[N m\]: from its torque curve, or else its rated torque.
-/// Beyond the rated speed it is limited by the rated power.
+/// Torque that a motor gives continuously at a speed \[N m\]: from its torque curve, or else its rated torque. Beyond
+/// the rated speed the rated torque is reduced so that the rated power is not exceeded. `None` if the catalog states
+/// neither a curve nor a rated torque.
 pub(super) fn continuous_nm(motor: &Motor, speed_rpm: f64) -> Option<f64> {
     let points: Vec<(f64, f64)> =
         motor.curve.iter().filter_map(|p| Some((p.speed_rpm, p.continuous_torque_nm?))).collect();

@@ -90,8 +90,8 @@ impl<'q> Judge<'q> {
         holds.then_some(Judged { picks, objectives })
     }
 
-    /// The design with every drive replaced by the first drive of equal mass, torsion curve and bearing stiffness.
-    /// If the result is the same for two designs, they differ only in drives that tie.
+    /// The design with every drive replaced by the first drive in the list with equal mass, torsion curve and bearing
+    /// stiffness. If the result is the same for two designs, they differ only in drives that tie.
     pub fn first_tie(&self, picks: &[Pick]) -> Vec<Pick> {
         let mut joints = self.offers.iter();
         let first = |(piece, pick): (&AskedPiece, &Pick)| {
@@ -169,8 +169,7 @@ impl<'q> Judge<'q> {
             (false, _) => offers.first_fit(&least)?,
         };
         if !offers.is_choice {
-            // no drive before it in the list may carry even the greatest demand, because that drive would be the
-            // first fit
+            // No drive before it in the list may carry even the greatest demand. Such a drive would be the first fit.
             let before = offers.offers.iter().take_while(|other| *other != offer);
             before.into_iter().all(|other| !other.ratings.hold(&most)).then_some(())?;
         }
@@ -178,7 +177,7 @@ impl<'q> Judge<'q> {
         Some(Fitted { range: offer.range(), pick })
     }
 
-    /// The arm of a design with all of its parts.
+    /// The arm of a design with all of its parts. `None` if a part in `picks` is not one of the options of its piece.
     fn arm(&self, picks: &[Pick]) -> Option<Arm> {
         let mut joints = self.offers.iter();
         let element = |(piece, pick): (&AskedPiece, &Pick)| match piece {

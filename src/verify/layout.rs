@@ -30,6 +30,7 @@ fn piece_rank(piece: usize) -> usize {
 
 /// A joint in a pose.
 pub(super) struct PlacedJoint {
+    /// Place in the order of all elements from base to tip.
     pub rank: usize,
     pub at_m: Vector3<f64>,
     pub axis: Vector3<f64>,
@@ -37,14 +38,16 @@ pub(super) struct PlacedJoint {
     pub across: [Vector3<f64>; 2],
 }
 
-/// A prismatic joint (rail) in a pose. Its motion moves everything of a higher rank along `axis`.
+/// A prismatic joint (rail) in a pose. Its travel moves everything of a higher rank along `axis`.
 pub(super) struct PlacedRail {
+    /// Place in the order of all elements from base to tip.
     pub rank: usize,
     pub axis: Vector3<f64>,
 }
 
-/// A tube in a pose. The columns of `frame` are the axis of the tube and the y and z axes of its section.
+/// A tube in a pose. The columns of `frame` are the axis of the tube and the y and z axes of its section, in the world.
 pub(super) struct PlacedTube {
+    /// Place in the order of all elements from base to tip.
     pub rank: usize,
     pub root_m: Vector3<f64>,
     pub frame: Matrix3<f64>,
@@ -153,7 +156,7 @@ impl Layout {
                     layout.joints.push(PlacedJoint { rank, at_m, axis, across: across(&axis) });
                     let angle = entries.next().copied().unwrap_or_default().to_radians();
                     rotation *= Rotation3::from_axis_angle(&joint.axis, angle);
-                    // these bodies are outboard of the joint, and inboard of the next piece
+                    // These bodies are outboard of the joint, and inboard of the next piece.
                     layout.add_bodies(piece_rank(place) + 1, &joint.bodies.rotating, &rotation);
                 }
                 Piece::Prismatic(joint) => {
@@ -211,9 +214,9 @@ impl Layout {
         self.add_bodies(piece_rank(place), &joint.bodies.rotating, rotation);
     }
 
-    /// Adds rotational springs at the present end of the chain. `springs` has the axis of each spring in the world and
-    /// its compliance \[rad/(N m)\]. Springs without compliance are left out. `place` is the number of the piece to
-    /// which they belong.
+    /// Adds rotational springs at the end of the chain as far as it has been built. `springs` has the axis of each
+    /// spring in the world and its compliance \[rad/(N m)\]. Springs without compliance are left out. `place` is the
+    /// number of the piece to which they belong.
     fn add_springs(&mut self, place: usize, springs: &[(Vector3<f64>, f64)]) {
         for &(axis, rad_per_nm) in springs.iter().filter(|(_, rad_per_nm)| *rad_per_nm > 0.0) {
             let (rank, at_m, compliance) = (spring_rank(place), self.tip_m, rad_per_nm);
@@ -232,8 +235,8 @@ impl Layout {
         }
     }
 
-    /// Adds rigid bodies whose positions are measured from the present end of the chain. `rank` is their place in the
-    /// order from base to tip.
+    /// Adds rigid bodies whose positions are measured from the end of the chain as far as it has been built. `rank` is
+    /// their place in the order from base to tip.
     fn add_bodies(&mut self, rank: usize, bodies: &[RigidBody], rotation: &Rotation3<f64>) {
         for body in bodies {
             let carrier = Point { at_m: self.tip_m, rank, inside_m: None };
@@ -241,8 +244,8 @@ impl Layout {
         }
     }
 
-    /// Adds the bodies of a tube whose root is the present end of the chain. Each body moves with the point of the
-    /// tube's axis that is nearest to it.
+    /// Adds the bodies of a tube whose root is the end of the chain as far as it has been built. Each body moves with
+    /// the point of the tube's axis that is nearest to it.
     fn add_bodies_on_tube(&mut self, rank: usize, link: &LinkPiece, rotation: &Rotation3<f64>) {
         let length_m = link.vector_m.norm();
         for body in &link.bodies {
@@ -325,7 +328,7 @@ impl Shape {
         let moved =
             |linear: bool| if linear { x * x / 2.0 - x.powi(3) / (3.0 * length_m) } else { x * x / 2.0 };
         match self {
-            // a positive rotation about y moves the end along -z, one about z moves it along y
+            // A positive rotation about y moves the end along -z. A positive rotation about z moves it along y.
             Shape::BendZ { linear } => Motion {
                 moved: Vector3::new(0.0, 0.0, moved(linear)),
                 turned: Vector3::new(0.0, -slope(linear), 0.0),
@@ -365,9 +368,9 @@ pub(super) enum Coordinate {
     /// Travel of a prismatic joint. It is virtual too: the motor holds the carriage, and the compliance of its drive is a
     /// spring.
     Rail(usize),
-    /// Displacement of everything outboard of a joint along one of two axes at right angles to the joint's axis, or
-    /// along the joint's axis (index 2). The arm does not deform in this way: the motion is virtual, and from it
-    /// forces follow.
+    /// Displacement of everything outboard of a joint along one of two axes at right angles to the joint's axis (index
+    /// 0 or 1), or along the joint's axis (index 2). The arm does not deform in this way: the motion is virtual and
+    /// serves to compute forces.
     Shift(usize, usize),
     /// Deformation of a tube in one shape.
     Tube(usize, Shape),

@@ -76,14 +76,14 @@ impl<'s> Ledger<'s> {
     }
 
     /// The numbers of boxes that were bounded and left open in a branch. If the branch is not finished already,
-    /// `explore` searches it now.
+    /// `explore` searches it now. A branch that is then finished is recorded, and the state is saved if a save is due.
     pub(super) fn of(&self, branch: Branch, halt: &Halt, explore: impl FnOnce() -> Found) -> Found {
         let Some(keep) = self.keep.filter(|_| branch != Branch::DEEP) else { return explore() };
         if let Some(&boxes) = self.done().boxes.get(&branch.0) {
             return Found { boxes, open: 0 };
         }
         let found = explore();
-        // a search that ends early may not have searched the whole branch
+        // A search that ended early may not have searched the whole branch, so the branch is not recorded as finished.
         if found.open == 0 && !halt.stopped() {
             let mut done = self.done();
             for half in branch.halves() {

@@ -146,8 +146,8 @@ impl Judge<'_> {
 }
 
 /// The options of each single design, in ascending order, and a flag that tells whether all ties are listed. If there
-/// are too many, one design of each set of ties is listed. A level at which no option surely passes its checks keeps
-/// all of its options, because its first option may fail.
+/// are too many ties, one design of each set of ties is listed. A level at which no option surely passes its checks
+/// always keeps all of its options, because its first option may fail.
 fn one_by_one(designs: &BTreeSet<Design>) -> (Vec<Vec<u32>>, bool) {
     let count = |design: &Design| design.iter().map(|choice| choice.options.len() as f64).product::<f64>();
     let is_one = |design: &Design| count(design) == 1.0;

@@ -107,8 +107,8 @@ impl Offer {
         DriveRange::of(&self.law, self.tilt_rad_per_nm, self.mass_kg)
     }
 
-    /// Whether this drive and the drive `other`, which have equal mass, have the same stiffness in torsion and tilt.
-    /// Then no objective tells them apart.
+    /// Whether this drive and the drive `other`, which has equal mass, have the same stiffness in torsion and tilt, so
+    /// that no objective tells them apart.
     fn yields_like(&self, other: &Self) -> bool {
         self.law == other.law && self.tilt_rad_per_nm == other.tilt_rad_per_nm
     }
@@ -124,7 +124,7 @@ fn offers(
     let mut offers = Vec::new();
     for (gear_place, gear) in catalogs.gears.iter().enumerate().filter(|(_, gear)| allowed.allows_gear(gear))
     {
-        // a gear whose torsion is not known cannot be judged
+        // A gear whose torsion is not known cannot be judged, so it is not offered.
         let Some(windup) = torsion_curve(gear, joint) else { continue };
         let mut bearing = with_gear(&joint.bearing, gear, allowed.gear_mass);
         if joint.bearing == BearingSource::OfGear
@@ -168,14 +168,15 @@ fn drive_kg(allowed: &AllowedParts, gear: &Gear, motor: &Motor) -> Option<f64> {
 /// number of the curve.
 fn torsion_curve(gear: &Gear, joint: &AskedJoint) -> Option<Windup> {
     let share = joint.connection_share;
-    // a stage before the gear is in series; its compliance at the joint is smaller by the square of the gear's ratio
+    // A stage before the gear is in series with it. Seen from the joint, its compliance is smaller by the square of the
+    // gear's ratio.
     let before = joint.stage.rad_per_nm / (gear.ratio * gear.ratio);
     let together = |stiffness: Option<f64>| {
         let own = stiffness? * (1.0 / (1.0 + share));
         Some(if before > 0.0 { 1.0 / (1.0 / own + before) } else { own })
     };
-    // K1 alone, or three equal slopes with a blank break point, make a straight line: its break points have no
-    // effect, so any two serve
+    // The curve is a straight line if the catalog has K1 alone, or three equal slopes with a blank break point. The
+    // break points of a straight line have no effect, so any two values serve.
     let [k1, k2, k3] = [gear.k1_nm_per_rad, gear.k2_nm_per_rad, gear.k3_nm_per_rad];
     let breaks = gear.t1_nm.is_some() as usize + gear.t2_nm.is_some() as usize;
     let one_line = (k2.is_none() && k3.is_none() && breaks == 0) || (k1 == k2 && k2 == k3 && breaks < 2);

@@ -21,7 +21,7 @@ pub struct PartsBox(pub(super) Vec<u32>);
 pub(super) struct Choice {
     /// Indices of the options. Those that pass their checks in spite of any rounding come first.
     pub options: Vec<u32>,
-    /// Whether the first option surely passes its checks.
+    /// Whether the first option passes its checks in spite of any rounding.
     pub one_holds: bool,
 }
 

@@ -32,7 +32,7 @@ const GAUSS: [(f64, f64); 4] = [
 pub(super) struct Pose {
     pub judged: bool,
     pub sizing: bool,
-    /// Index of the medium around the arm (air or water), among the study's surroundings.
+    /// Index of the medium around the arm (air or water) in the list of the study's media.
     pub water: usize,
     /// Ratio of the stress during acceleration to the stress under static loads. 1 if the case is not a sizing
     /// case.
@@ -92,11 +92,11 @@ pub(super) struct Builder<'a> {
 }
 
 impl Pose {
-    /// Computes the case with this index. `water` is the index of its surroundings.
+    /// Computes the case with the index `index`. `water` is the index of the medium around the arm.
     pub(super) fn new(question: &Question, index: usize, water: usize, builder: &Builder) -> Self {
         let (case, layout) = (&question.cases[index], builder.layout);
         let sizing = question.sizing_cases.contains(&index);
-        // without gravity there is no ratio to the static stress, and the stress is not raised for acceleration
+        // Without gravity there is no static stress to compare with, so the stress is not raised for acceleration.
         let acceleration = match question.gravity_m_s2 > 0.0 {
             true => question.motion.tip_acceleration_m_s2() / question.gravity_m_s2,
             false => 0.0,
@@ -387,8 +387,9 @@ impl Builder<'_> {
     }
 }
 
-/// For each stiffness, the internal load that it resists, times the same internal load of a unit tip force along
-/// each world axis, times a length (method of the unit load).
+/// One vector for each stiffness of a tube, by the method of the unit load. Its x, y and z entries are the real
+/// internal load that the stiffness resists, times the same internal load of a unit tip force along the world's x, y or
+/// z axis, times the length `length_m`.
 fn products(real: &[f64; 6], units: &[[f64; 6]; 3], length_m: f64) -> [Vector3<f64>; STIFFNESSES] {
     let product = |i: usize| Vector3::from_fn(|axis, _| real[i] * units[axis][i] * length_m);
     [product(4), product(5), product(1) + product(2), product(3), product(0)]

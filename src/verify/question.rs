@@ -37,7 +37,7 @@ pub struct Question {
     pub motion: AskedMotion,
     /// Which deformations of the links are modelled.
     pub links: LinkModel,
-    /// How the joints are modelled.
+    /// Which torsion curve of the gears is used: the slope K2 alone or three segments.
     pub joints: JointModel,
     /// Limits that every design must meet.
     pub limits: Limits,
@@ -198,7 +198,7 @@ pub struct AskedTube {
     pub strength_pa: Option<f64>,
     /// Compressive strength \[Pa\]; `None` if it equals the tensile strength.
     pub compressive_strength_pa: Option<f64>,
-    /// Cost of the material \[EUR/kg\].
+    /// Cost of the material \[EUR/kg\]; `None` if it is not known.
     pub cost_eur_per_kg: Option<f64>,
 }
 

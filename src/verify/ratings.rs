@@ -95,7 +95,8 @@ impl Ratings {
 
     /// Whether a drive with these ratings passes every check under `demand`: torques, bearing, motor heat and widths.
     pub(super) fn hold(&self, demand: &Demand) -> bool {
-        // the torques are compared without a conditional jump, because nearly every box calls this for many drives
+        // The torques are compared without a conditional jump, because this function is called for many drives of
+        // nearly every box.
         let torques = self.most.iter().zip(&demand.torques);
         torques.fold(true, |held, (most, asked)| held & (asked <= most))
             && self.bearing.hold(&demand.bearing)
@@ -177,7 +178,7 @@ fn actuator_stop_nm(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<f64> {
 fn bears_the_stops(gear: &Gear, duty: &Duty) -> bool {
     let waves = 2.0 * input_rpm(gear, duty.speed_rad_s) / 60.0 * duty.stop_s;
     let has_waves = gear.kind == GearKind::StrainWave;
-    // the margin is for rounding: the speed was converted to rad/s and back to rpm
+    // The margin is for rounding, because the speed was converted to rad/s and back to rpm.
     duty.emergency_stops.is_none_or(|stops| !has_waves || stops * waves.max(1.0) <= 1e4 * (1.0 + 1e-9))
 }
 
@@ -186,7 +187,7 @@ fn input_rpm(gear: &Gear, output_rad_s: f64) -> f64 {
     gear.ratio * (output_rad_s * 30.0 / std::f64::consts::PI)
 }
 
-/// Torque at the joint for one newton metre at the motor.
+/// Torque at the joint for one newton metre at the motor. `None` if the catalog leaves the gear's efficiency blank.
 fn gain(gear: &Gear, stage: &AskedStage) -> Option<f64> {
     Some(gear.ratio * efficiency(gear)? * stage.ratio * stage.efficiency)
 }

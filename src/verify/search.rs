@@ -13,7 +13,7 @@ use super::upper_bound::UpperBound;
 pub(super) struct Search<'s> {
     pub boxes: &'s Boxes,
     pub front: &'s FrontIndex,
-    /// Only designs below this upper bound are searched for.
+    /// The search is only for designs below this upper bound.
     pub upper: UpperBound,
     pub halt: &'s Halt<'s>,
     pub ledger: &'s Ledger<'s>,

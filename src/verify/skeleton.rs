@@ -20,7 +20,7 @@ use crate::catalog::Catalogs;
 pub(super) struct Skeleton {
     /// Lengths of the tubes \[m\].
     pub lengths_m: Vec<f64>,
-    /// Mass of rigid offsets, of bodies and of bearings that the study states \[kg\].
+    /// Mass of rigid offsets, rigid bodies, prismatic joints, and bearings that the study states \[kg\].
     pub offsets_kg: f64,
     pub poses: Vec<Pose>,
     /// Loads on the bearing of every joint; first index the case, second the joint. The list of a case that is not a
@@ -130,8 +130,8 @@ impl Skeleton {
     }
 }
 
-/// The first tube between each joint and the next joint, base to tip, as an index into the list of links with weight
-/// along their length. `None` if there is no tube between the two joints.
+/// For each joint, base to tip: the first tube between it and the next joint, as an index into the list of links with
+/// weight along their length. `None` if there is no tube between the two joints.
 fn first_tubes(question: &Question) -> Vec<Option<usize>> {
     let mut first: Vec<Option<usize>> = Vec::new();
     let mut tubes = 0;
@@ -260,8 +260,7 @@ fn levels(question: &Question, structure: &Structure) -> Vec<Place> {
             }
             Piece::Prismatic(_) => continue,
             Piece::Link(link) => {
-                // an open link without any option of a tube has no weight along its length, but it still has a
-                // level
+                // A link without any admitted tube has no weight along its length, but it still has a level.
                 let is_tube = matches!(asked, AskedPiece::Choice(_)) || super::layout::has_line(link);
                 tubes += usize::from(is_tube);
                 Place::Tube(tubes.saturating_sub(1))

@@ -107,7 +107,7 @@ impl TubeOptions {
                 LinkBody::Tube { section, .. } => is_too_slender(question, section),
                 LinkBody::Offset { .. } => false,
             };
-            // cables do not count in the mass of a design, and the strength of a given tube is not known
+            // Cables do not count in the mass of a design, so a rigid offset with cables has no mass here.
             let mass_kg = piece.beam.map_or(0.0, |_| piece.tube_kg_per_m() * piece.vector_m.norm());
             let numbers = TubeNumbers::new(question, carrier, &piece, mass_kg, waters);
             let tubes = if slender { Vec::new() } else { vec![(0, numbers)] };
@@ -142,8 +142,8 @@ impl Tubes {
 pub(super) fn is_too_slender(question: &Question, section: &Section) -> bool {
     let (width_m, height_m) = section.outer_m();
     let wall_m = section.wall_m();
-    // catalog sizes often lie exactly on the limit, so the quotient is formed as the study format defines it: flat
-    // over wall
+    // Catalog sizes often lie exactly on the limit. The quotient is therefore formed exactly as the study format
+    // defines it: flat width over wall thickness.
     let slenderness = match section {
         Section::RectangularTube { .. } => (width_m.max(height_m) - 2.0 * wall_m) / wall_m,
         Section::RoundTube { .. } => width_m / wall_m,
@@ -164,9 +164,9 @@ fn half_width_m(piece: &LinkPiece, direction: &Vector3<f64>) -> f64 {
     ((width_m * y).powi(2) + (height_m * z).powi(2)).sqrt() / 2.0
 }
 
-/// The position of a tube in the space in which the tree puts similar tubes together: logarithms of its mass, both
-/// bending stiffnesses and its torsional stiffness. The logarithms of mass and torsional stiffness are multiplied by
-/// the factors 1.5 and 0.3.
+/// The coordinates of a tube by which the tree puts similar tubes together: logarithms of its mass, both bending
+/// stiffnesses and its torsional stiffness. The logarithms of mass and torsional stiffness are multiplied by the
+/// factors 1.5 and 0.3.
 fn keys(tube: &TubeNumbers) -> Vec<f64> {
     let [bending_y, bending_z, _, torsion, _] = tube.stiffnesses.map(libm::log);
     vec![1.5 * libm::log(tube.mass_kg), bending_y, bending_z, 0.3 * torsion]

@@ -19,8 +19,9 @@ use super::rows::Rows;
 use super::subproblem::{Subproblem, TorqueInterval};
 use super::weights::{Member, Reduced};
 
-/// Smallest score for which a level or torque is branched. Rows are divided by about what the upper bound allows, so
-/// the score is a fraction of this. If no score is larger, the level with the most options is branched.
+/// Smallest score for which a level or torque is branched. Each row is divided by about the value that the upper bound
+/// allows, so the score is a fraction of this value. If no score is larger, the level with the most options is
+/// branched.
 const WORTH_IT: f64 = 1e-4;
 /// If a row's value for the mixture is within this distance of zero (its limit), [`EXTRA_WEIGHT`] is added to the
 /// weight of the row in the score.
@@ -74,7 +75,7 @@ impl Rows<'_> {
     pub(super) fn branchings(&self, members: &Members, left: &Reduced) -> Vec<Branching> {
         let between = self.between(left);
         let mut found = Vec::new();
-        // where the first drive that fits is taken, there are no options to branch
+        // A joint with the first-fit rule (it takes the lightest drive that meets the demand) has no options to branch.
         let is_choice = |part: &usize| self.table.joints.get(*part).is_none_or(|j| j.drives.level.is_some());
         for part in (0..self.columns.joints + self.table.tubes.len()).filter(is_choice) {
             found.push(self.by_options(part, &between, members, left));
@@ -181,9 +182,8 @@ impl Rows<'_> {
     }
 
     /// Ways to divide a subproblem at the torques of a judged case, each with its score. A judged case counts for
-    /// deflection and lowest mode. The score is positive if the
-    /// gears of the mixture twist less, or are stiffer, than they are under the torques that the mixture's own masses
-    /// cause. `between` are the numbers of the mixture.
+    /// deflection and lowest mode. The score is positive if the gears of the mixture twist less, or are stiffer, than
+    /// they are under the torques that the mixture's own masses cause. `between` are the numbers of the mixture.
     fn by_torques(&self, case: usize, between: &[f64], left: &Reduced) -> Vec<(f64, Branching)> {
         let pose = self.pose(case);
         let own_nm = |torque: &Linear| {

@@ -2,8 +2,7 @@
 //!
 //! A design that no design of the front dominates lies below some *local upper bound* of the front ([`upper_bounds`]).
 //! *Below* means that its mass and its deflection are at most the values of the bound, and its lowest mode is at least
-//! the value of the bound. So the verifier
-//! examines these bounds one after the other.
+//! the value of the bound. So the verifier examines these bounds one after the other.
 //!
 //! The ideal point of a box takes each part at its lightest and at its stiffest at once, although no part is both.
 //! Weighted sums over the parts combine mass, deflection and modes ([`rows`]) and are much sharper. If the least sum of

@@ -49,8 +49,8 @@ pub(super) struct TubeTable {
     priced: usize,
 }
 
-/// How many numbers of a tube, in addition to its stresses, have no price: whether it is round, half its width, and
-/// the largest widths of gear and motor.
+/// Number of entries in a tube's list that have no price and are not stresses: whether the tube is round, half its
+/// width, and the largest widths of gear and motor.
 const BESIDE_STRESSES: usize = 5;
 
 /// Positions of a tube's numbers in its list.
@@ -122,7 +122,8 @@ impl TubeTable {
         let priced = place::priced(waters);
         let width = priced + STRESSES + BESIDE_STRESSES;
         let mut bounds = vec![0.0; 2 * width * tree.len()];
-        // the halves of a node come after it in the list, so they are computed before it here
+        // The halves of a node have higher indices than the node. The loop goes backward, so they are computed before
+        // it.
         for node in (0..tree.len() as u32).rev() {
             let at = 2 * width * node as usize;
             match tree.halves(node) {
@@ -154,7 +155,7 @@ impl TubeTable {
         [&both[..self.width], &both[self.width..]]
     }
 
-    /// How many numbers of a tube can have a price. They come first in its list.
+    /// Number of leading entries in a tube's list that can have a price.
     pub(super) fn priced(&self) -> usize {
         self.priced
     }
@@ -185,7 +186,7 @@ impl TubeTable {
 }
 
 fn numbers(tube: &TubeNumbers) -> Vec<f64> {
-    // a rigid tube has stiffness and compliance zero here, so that its stiffness never contributes to a price
+    // A rigid tube has stiffness and compliance zero here, so that neither ever contributes to a price.
     let stiffness = |k: &f64| if k.is_finite() { *k } else { 0.0 };
     let mut numbers = vec![tube.mass_kg];
     for around in &tube.around {

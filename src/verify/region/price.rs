@@ -10,8 +10,9 @@ use std::collections::BinaryHeap;
 /// node with several tubes is used as a lower bound.
 const MOST_LOOKS: usize = 400;
 
-/// Prices of a tube's numbers, with the positive and the negative prices apart. For a set of tubes, a number with a
-/// positive price (`paid`) is taken at its least value, and a number with a negative price (`earned`) at its greatest.
+/// Prices of a tube's numbers, separated into positive prices (`paid`) and negative prices (`earned`). For a set of
+/// tubes, a number with a positive price is taken at its least value, and a number with a negative price at its
+/// greatest.
 pub(super) struct Prices {
     paid: Vec<f64>,
     earned: Vec<f64>,
@@ -53,7 +54,7 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 /// has several tubes, and the price is a lower bound for all of them.
 pub(super) fn cheapest(table: &TubeTable, nodes: &[u32], prices: &Prices) -> (f64, u32) {
     let price = |node: u32| prices.of(table.bounds(node));
-    // the cheapest node first; of equal prices the node with the lowest index
+    // The cheapest node is taken first. Of equal prices, the node with the lowest index is taken.
     let offer = |node: u32| Reverse((rank(price(node)), node));
     let mut open: BinaryHeap<Reverse<(i64, u32)>> = nodes.iter().map(|&node| offer(node)).collect();
     let mut looks = 0;
@@ -89,8 +90,8 @@ pub(super) fn affordable(
     kept
 }
 
-/// An integer that grows with the price, in the order of [`f64::total_cmp`]. Integers can be ordered in a heap,
-/// floating-point numbers cannot.
+/// An integer that grows with the price, in the order of [`f64::total_cmp`]. A heap can order integers but not
+/// floating-point numbers.
 fn rank(price: f64) -> i64 {
     let bits = price.to_bits() as i64;
     bits ^ ((bits >> 63) as u64 >> 1) as i64

@@ -77,8 +77,8 @@ pub(super) struct Rows<'a> {
     /// drive of the subproblem has.
     pub curves: Vec<Numbers>,
     /// Interval of the torque on each joint in each judged case \[N m\]: first index the case, second the joint.
-    /// `per_torque` has the least compliance \[rad/(N m)\] with which the twist grows from that end of the interval at
-    /// which the twist is least.
+    /// `per_torque` has, with the same indices, the least compliance \[rad/(N m)\] by which the twist grows with the
+    /// torque. It is measured from the end of the interval at which the twist is least.
     pub torques: Vec<Vec<Span>>,
     pub per_torque: Vec<Vec<f64>>,
     /// For each row on a tip displacement: the index of the row, its judged case, and the direction along which the
@@ -432,13 +432,13 @@ fn numbers_of(range: &DriveRange, cases: usize) -> Vec<f64> {
     numbers
 }
 
-/// Least secant compliance of a gear \[rad/(N m)\] between the least torque of an interval and any other torque in it.
-/// `range` are the gears.
+/// Least secant compliance \[rad/(N m)\] of the gears `range` between the least torque of an interval and any other
+/// torque in it.
 fn least_twist_per_nm(range: &DriveRange, torque_nm: Span) -> f64 {
     let Span { least, most } = torque_nm;
     let stiff = &range.stiff;
     match least >= 0.0 && most > least {
-        // the slopes of this curve rise, so the secant to the end of the interval is the stiffest
+        // The slopes of this curve rise, so the secant to the end of the interval has the least compliance.
         true => (angle_rad(stiff, most) - angle_rad(stiff, least)) / (most - least) * (1.0 - ROUNDING),
         false => 1.0 / stiff.tangent_nm_per_rad(torque_nm.largest_size() * (1.0 + ROUNDING) + ROUNDING),
     }

@@ -25,7 +25,7 @@ use std::sync::Arc;
 /// The options are reduced once more if the last reduction removed at least this fraction of the designs.
 const WORTH_IT: f64 = 0.3;
 
-/// The inputs of a search, except the parts.
+/// The inputs of a search, except the parts (the options of joints and tubes).
 pub(in super::super) struct Work<'s> {
     /// The designs of the front. `index` finds the highest frequency among the designs up to a given mass and
     /// deflection.
@@ -49,8 +49,8 @@ enum Narrowed {
     Refuted,
     /// So few designs are left that they are searched box by box.
     Few,
-    /// More designs are left than may be judged one by one, and the last step removed few of them. The subproblem is divided
-    /// in one of these ways, unless its local upper bounds can be divided first.
+    /// Two conditions are true: more designs are left than are searched box by box, and the last step removed few of
+    /// them. The subproblem is divided in one of these ways, unless its local upper bounds can be divided first.
     Many(Branchings),
     /// The search was stopped.
     Stopped,

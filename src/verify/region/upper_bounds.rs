@@ -38,8 +38,7 @@ impl UpperBounds {
         Self(nodes)
     }
 
-    /// The node with the number `at`. Node 0 is the root; it is missing (`None`) if
-    /// no region is open.
+    /// The node with the number `at`. Node 0 is the root; it is missing (`None`) if no region is open.
     pub(super) fn node(&self, at: usize) -> Option<Node> {
         self.0.get(at).copied()
     }
@@ -63,7 +62,8 @@ fn thinned(front: &[Objectives], apart: f64) -> Vec<UpperBound> {
     rows.map(worse).collect()
 }
 
-/// The local upper bounds within `limits` that the designs `rows` leave open. No bound lies within another.
+/// The local upper bounds within `limits` of the region that the designs `rows` leave undominated. No bound lies within
+/// another.
 fn left_open(rows: &[UpperBound], limits: UpperBound) -> Vec<UpperBound> {
     let mut uppers = vec![limits];
     for row in rows {

@@ -163,8 +163,8 @@ impl Rows<'_> {
             }
             weights = minimax.weights;
         };
-        // each row by itself, with weight 1; a subproblem with a parent leaves out the rows of mass and tip
-        // displacement, which were tried for the parent already
+        // Each row is tried by itself, with weight 1. The rows of mass and tip displacement are left out for a
+        // subproblem with a parent, because they were tried for the parent already.
         let first = if subproblem.weights.is_empty() { 0 } else { self.first_interval };
         let singles = (first..self.first_mode).map(|row| {
             let mut weights = vec![0.0; self.rows.len()];
@@ -198,7 +198,7 @@ impl Rows<'_> {
     }
 
     /// Adds the row of a mode in every case in which a mixture has a mode below the upper bound's frequency. The
-    /// mixture consists of `members`, with the fractions in `minimax`. Returns whether a row was added.
+    /// mixture consists of `members`, each with its fraction in `minimax`. Returns whether a row was added.
     fn add_shapes(&mut self, members: &[Member], minimax: &Minimax) -> bool {
         let mut between = vec![0.0; self.columns.len()];
         for (member, share) in members.iter().zip(&minimax.shares) {
