@@ -3,7 +3,8 @@
 
 use super::joint_law::Windup;
 
-/// A base that is rigid up to a moment about each horizontal axis, and deflects elastically beyond it.
+/// A base that is rigid as long as the moment about a horizontal axis is at most the preload, and tilts elastically
+/// about this axis beyond it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BaseLift {
     /// Stiffness once the feet have lifted off \[N m/rad\].

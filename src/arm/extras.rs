@@ -56,8 +56,8 @@ const LEAST_HOUSING_KG: f64 = 0.35;
 const FLANGE_KG_PER_M3: f64 = 170.0;
 /// Mass of cables and connectors of one joint \[kg\].
 const CABLE_KG: f64 = 0.05;
-/// Estimated outer diameter of a housed strain-wave gear per unit of its size \[m\], for gears without a diameter in the
-/// catalog. There HFUC gears of size 20 have 0.093 m.
+/// Estimated outer diameter of a housed strain-wave gear per unit of its size \[m\], for gears without a diameter in
+/// the catalog. There HFUC gears of size 20 have 0.093 m.
 const DIAMETER_PER_SIZE_M: f64 = 0.0046;
 
 /// Outer diameter of a gear \[m\]. If the catalog has none, as for every component set, the diameter of a strain-wave
@@ -99,7 +99,7 @@ impl Extras {
         Self {
             housing_kg: motor_housing_kg + gear_housing_kg,
             brake_kg: BRAKE_SHARE * (set_kg + motor_kg),
-            // a motor with a housing has an encoder in its mass, so only the smallest mass is added
+            // the mass of a motor with a housing includes an encoder, so only the smallest mass is added here
             encoder_kg: match frameless {
                 true => (ENCODER_SHARE * (set_kg + motor_kg)).max(LEAST_ENCODER_KG),
                 false => LEAST_ENCODER_KG,

@@ -398,7 +398,8 @@ mod tests {
         let limits = rail.guide.limits;
         assert_eq!((limits.force_n, limits.moment_nm), (Some(2000.0), [None, None, Some(50.0)]));
         assert_eq!(limits.unknown(), ["max_roll_nm", "max_pitch_nm"]);
-        // (100 + 300) / 2000 and 10 / 50; nothing is known of roll and pitch, and the drive holds the first force
+        // (100 + 300) / 2000 of the forces across the travel and 10 / 50 of the yaw moment; roll and pitch have no
+        // limit, and the force along the travel does not count, because the drive holds it
         let used = limits.part_used(&[900.0, -100.0, 300.0].into(), &[70.0, 80.0, -10.0].into());
         assert!((used.expect("a limit") - 0.4).abs() < 1e-12);
         assert_eq!(GuideLimits::default().part_used(&[1.0; 3].into(), &[1.0; 3].into()), None);

@@ -120,7 +120,7 @@ pub(crate) struct EndLoad {
     pub moment_nm: Vector3<f64>,
 }
 
-/// Length and force, or torque, of a spring in a pose.
+/// The state of a spring in a pose: its length and force, or its torque.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Drawn {
     /// A spring between two points.

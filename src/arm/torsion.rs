@@ -16,12 +16,12 @@
 //! % of the exact solution up to the solid bar (sides 1:1 to 1:4), and it never falls as the wall grows. Bredt's shear
 //! stress is the mean over the wall; at the outside of a wall of 0.15 the stress is up to 29 % higher.
 //!
-//! The two numbers 0.21 and 0.085 of the junctions of an I section, and the 0.2 of its outstands, are fitted to Prandtl's
-//! stress function on a grid, for sharp inner edges; both formulas agree at t = T within 2e-5. `J` is within 1.3 % of the
-//! grid if the flanges stand out by at least their thickness and the clear web is at least as high as it is thick. For
-//! flanges that stand out by half their thickness it is up to 5.5 % too large. The usual sum `(2 b T³ + (h-T) t³)/3` counts the
-//! junctions twice and has no free ends: it is 4 % too large for 100 x 200 x 6 x 10 mm and 7 % for 60 x 80 x 20 x 20
-//! mm. A rolled section has more, by the fillets that are left out here.
+//! The two numbers 0.21 and 0.085 of the junctions of an I section, and the 0.2 of its outstands, are fitted to
+//! Prandtl's stress function on a grid, for sharp inner edges; both formulas agree at t = T within 2e-5. `J` is within
+//! 1.3 % of the grid if the flanges stand out by at least their thickness and the clear web is at least as high as it
+//! is thick. For flanges that stand out by half their thickness it is up to 5.5 % too large. The usual sum `(2 b T³ +
+//! (h-T) t³)/3` counts the junctions twice and has no free ends: it is 4 % too large for 100 x 200 x 6 x 10 mm and 7 %
+//! for 60 x 80 x 20 x 20 mm. A rolled section has more, by the fillets that are left out here.
 
 use std::f64::consts::PI;
 

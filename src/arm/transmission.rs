@@ -36,7 +36,7 @@ pub struct Stage {
     pub efficiency: f64,
     /// Twist of the output per torque at the output, with the input held \[rad/(N m)\].
     pub rad_per_nm: f64,
-    /// Moment of inertia at the input \[kg m²\].
+    /// Moment of inertia of the stage, referred to its input \[kg m²\].
     pub inertia_kgm2: f64,
     /// Mass \[kg\].
     pub mass_kg: f64,
@@ -134,7 +134,7 @@ impl Stages {
     }
 }
 
-/// Keys of a joint whose motor does not sit at the joint, or drives it through stages.
+/// The keys of a joint that say where its motor sits and through which stages it drives the joint.
 pub(crate) const TRANSMISSION_KEYS: [&str; 6] =
     ["motor_at", "motor_point_m", "motor_mass_kg", "gear_at", "gear_ratio", "transmission"];
 
@@ -282,7 +282,7 @@ fn gear_ratio(object: &Object, catalogs: &Catalogs) -> Option<f64> {
     catalogs.gear(gear.value().as_str()?).ok().map(|gear| gear.ratio)
 }
 
-/// What a transmission needs to know of an element of its chain.
+/// The properties of an element of the chain that a transmission needs.
 #[derive(Debug, Clone)]
 pub(crate) struct Seen {
     /// Name of the element.
@@ -308,11 +308,11 @@ pub(crate) enum SeenMotion {
 pub(crate) enum HungOn {
     /// The inboard side, which does not move with the joint.
     Start,
-    /// The outboard side, which moves with the joint. For a link, it is the link itself.
+    /// The outboard side of a joint, which moves with the joint; for a link, the link itself.
     Moving,
 }
 
-/// A part of a transmission, as a body of an element of the chain.
+/// A motor or a stage of a transmission, as a body on an element of the chain.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Hung {
     /// Number of the element.

@@ -305,8 +305,8 @@ pub struct Traits {
     /// Finds a contradiction between the values of all parameters, each of which is within its limits. Returns the
     /// problem and the advice; `None` if there is no contradiction.
     pub contradiction: fn(&[f64]) -> Option<(&'static str, &'static str)>,
-    /// Changes fitted numbers that no arm can have, such as amplitudes whose sum is too large. The result is the
-    /// nearest numbers that an arm can have.
+    /// Replaces, in place, fitted numbers that no arm can have, such as amplitudes whose sum is too large, by numbers
+    /// near them that an arm can have.
     pub bounded: fn(&mut [f64]),
 }
 

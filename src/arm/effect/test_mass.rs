@@ -12,7 +12,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter { default: Some(0.0), ..Parameter::vector("cg_m", -0.5, 0.5, 0.05) }.expected(-0.2, 0.2),
 ];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "test_mass",
     summary: "something hangs at the tip in one kind of test",

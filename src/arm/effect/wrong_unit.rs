@@ -7,7 +7,7 @@ use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] = &[Parameter::number("factor", 1e-7, 1e7, 25.4, Scale::Log)];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "wrong_unit",
     summary: "a channel is written in another unit than its column says",
@@ -29,7 +29,8 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
 pub enum UnitColumn {
     /// The column of the readings.
     Reading,
-    /// The columns of forces or torques. The readings are then those of another load, so they seem to have a factor.
+    /// The columns of forces or torques. The actual load then differs from the stated one by a factor, and so do the
+    /// readings from the values that the stated load would cause.
     Force,
     /// The column of payloads.
     Payload,
