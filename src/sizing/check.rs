@@ -9,7 +9,7 @@ use std::fmt;
 pub enum CheckKind {
     /// Static plus linear torque is at most the gear's limit for repeated peaks.
     GearPeak,
-    /// Cubic mean torque is at most the gear's limit for average torque.
+    /// The cubic mean of the torque is at most the gear's limit for average torque.
     GearMean,
     /// Torque in an emergency stop is at most the gear's limit for momentary peaks.
     GearStop,
@@ -158,8 +158,9 @@ impl CheckKind {
     }
 
     /// Whether a drive is excluded if the rating that this check needs is blank. Blank ratings of an output bearing and
-    /// blank sizes do not exclude it; they are left unchecked. Nor do blank buckling and ratcheting torques, which few
-    /// vendors state; both lie above the momentary peak torque, which must be known.
+    /// blank sizes do not exclude it; they are left unchecked. Blank buckling and ratcheting torques do not exclude it
+    /// either, because few vendors state them and both lie above the momentary peak torque, which must be known. The
+    /// number of stops is left unchecked for kinds of gears that have no rule for it.
     pub fn needs_its_rating(self) -> bool {
         !self.is_bearing()
             && !self.is_fit()
@@ -211,7 +212,7 @@ pub struct Check {
     /// Exponent p of the torque: the margin is proportional to torque^-p. It is 1 for most checks, and for lives the
     /// exponent of the life formula.
     pub torque_exponent: f64,
-    /// Whether forces along a travel take the place of torques about an axis.
+    /// Whether the joint slides. The check then compares forces along the travel \[N\] in the place of torques.
     pub slides: bool,
 }
 
@@ -225,7 +226,7 @@ impl Check {
         }
     }
 
-    /// A check that a blank rating prevents.
+    /// A check of the kind `kind` that could not be made because `rating` is blank.
     pub(super) fn not_made(kind: CheckKind, rating: MissingRating) -> Self {
         let torque_exponent = kind.torque_exponent();
         Self {

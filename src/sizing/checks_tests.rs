@@ -122,7 +122,7 @@ fn a_brake_holds_what_the_motor_need_not() {
 
 #[test]
 fn the_bearing_is_checked_if_something_loads_it_and_its_ratings_are_known() {
-    // 661 N m and the offset of 0.02 m times 1983 N of radial force are 701 N m
+    // the moment at the bearing's centre: 661 N m plus 0.02 m times 1983 N of radial force are 701 N m
     let loaded = |d: &mut JointDemand| d.bearing = bearing_loads(661.0);
     assert_eq!(failing(|_, _, _, d| loaded(d)), [CheckKind::BearingMoment]);
     let blank = |g: &mut Gear, d: &mut JointDemand| {

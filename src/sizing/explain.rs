@@ -72,7 +72,7 @@ impl Rejection {
         let mut ratings: Vec<(&str, Vec<&str>)> = Vec::new();
         for check in &self.checks {
             let CheckState::NotChecked(rating) = check.state else { continue };
-            // a row of actuators.csv is the row of its motor too
+            // a row of actuators.csv has gear and motor in one, so a rating of the motor is a column of the same row
             let column = rating.0.strip_prefix("motor ").unwrap_or(rating.0);
             match ratings.iter_mut().find(|(other, _)| *other == column) {
                 Some((_, checks)) => checks.push(check.kind.name()),

@@ -15,7 +15,7 @@ const NAMED_OF_GROUP: usize = 3;
 struct LackingPart<'t> {
     id: &'t str,
     is_built_in: bool,
-    /// Whether the known sizes of the part are allowed.
+    /// Whether the sizes of the part that are known are within the study's limits.
     fits: bool,
     lacks: Vec<Lack>,
 }
@@ -55,7 +55,8 @@ impl DriveTable<'_> {
             fits: fit.allows(&g.envelope_as(self.gear_mass()), &no_size),
             lacks: g.lacks(self.gear_mass()),
         });
-        // a motor that goes with none of the gears, such as any motor if only actuators may be chosen, does not matter
+        // a motor that goes with none of the allowed gears does not matter; if only actuators may be chosen, this is
+        // every other motor
         let matters = |m: &&&Motor| self.gears().iter().any(|gear| gear.goes_with(m));
         let motors = self.motors().iter().filter(matters).map(|m| LackingPart {
             id: &m.id,
@@ -71,7 +72,7 @@ impl DriveTable<'_> {
                 None => lacking.push(part),
             }
         }
-        // what does not fit cannot be chosen, whatever figures it has
+        // a part that does not fit cannot be chosen, whatever its other ratings are
         if lacking.iter().any(|part| part.fits) {
             lacking.retain(|part| part.fits || !part.is_built_in);
         }

@@ -47,7 +47,7 @@ pub enum Ends {
 }
 
 impl Ends {
-    /// The words of files, with what they mean.
+    /// The words for the ends of a screw in files, each with its value.
     pub const WORDS: [(&'static str, Self); 4] = [
         ("fixed_free", Self::FixedFree),
         ("supported_supported", Self::Supported),

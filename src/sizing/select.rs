@@ -209,9 +209,9 @@ impl<'c> DriveTable<'c> {
         table
     }
 
-    /// Fills the table with the pairs of gear and motor that may be chosen, the one with the least mass (extras included)
-    /// first. Their mass is known, their torsion too if it is needed, no rating that a check needs is blank, and speeds,
-    /// emergency stops and sizes are allowed.
+    /// Fills the table with the pairs of gear and motor that may be chosen, the one with the least mass (extras
+    /// included) first. Their mass is known, their torsion too if it is needed, no rating that a check needs is blank,
+    /// and speeds, emergency stops and sizes are allowed.
     fn fill(&mut self) {
         let mut legal = Vec::new();
         for (drive, pair) in self.all_pairs().filter(|(drive, _)| self.knows_torsion(drive.gear)) {
@@ -221,8 +221,8 @@ impl<'c> DriveTable<'c> {
                 legal.push((mass_kg, drive, pair, limits));
             }
         }
-        // places are sorted, because the limits are large; names settle ties, so that the order of the catalog files
-        // does not matter
+        // indices are sorted in the place of the drives, because the limits are large to move; drives of equal mass are
+        // in the order of their names, so that the order of the catalog files does not matter
         let mut places: Vec<usize> = (0..legal.len()).collect();
         places.sort_by(|&a, &b| {
             let (a, b) = (&legal[a], &legal[b]);
@@ -240,7 +240,7 @@ impl<'c> DriveTable<'c> {
     fn raise_ladder(&mut self) {
         for index in 0..self.limits.len() {
             let limits = self.limits[index];
-            // a lighter drive meets every demand that a covered drive meets
+            // a drive is covered if a lighter one meets every demand that it meets; it is then never the lightest
             if self.is_covered(&limits) {
                 continue;
             }

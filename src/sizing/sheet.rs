@@ -75,7 +75,7 @@ pub struct JointSizingRow {
     pub gear: String,
     /// Name of the chosen motor.
     pub motor: String,
-    /// Label of the check with the smallest torque margin.
+    /// Label of the check with the smallest torque margin; `None` if no check could be made.
     pub binds: Option<&'static str>,
     /// Torque margin of the binding check: allowed over needed torque. For a life it is a root of the ratio of lives,
     /// see [`Check::torque_margin`]. `None` also if nothing is needed.
