@@ -1,5 +1,5 @@
-//! The payloads that an arm file holds at rest, in each pose: with them no joint exceeds its torque or force limit, and
-//! no output bearing its load limits.
+//! The payloads that the arm of an arm file holds at rest, in each pose: with such a payload no joint exceeds its
+//! torque or force limit, and no output bearing its load limits.
 //!
 //! An arm file says nothing of motion and duty, so only static loads are judged. The payload keeps the centre of
 //! gravity that the case states. Torques and forces are affine in the mass of the payload: |a + b m| <= limit is an
@@ -50,7 +50,7 @@ pub fn capacity_of_arm(
     let zero = r#"[{"name": "every joint at zero", "pose": {}}]"#;
     let cases = cases.map_or_else(|| Document::parse("zero", zero), Ok)?;
     let cases = read_load_cases(cases, &arm.driven_joints())?;
-    // the limits may be the import.json of a robot, which states ranges too
+    // the file of limits may be the `import.json` of an imported robot, which states the ranges of its joints too
     let beyond = limits.as_ref().and_then(|file| beyond_ranges(file.root().value(), arm, &cases));
     let limits = match limits {
         Some(file) => read_limits(file, arm)?,
@@ -227,7 +227,8 @@ mod tests {
     use crate::catalog::Catalogs;
     use crate::input::json::Document;
 
-    /// The payloads that hold an arm with this chain (and further keys) in these cases, with limits of joints.
+    /// The payloads that an arm holds in these cases, with these limits of its joints. `chain` is the chain of the arm
+    /// file, with further keys if need be.
     fn found(chain: &str, cases: &str, limits: &str) -> Capacity {
         let text = format!("{{\"chain\": {chain}}}");
         let arm = read_arm_document(Document::parse("a", &text).expect("JSON"), &Catalogs::default())
@@ -240,8 +241,8 @@ mod tests {
 
     #[test]
     fn a_lever_holds_what_its_torque_allows() {
-        // 2 kg in the middle of 1 m and m at its end, with a limit of 50 N m: m = (50/9.81 - 1)/1; folded up, nothing
-        // limits m
+        // the link weighs 2 kg at the middle of 1 m and the payload m is at its end; the limit of 50 N m gives m =
+        // (50/9.81 - 1)/1; folded up, nothing limits m
         let found = found(
             r#"[{"type": "joint", "name": "j", "axis": [0, 1, 0], "stiffness_nm_per_rad": null},
             {"type": "link", "name": "l", "vector_m": [1, 0, 0], "mass_kg": 2}]"#,

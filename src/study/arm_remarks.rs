@@ -12,8 +12,8 @@ use crate::catalog::Catalogs;
 const LEFT_OUT: &str = "Left out of every number, unless the file states it: the compliance of the connections between links and \
     joints, and the cables along the links. Also temperature, and whether the parts fit into each other.";
 
-/// Remarks on the analysis of an arm, in sentences: on links of materials that creep, on links with stated factors, on I
-/// sections, and on what is left out of every number.
+/// Remarks on the analysis of an arm, in sentences: on links of materials that creep, on links with stated factors, on
+/// I sections, and on what is left out of every number.
 pub fn arm_remarks(arm: &Arm, catalogs: &Catalogs) -> Vec<String> {
     let has_gear = |element: &Element| matches!(element, Element::Joint(joint) if joint.gear.is_some());
     let left_out = arm.chain.iter().any(has_gear).then(|| LEFT_OUT.to_string());

@@ -1,8 +1,8 @@
 //! Choices of springs and counterweights: a study may list several values for a number of a spring or a counterweight.
 //!
 //! Each combination of these values is a study of its own, with one value each. Every design belongs to one of these
-//! studies. The front of the whole study therefore consists of the designs on their fronts that no design on the front
-//! of another one dominates.
+//! studies. The front of the whole study is therefore found from the fronts of these studies: it consists of the
+//! designs on them that no design on another one of these fronts dominates.
 
 use serde_json::{Map, Value};
 

@@ -226,7 +226,7 @@ fn missing_words(table: &DriveTable) -> String {
     missing.map(|missing| format!("; not checked: {missing}{OWN_CATALOG}")).unwrap_or_default()
 }
 
-/// Where to state a rating that the catalogs lack.
+/// The end of a sentence that says where to state a rating that the catalogs lack.
 const OWN_CATALOG: &str = " (state what you know of them in a catalog of your own, --catalogs DIR)";
 
 /// The end of a sentence on cables. It names actuators of the catalogs that leave the passage for cables which the

@@ -1,4 +1,4 @@
-//! The single limits of a study that a design can violate: which quantity each limits, the limit, and the value of a
+//! The limits of a study one by one: which quantity of a design each limits, the stated limit, and the value of a
 //! design.
 
 use crate::pareto::objectives::{Objective, Objectives};

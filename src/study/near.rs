@@ -54,8 +54,8 @@ pub fn near_front(
     slack: Slack,
     stop: &AtomicBool,
 ) -> Option<NearFront> {
-    // the full model removed some candidates of the sweep from the front; they may be near it, so they do not count as
-    // front
+    // the full model may have removed candidates of the sweep from the front; they may be near designs, so only the
+    // designs that stayed on the front count as the front here
     let numbers: HashSet<u128> = outcome.front.iter().map(|j| j.design.number).collect();
     let on_front: Vec<_> =
         outcome.sweep.front.iter().filter(|c| numbers.contains(&c.number)).copied().collect();

@@ -133,7 +133,8 @@ pub fn judge_swept(study: &Study, problem: &ArmProblem, outcome: SweepOutcome) -
     }
 }
 
-/// Does the work while another thread watches. The watcher is told when the work ends, even by a panic.
+/// Runs `work` and returns its result, while `watch` runs on another thread. The flag that `watch` is given is set when
+/// `work` ends, even by a panic.
 pub(super) fn watched<T>(watch: impl FnOnce(&AtomicBool) + Send, work: impl FnOnce() -> T) -> T {
     struct EndOnDrop<'f>(&'f AtomicBool);
     impl Drop for EndOnDrop<'_> {
@@ -181,7 +182,7 @@ pub struct Extent {
     pub near: Option<Slack>,
 }
 
-/// What the searches found; designs are numbered in the whole space.
+/// The results of the searches, one for each front. Their designs are numbered in the whole space.
 pub(super) struct Searched {
     whole: ExactOutcome,
     by_material: Vec<(String, ExactOutcome)>,

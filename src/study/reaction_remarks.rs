@@ -29,7 +29,7 @@ struct Held {
     own_nm: [f64; 2],
     /// The check with the smallest margin; `None` if no check could be made.
     binding: Option<Check>,
-    /// Whether a rating is blank that every drive needs for these checks.
+    /// Whether a check other than those of buckling and ratcheting could not be made because a rating is blank.
     is_open: bool,
 }
 
@@ -55,7 +55,8 @@ impl Held {
         }
     }
 
-    /// Whether the reaction exceeds the torque of the joint's own motion.
+    /// Whether the reaction exceeds the torque of the joint's own motion by more than [`NAMED_FROM`], in a ramp or in a
+    /// stop.
     fn exceeds(&self) -> bool {
         (0..2).any(|i| self.reaction_nm[i] > (1.0 + NAMED_FROM) * self.own_nm[i])
     }

@@ -190,7 +190,8 @@ fn remarks_on(space: &DesignSpace, harness_kg_per_m: f64, catalogs: &Catalogs) -
     out
 }
 
-/// The required motion `motion` under the gravity of the study. Returns `None` after recording a fault.
+/// The motion `motion` that the study requires, with the gravity of the study written into it. Returns `None` after
+/// recording a fault.
 fn under_gravity(
     root: &Object,
     gravity_m_s2: f64,

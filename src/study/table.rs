@@ -129,7 +129,7 @@ pub(super) struct DrivenJoint<'c> {
     pub demand: JointDemand,
     /// Torque at the joint for each newton metre at the output of the gear; 1 unless stages are behind the gear.
     pub gain_after_gear: f64,
-    /// Mass of the arm outboard of the joint and of its drive \[kg\].
+    /// Mass of the arm outboard of the joint plus mass of the joint's drive \[kg\].
     inward_kg: f64,
 }
 
