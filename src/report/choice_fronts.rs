@@ -10,7 +10,7 @@ const CHOICE: &str = "choice";
 /// Column of a front with the number of the set of equally good designs to which a design belongs.
 const TIE_GROUP: &str = "tie_group";
 
-/// The front of one choice.
+/// The front of one choice of springs and counterweights.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ChoiceFront {
     /// Name of the folder with the result of this choice.

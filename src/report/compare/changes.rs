@@ -24,9 +24,9 @@ pub(crate) struct Values {
 /// One of the two models of the arm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Model {
-    /// The model without corrections.
+    /// The arm as its file describes it, without corrections.
     Nominal,
-    /// The model with corrections.
+    /// The arm with the corrections of a measured arm.
     Corrected,
 }
 
