@@ -200,7 +200,7 @@ fn rigid_bearings(catalogs: &Catalogs) -> String {
     }
 }
 
-/// Ratings that the row of a belt may leave blank, each as its column and the number that then stands for it.
+/// Ratings that the row of a belt may leave blank: the column of each, and the number that the checks use in its place.
 fn ratings_of_belt(belt: &Gear) -> [(&'static str, Option<f64>); 4] {
     [
         ("average_torque_limit_nm", belt.average_torque_limit_nm),
@@ -210,7 +210,8 @@ fn ratings_of_belt(belt: &Gear) -> [(&'static str, Option<f64>); 4] {
     ]
 }
 
-/// A list of the belts with their blank ratings, the numbers that stand for them, and what no check of a belt sees.
+/// A list of the belts with their blank ratings, the numbers that the checks use in their place, and the properties of
+/// belts that no check considers.
 fn belts(catalogs: &Catalogs) -> String {
     let mut out = String::new();
     // a belt without a rated torque is listed with the parts that cannot be used

@@ -25,7 +25,7 @@ struct Found {
     place: PathBuf,
     /// Kind of the file or folder in words, such as "study".
     what: &'static str,
-    /// Why the file is not sound; `Ok` if it is sound.
+    /// `Ok` if the file or folder has no faults, else the reason why it is not sound.
     outcome: Result<(), Problem>,
 }
 
@@ -240,7 +240,8 @@ fn result_words(manifest: &str) -> &'static str {
     }
 }
 
-/// Checks that the files of a result still have the hashes that the file `manifest` lists. Returns what this file says.
+/// Checks that the files of a result still have the hashes that the file `manifest` lists. Returns the content of this
+/// file.
 fn unchanged(folder: &Path, manifest: &str) -> Result<Value, Problem> {
     let path = folder.join(manifest);
     let text = std::fs::read_to_string(&path).map_err(|e| Problem::Unreadable(e.to_string()))?;

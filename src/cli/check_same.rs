@@ -10,8 +10,8 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Commands in summary.md and report.html after which the folder of results is named. The name is left out of the
-/// comparison, because each result is in a folder of its own.
+/// Texts in summary.md and report.html that are followed by the name of the folder of results. The name is left out of
+/// the comparison, because each result is in a folder of its own.
 const COMMANDS: [&str; 5] =
     ["armwright design ", "armwright analyze ", "armwright compare ", "armwright front check ", " --cases "];
 

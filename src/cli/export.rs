@@ -101,7 +101,7 @@ fn said(exported: &Exported) -> String {
     left_out.chain(notes).collect()
 }
 
-/// What is exported.
+/// The arm that is exported, and its load cases.
 struct Source {
     arm: Arm,
     cases: Vec<LoadCase>,

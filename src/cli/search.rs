@@ -144,7 +144,7 @@ impl SearchArgs {
         self.fresh
     }
 
-    /// What becomes of a state that an earlier process saved.
+    /// Whether a state that an earlier process saved is read or removed.
     pub(super) fn earlier(&self) -> Earlier {
         if self.fresh { Earlier::Removed } else { Earlier::Read }
     }
@@ -392,7 +392,7 @@ fn none_found(boxes: u64, is_interrupted: bool) -> Failure {
     if is_interrupted { Failure::Interrupted(why) } else { Failure::Partial(why) }
 }
 
-/// Words on the time that a search with a time limit takes after the limit.
+/// Words on the time that a search with a time limit took after the limit, to evaluate designs and write files.
 fn finishing_words(finishing: Duration) -> String {
     format!("Working out and writing the files took {:.1} s more.\n", finishing.as_secs_f64())
 }

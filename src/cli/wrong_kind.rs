@@ -41,7 +41,7 @@ pub(super) fn study_of(name: &str, catalogs: &Catalogs) -> Result<(Study, String
     Ok(load_study(name, catalogs)?)
 }
 
-/// The kind of a file in words.
+/// The kind of a file in words, with its article, for messages.
 fn with_article(kind: &str) -> String {
     match kind {
         "arm" => "an arm file".into(),
@@ -55,7 +55,7 @@ fn with_article(kind: &str) -> String {
     }
 }
 
-/// What to do with a file of a kind.
+/// Advice what to do with the file `path`, which is of the kind `kind`.
 fn next_step(kind: &str, path: &Path) -> String {
     let file = path.display();
     match kind {
