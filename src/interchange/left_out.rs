@@ -51,13 +51,14 @@ impl Remainder {
         Self { structure, case: case.clone(), whole, whole_case, springs, tip_m, left_out: Vec::new() }
     }
 
-    /// What remains, with the springs of the file and the link model `links`.
+    /// The arm without the properties that were removed so far, with the springs of the file and the link model
+    /// `links`.
     pub(crate) fn snapshot(&self, links: LinkModel) -> Snapshot {
         let whole = Snapshot::new(self.whole.clone(), &self.whole_case, links);
         Snapshot::new(self.structure.clone(), &self.case, links).with_springs(self.springs, &whole)
     }
 
-    /// Displacement of the tip of what remains \[m\].
+    /// Displacement of the tip of the arm without the properties that were removed so far \[m\].
     fn rest_m(&self) -> Vector3<f64> {
         self.snapshot(self.case.links).tip_m()
     }

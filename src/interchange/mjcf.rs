@@ -353,7 +353,7 @@ fn name_bodies(nodes: &mut [Node]) {
     nodes.iter_mut().for_each(|node| node.name = free.take(&node.name, "_body"));
 }
 
-/// Mass and inertia that are too small to change anything, for bodies that have none.
+/// Least values of mass and inertia, too small to change anything, for bodies that have less.
 struct Least {
     /// Mass of a body without mass \[kg\].
     mass_kg: f64,
@@ -366,7 +366,7 @@ impl Least {
         Self { mass_kg: LEAST_MASS * if arm_kg > 0.0 { arm_kg } else { 1.0 } }
     }
 
-    /// A body as the file has it.
+    /// The body as the file states it: its own mass and inertia, raised to the least values.
     fn written(&self, node: &Node) -> RigidBody {
         let RigidBody { mass_kg, cg_m, inertia_kgm2 } = mass_properties(&node.inertia);
         let inertia_kgm2 = self.raised(mass_kg, inertia_kgm2);
