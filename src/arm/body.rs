@@ -17,7 +17,7 @@ const ROUNDING: f64 = 1e-6;
 /// A rigid body on a link or a joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RigidBody {
-    /// Mass \[kg\].
+    /// Mass of the body \[kg\].
     pub mass_kg: f64,
     /// Position of the centre of gravity from the start of the element, in the carried frame \[m\].
     pub cg_m: Vector3<f64>,

@@ -25,7 +25,7 @@ impl Structure {
         }
         let parts = self.pieces.iter().zip(&starts).flat_map(|(piece, starts)| parts(piece, starts));
         let mut out = Structure { pieces: parts.collect(), ..self.clone() };
-        // index of the first part of each piece
+        // index of the first part of each piece in the divided structure
         let first = |piece: usize| starts[..piece].iter().map(Vec::len).sum::<usize>();
         let moved = |end: &mut SpringEnd| {
             let SpringPlace::Element(piece) = end.on else { return };

@@ -39,12 +39,12 @@ pub enum ExtrasSource {
     Stated(Extras),
 }
 
-/// Mass of the housing relative to the mass of the parts that it contains: 20 % over 65 %, from published fractions of
-/// the mass of a joint.
+/// Mass of the housing relative to the mass of the parts that it contains: 20 % divided by 65 %, both published
+/// fractions of the mass of a joint.
 const HOUSING_SHARE: f64 = 0.31;
-/// Mass of the brake relative to the mass of motor and component set: 10 % over 65 %.
+/// Mass of the brake relative to the mass of motor and component set: 10 % divided by 65 %.
 const BRAKE_SHARE: f64 = 0.15;
-/// Mass of the encoders relative to the mass of motor and component set: 4 % over 65 %.
+/// Mass of the encoders relative to the mass of motor and component set: 4 % divided by 65 %.
 const ENCODER_SHARE: f64 = 0.06;
 /// Smallest mass of the encoders \[kg\].
 const LEAST_ENCODER_KG: f64 = 0.05;

@@ -216,9 +216,10 @@ pub struct Joint {
     pub extras: Extras,
     /// Rigid bodies on the joint, in addition to all these masses.
     pub bodies: JointBodies,
-    /// Name of the gear, for information only. The calculation uses the numbers above.
+    /// Name of the gear, for information only; `None` if the file names none. The calculation uses the numbers of the
+    /// other fields.
     pub gear: Option<String>,
-    /// Name of the motor, for information only.
+    /// Name of the motor, for information only; `None` if the file names none.
     pub motor: Option<String>,
     /// Driving joints of a passive joint, each with its factor: the angle is the sum of factors times the angles of
     /// these joints. `None` for a driven joint.

@@ -38,9 +38,9 @@ pub struct Prismatic {
     /// Rigid bodies on the joint. Bodies that stay are measured from where the joint begins, bodies that travel from
     /// the point to which the joint has travelled.
     pub bodies: JointBodies,
-    /// The screw or rack within `fixed_mass_kg`, for information only.
+    /// The screw or rack within `fixed_mass_kg`, for information only; `None` if the file names none.
     pub gear: Option<NamedPart>,
-    /// The motor within `fixed_mass_kg`, for information only.
+    /// The motor within `fixed_mass_kg`, for information only; `None` if the file names none.
     pub motor: Option<NamedPart>,
 }
 
@@ -96,11 +96,12 @@ impl Moves {
 /// loads that it holds.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Guide {
-    /// Stiffness in roll, about the travel \[N m/rad\].
+    /// Stiffness in roll, about the travel \[N m/rad\]; `None` means rigid.
     pub roll_nm_per_rad: Option<f64>,
-    /// Stiffness in pitch, about the y axis of the section frame whose x axis is the travel \[N m/rad\].
+    /// Stiffness in pitch, about the y axis of the section frame whose x axis is the travel \[N m/rad\]; `None` means
+    /// rigid.
     pub pitch_nm_per_rad: Option<f64>,
-    /// Stiffness in yaw, about the z axis of the same section frame \[N m/rad\].
+    /// Stiffness in yaw, about the z axis of the same section frame \[N m/rad\]; `None` means rigid.
     pub yaw_nm_per_rad: Option<f64>,
     /// The largest loads, each acting alone.
     pub limits: GuideLimits,
@@ -110,9 +111,9 @@ pub struct Guide {
 /// factor for which the maker asks. `None` means unknown.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GuideLimits {
-    /// Force across the travel, along the y or the z axis of the guide \[N\].
+    /// Force across the travel, along the y or the z axis of the guide \[N\]; `None` means unknown.
     pub force_n: Option<f64>,
-    /// Moments in the order roll, pitch, yaw \[N m\].
+    /// Moments in the order roll, pitch, yaw \[N m\]; `None` means unknown.
     pub moment_nm: [Option<f64>; 3],
 }
 
@@ -343,9 +344,9 @@ pub struct PrismaticPiece {
     pub guide_rad_per_nm: Vector3<f64>,
     /// Whether a carriage or a ram travels. It decides where the springs of the guide are.
     pub moves: Moves,
-    /// Mass that travels \[kg\].
+    /// Mass that travels with the joint \[kg\].
     pub mass_kg: f64,
-    /// Mass that stays \[kg\].
+    /// Mass that stays where the joint begins \[kg\].
     pub fixed_mass_kg: f64,
     /// Rigid bodies on the joint. Some stay, others travel.
     pub bodies: JointBodies,

@@ -75,7 +75,7 @@ pub(super) fn i_constant(b: f64, h: f64, web: f64, flange: f64) -> f64 {
         let outstand = (b - web) / 2.0 * flange.powi(3) / 3.0 - free_end + 0.2 * web * flange.powi(3);
         bar_constant(h, web) + 4.0 * outstand
     };
-    // no section is stiffer than the bar that contains it
+    // an I section is not stiffer in torsion than the solid bar of the same outline
     sum.min(bar_constant(b, h))
 }
 
@@ -96,7 +96,7 @@ fn open(b: f64, h: f64, t: f64) -> f64 {
     2.0 / 3.0 * t.powi(3) * ((b - t) + (h - t))
 }
 
-/// Sum of n⁻⁵ over the odd n, which is 31/32 ζ(5).
+/// Sum of n⁻⁵ over the odd numbers n from 1 on, which is 31/32 ζ(5) with Riemann's zeta function ζ.
 const ODD_FIFTH_POWERS: f64 = 1.004_523_762_795_139_5;
 const ODD_ORDERS: [f64; 5] = [1.0, 3.0, 5.0, 7.0, 9.0];
 
@@ -221,7 +221,8 @@ mod tests {
             let double = (2.0 * b * flange.powi(3) + (h - flange) * web.powi(3)) / 3.0;
             [i_constant(b, h, web, flange) / exact - 1.0, double / exact - 1.0]
         };
-        // 100 x 200 x 6 x 10 mm, 60 x 80 x 20 x 20 mm, a thick web, a thin one, the shortest outstands and webs
+        // sides in cells: sections of 100 x 200 x 6 x 10 mm and 60 x 80 x 20 x 20 mm, a thick web, a thin web, the
+        // shortest outstands and webs
         let sections = [
             [100, 200, 6, 10],
             [36, 48, 12, 12],
@@ -270,8 +271,9 @@ mod tests {
         4.0 * load.dot(&conjugate_gradients(&edges, &load))
     }
 
-    /// Solves a network of springs `edges` (from, to, stiffness) under a load. A spring without `to` is fixed to the
-    /// ground.
+    /// The displacements of the nodes of a network of springs under the forces `load` on them, by the method of
+    /// conjugate gradients. Each item of `edges` has the two nodes that a spring connects and its stiffness. A spring
+    /// without a second node is fixed to the ground.
     fn conjugate_gradients(edges: &[(usize, Option<usize>, f64)], load: &DVector<f64>) -> DVector<f64> {
         let times = |x: &DVector<f64>| {
             let mut out = DVector::zeros(x.len());

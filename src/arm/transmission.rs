@@ -32,13 +32,13 @@ use serde_json::{Value, json};
 pub struct Stage {
     /// Turns of the input per turn of the output.
     pub ratio: f64,
-    /// Part of the power that arrives at the output.
+    /// Fraction of the input power that arrives at the output.
     pub efficiency: f64,
     /// Twist of the output per torque at the output, with the input held \[rad/(N m)\].
     pub rad_per_nm: f64,
     /// Moment of inertia of the stage, referred to its input \[kg m²\].
     pub inertia_kgm2: f64,
-    /// Mass \[kg\].
+    /// Mass of the stage \[kg\].
     pub mass_kg: f64,
 }
 
@@ -89,7 +89,7 @@ pub struct Stages {
     pub before: Stage,
     /// Between the gear and the joint.
     pub after: Stage,
-    /// Ratio of the gear, if the file states it in numbers.
+    /// Ratio of the gear, if the file states it in numbers; otherwise `None`.
     pub gear_ratio: Option<f64>,
 }
 

@@ -7,7 +7,7 @@ use std::fmt;
 /// A number that a part's row leaves blank.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Lack {
-    /// Column of the number.
+    /// Name of the column that the number would have.
     pub figure: &'static str,
     /// The check or property for which the number is needed.
     pub purpose: &'static str,

@@ -207,7 +207,7 @@ struct End<'a> {
     pose: &'a AtPose,
     /// The payload at this end, in words.
     kg: String,
-    /// What fails beyond it.
+    /// The joint or link that fails beyond this end, and the check that it fails.
     limit: &'a Limit,
 }
 

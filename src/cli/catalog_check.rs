@@ -127,7 +127,8 @@ fn unchoosable(catalogs: &Catalogs) -> String {
         }
     };
     for gear in &catalogs.gears {
-        // a gear sold as a component set has no mass of a housed unit, and vice versa
+        // the mass that is needed is that of the version in which the gear is sold: as a component set or as a housed
+        // unit
         let mass = match gear.mass_housed_unit_kg {
             None if gear.mass_component_set_kg.is_some() => GearMass::ComponentSet,
             _ => GearMass::HousedUnit,

@@ -19,7 +19,7 @@ use crate::study::read_study;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// What was found out about one file or folder.
+/// The findings on one file or folder.
 struct Found {
     /// Path of the file or folder.
     place: PathBuf,
@@ -117,7 +117,7 @@ fn look_at_folder(folder: &Path, catalogs: &Catalogs) -> Look {
     if CatalogFile::ALL.iter().any(|file| has(file.file_name())) {
         return ("catalogs", Catalogs::load(Some(folder)).map(drop).map_err(Problem::from));
     }
-    // an export of an arm file has an arm.json too
+    // the order matters: an export of an arm file has an arm.json too
     if let Some(name) = ["export.json", "study.json", "arm.json"].into_iter().find(|name| has(name)) {
         let (what, outcome) = look_at_file(&folder.join(name), catalogs);
         return (what, outcome);

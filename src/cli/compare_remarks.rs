@@ -115,7 +115,8 @@ fn each(known: &[&Said], words: impl Fn(&Value) -> String) -> String {
     labelled.collect::<Vec<_>>().join(", ")
 }
 
-/// What differs in the vectors of the links, with the reach of each stretched arm; `None` if nothing differs.
+/// Words on the differences in the vectors of the links, with the reach of each stretched arm; `None` if nothing
+/// differs.
 fn reaches_differ(known: &[&Said]) -> Option<String> {
     let vectors = |study: &Value| elements(study, "link").map(|link| link["vector_m"].clone()).collect();
     differs(known, vectors).then(|| {
@@ -124,7 +125,7 @@ fn reaches_differ(known: &[&Said]) -> Option<String> {
     })
 }
 
-/// What differs in number, kind and axes of the joints; `None` if nothing differs.
+/// Words on the differences in number, kind and axes of the joints; `None` if nothing differs.
 fn joints_differ(known: &[&Said]) -> Option<String> {
     let joints = |study: &Value| -> Vec<Value> {
         let axis = |kind| elements(study, kind).map(|joint| joint["axis"].clone()).collect::<Value>();

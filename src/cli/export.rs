@@ -61,7 +61,7 @@ pub(crate) struct ExportArgs {
     backlash: bool,
 }
 
-/// Executes the verb.
+/// Runs `armwright export`: writes the files, and returns the text to print.
 pub(super) fn run(args: &ExportArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let Source { arm, cases, inputs } = source(args, catalogs)?;
     let request = ExportRequest {

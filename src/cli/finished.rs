@@ -95,7 +95,7 @@ pub(super) fn is_front_of_material(name: &str) -> bool {
     name.starts_with("front.") && name.ends_with(".csv") && name != FRONT
 }
 
-/// What an exact search proved about its front.
+/// The facts that an exact search proved about its front.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FoundExactly {
     /// Number of boxes whose bounds were computed, and number of boxes that were left open.
@@ -121,9 +121,9 @@ pub(super) struct Finished<'a> {
     pub whole: &'a DesignSpace,
     /// The fronts that were found.
     pub outcome: &'a StudyOutcome,
-    /// Near designs, if an exact search looked for them.
+    /// The near designs that an exact search listed; `None` if it was not asked for them, or could not list them.
     pub near: Option<&'a NearDesigns>,
-    /// What an exact search proved about its front; `None` if every design was visited.
+    /// The facts that an exact search proved about its front; `None` if every design was visited.
     pub exact: Option<FoundExactly>,
     /// Time that the search took \[s\].
     pub elapsed_s: f64,
@@ -132,7 +132,7 @@ pub(super) struct Finished<'a> {
     pub dir: &'a Path,
 }
 
-/// What a search found that visited every design.
+/// The result of a search that visited every design.
 pub(super) struct Visited<'a> {
     pub problem: &'a ArmProblem<'a>,
     pub outcome: &'a StudyOutcome,
@@ -183,7 +183,8 @@ impl Finished<'_> {
             let mut all = [tables, std::mem::take(&mut extra.files)].concat();
             all.push((RUN.into(), pretty(&run)));
             let kept = keep(&all).and_then(|names| {
-                // run.json says too which names are taken, and that is known only now
+                // `run.json` also lists the names that are taken by other files. They are known only now, so it is made
+                // and written again.
                 all.last_mut().expect("run.json").1 =
                     pretty(&self.run_json(&summary, &supplements, &extra.missing_with(&names)));
                 if names.is_empty() { Ok(names) } else { keep(&all) }

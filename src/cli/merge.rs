@@ -175,7 +175,7 @@ impl Joining<'_> {
     }
 }
 
-/// Executes `status`.
+/// Runs `armwright status` and returns the text to print.
 pub(super) fn status(args: &StatusArgs) -> Result<String, Failure> {
     let (mut finished, mut begun) = (Vec::new(), Vec::new());
     for folder in &args.shards {

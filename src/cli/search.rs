@@ -59,7 +59,7 @@ impl SearchArgs {
         Self { search, gap, ..Self::default() }
     }
 
-    /// What the user asks of the search: the method, and whether there is a gap and a time limit.
+    /// The wishes of the user for the search: the method, and whether there is a gap and a time limit.
     fn wish(&self) -> SearchWish {
         let (has_gap, has_time_limit) = (self.gap.is_some(), self.time_limit.is_some());
         SearchWish { method: self.search, has_gap, has_time_limit }
@@ -186,7 +186,7 @@ pub(super) struct SearchSettings<'a> {
     pub how: &'a SearchArgs,
     /// Supplements that the user asks for in addition to the front.
     pub supplements: &'a SupplementArgs,
-    /// File in which the progress is recorded, if the user asks for it.
+    /// File in which the progress is recorded; `None` if the user does not ask for it.
     pub record: Option<&'a Record>,
 }
 

@@ -83,7 +83,7 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs, log: Log) -> Result<Stri
         )?;
     }
     if args.json {
-        // the list of joints has no place for what is left out of it
+        // the JSON list of the joints has no place for these remarks, so they are printed on standard error
         said.iter().for_each(|words| log.note(&wrap(words, TERMINAL, "")));
         return Ok(json);
     }

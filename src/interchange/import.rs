@@ -132,7 +132,7 @@ impl<'a> Robot<'a> {
                 return match (joint.name == name, on_way.contains(joint.name.as_str())) {
                     (true, _) => Moves::Driven,
                     (false, true) => Moves::With(&joint.name, factor, offset_rad),
-                    // the joint that it follows is not on the path and is held
+                    // the joint that it follows is not on the path and is held, so this joint is held too
                     (false, false) => Moves::Not(offset_rad),
                 };
             };

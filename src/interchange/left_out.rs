@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 /// A property of an arm or a case that a file does not represent.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct LeftOut {
-    /// What the property is, such as `water` or `link_compliance`.
+    /// Kind of the property, such as `water` or `link_compliance`.
     pub what: &'static str,
     /// Element that has the property: the name of a link, a joint or a spring, or `arm` or `tip`.
     pub at: String,

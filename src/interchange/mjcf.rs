@@ -95,7 +95,7 @@ pub(crate) fn mjcf(
     Mjcf { text: xml.finish(), balanced, step }
 }
 
-/// What limits the time step, in words for the head of the file.
+/// Words for the head of the file that say what limits the time step.
 fn step_words(step: TimeStep) -> String {
     match step.highest_hz > 0.0 {
         true => format!(

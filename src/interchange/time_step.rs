@@ -45,7 +45,7 @@ impl TimeStep {
     pub(super) fn below(highest_rad_per_s: f64) -> Self {
         let longest_s = (USED * 2.0 / highest_rad_per_s).min(LONGEST_S);
         let digits_per_s = 10f64.powi(1 - libm::log10(longest_s).floor() as i32);
-        // a step of whole digits must not lose one to rounding
+        // a step that has only two digits must not lose the last one to rounding
         let digits = (longest_s * digits_per_s * (1.0 + 1e-9)).floor();
         Self { step_s: digits / digits_per_s, highest_hz: highest_rad_per_s / TAU }
     }

@@ -22,9 +22,9 @@
 
 use crate::arm::bearing::Bearing;
 
-/// Static safety at rest: the vendor's value for high precision.
+/// Static safety factor fs that is required at rest: the vendor's value for high precision.
 pub(crate) const SAFETY_AT_REST: f64 = 3.0;
-/// Static safety in an emergency stop: the vendor's value for shocks.
+/// Static safety factor fs that is required in an emergency stop: the vendor's value for shocks.
 pub(crate) const SAFETY_IN_A_STOP: f64 = 2.0;
 /// Load factor f_w of the life: the vendor's value for its own tables, which lies in the range of normal use, 1.2 to
 /// 1.5.

@@ -148,7 +148,7 @@ impl RigidBearing {
     }
 }
 
-/// In words, the rating with which a separate bearing of the joint would pass the failed check `check`. `None` for
+/// The rating with which a separate bearing of the joint would pass the failed check `check`, in words. `None` for
 /// checks of other parts.
 pub(super) fn bearing_that_holds(check: &Check) -> Option<String> {
     let times = check.torque_margin().map(|margin| (100.0 / margin).ceil() / 100.0);

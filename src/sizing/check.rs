@@ -201,7 +201,7 @@ pub enum CheckState {
 /// The comparison of one limit of a part with one demand.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Check {
-    /// Which limit is checked.
+    /// The limit that is checked.
     pub kind: CheckKind,
     /// The needed value in [`CheckKind::unit`]; `None` if it cannot be computed.
     pub needed: Option<f64>,

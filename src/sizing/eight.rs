@@ -144,9 +144,9 @@ impl<V: Lanes> EightBearing<V> {
 struct Pair<V> {
     /// `|s|²` of the load at rest.
     rest: V,
-    /// `|d|²` of the ramp.
+    /// `|d|²` of the load d that the ramp adds.
     ramp: V,
-    /// `2 |s·d|`.
+    /// `2 |s·d|`, the mixed term of both loads.
     both: V,
 }
 

@@ -165,7 +165,8 @@ impl fmt::Display for Relaxation {
     }
 }
 
-/// What is missing at a joint for which no drive meets the demand.
+/// The shortfall at a joint for which no drive meets the demand: the nearest drive, the check that it fails, and the
+/// reductions that would help.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shortfall {
     /// Name of the joint.
@@ -228,7 +229,7 @@ impl<'c> DriveTable<'c> {
                 rejections.push(self.rejection(RejectedPart::Gear { gear: gear.id.clone() }, failed));
             }
         }
-        // the motor of an actuator was named with its gear
+        // the motor of an actuator was reported with its gear
         for motor in self.motors().iter().filter(|motor| motor.kind != MotorKind::OfActuator) {
             rejections.extend(self.rejected_motor(trials.iter().filter(|t| t.drive.motor.id == motor.id)));
         }
@@ -564,7 +565,7 @@ mod tests {
         let shortfall = table.smallest_shortfall(&fast.demand_of_torques(100.0, 50.0)).unwrap();
         assert_eq!(shortfall.check.kind, CheckKind::GearSpeed);
         assert_eq!(shortfall.relaxations.len(), 1, "no torque is small enough");
-        // 3000 rpm over 100 is 3.14 rad/s, 78 % of 4.
+        // 3000 rpm at a ratio of 100 is 3.14 rad/s, which is 78 % of the 4 rad/s that are asked for
         assert_eq!(shortfall.relaxations[0].factor, 0.78);
         assert!(
             shortfall

@@ -23,13 +23,14 @@ const ROUNDING: f64 = 1e-9;
 /// Limits that a study sets to the sizes of a joint's parts. By default there are none; `None` means no limit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FitRequirement {
-    /// Largest ratio of the gear's outer diameter to the width of the link that the joint carries.
+    /// Largest ratio of the gear's outer diameter to the width of the link that the joint carries; `None` means no
+    /// limit.
     pub gear_to_link_max: Option<f64>,
     /// Where the motor is mounted.
     pub motor: MotorPlace,
-    /// Smallest diameter of the passage along the axis \[m\].
+    /// Smallest diameter of the passage along the axis \[m\]; `None` means no limit.
     pub cable_bore_min_m: Option<f64>,
-    /// Largest length of the drive along the axis \[m\].
+    /// Largest length of the drive along the axis \[m\]; `None` means no limit.
     pub drive_length_max_m: Option<f64>,
     /// Largest length of a motor in the hollow of the link \[m\]: the length of that link. It follows from the chain,
     /// so no key states it; `None` if the motor is elsewhere or the joint carries no tube.

@@ -21,9 +21,9 @@ struct LackingPart<'t> {
 }
 
 impl DriveTable<'_> {
-    /// In words, the parts that cannot be checked and the ratings that they lack. Parts of the user's own catalogs
-    /// come first. Built-in parts whose known sizes do not fit are left out if others fit. `None` if every part has all
-    /// its ratings.
+    /// The parts that cannot be checked and the ratings that they lack, in words. Parts of the user's own catalogs come
+    /// first. Built-in parts whose known sizes do not fit are left out if others fit. `None` if every part has all its
+    /// ratings.
     ///
     /// `PLE-60-40, PLE-60-50: no rated_life_h (life), no efficiency_rated_2000rpm (motor torque)`
     pub fn missing_figures(&self) -> Option<String> {
@@ -80,7 +80,7 @@ impl DriveTable<'_> {
         lacking
     }
 
-    /// In words, the parts that cannot be checked and the ratings that they lack, for messages that also name the
+    /// The parts that cannot be checked and the ratings that they lack, in words, for messages that also name the
     /// nearest drive. `None` if only built-in motors lack ratings.
     pub fn also_missing_figures(&self) -> Option<String> {
         let gears = self.gears().iter().any(|gear| !gear.lacks(self.gear_mass()).is_empty());

@@ -79,7 +79,7 @@ impl Ends {
 /// A ball screw with its nut.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Screw {
-    /// Name.
+    /// Name of the screw.
     pub name: String,
     /// Travel of the nut per turn of the screw \[m\].
     pub lead_m: f64,
@@ -171,7 +171,7 @@ impl Screw {
 /// A rack with its pinion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rack {
-    /// Name.
+    /// Name of the rack.
     pub name: String,
     /// Pitch radius of the pinion \[m\].
     pub pinion_radius_m: f64,
@@ -232,7 +232,8 @@ mod tests {
     use super::super::requirement::MotionRequirement;
     use super::*;
 
-    /// A shaft of 12.5 mm at the root, fixed and supported.
+    /// A screw that is `length_m` long between its ends, of which one is fixed and the other supported; the shaft has
+    /// 12.5 mm at the root of the thread.
     fn screw(length_m: f64) -> Screw {
         Screw {
             name: "15 x 5".into(),
@@ -264,7 +265,7 @@ mod tests {
         assert!((screw(0.790).max_speed_rpm() / by_table - 1.0).abs() < 0.005);
         let of = |ends, factor: f64| {
             let by_table = factor * 12.5 / (790.0 * 790.0) * 1e7;
-            // the table has its factors to the tenth: 0.05 of 3.4 is 1.5 %
+            // the table has its factors with one decimal; an error of 0.05 in 3.4 is 1.5 %
             let speed_rpm = Screw { ends, ..screw(0.790) }.max_speed_rpm();
             assert!((speed_rpm / by_table - 1.0).abs() < 0.05 / factor, "{ends:?}");
         };

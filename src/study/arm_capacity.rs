@@ -204,7 +204,7 @@ fn least_loading(least_kg: f64, most_kg: f64, use_of: &dyn Fn(f64) -> f64) -> f6
         high_kg = (2.0 * high_kg).min(most_kg);
     }
     high_kg = (2.0 * high_kg).min(most_kg);
-    // each step leaves two thirds of the interval, 150 steps 4e-27 of it
+    // each step leaves two thirds of the interval, so after 150 steps 4e-27 of it is left
     for _ in 0..150 {
         if use_of(low_kg) <= 1.0 {
             break;
@@ -262,7 +262,7 @@ mod tests {
 
     #[test]
     fn an_arm_that_is_balanced_for_its_payload_has_a_smallest_payload() {
-        // 2 kg in the middle of 1 m against 20 kg at half a metre behind the joint: |9.81 (9 - m)| <= 50
+        // 2 kg at 0.5 m and the payload m at 1 m, against 20 kg at 0.5 m behind the joint: |9.81 (9 - m)| <= 50
         let chain = r#"[{"type": "joint", "name": "j", "axis": [0, 1, 0], "stiffness_nm_per_rad": null},
             {"type": "link", "name": "l", "vector_m": [1, 0, 0], "mass_kg": 2}],
             "counterweights": [{"at": "l", "point_m": [-0.5, 0, 0], "mass_kg": 20}]"#;
@@ -271,7 +271,8 @@ mod tests {
         let Window { least, most } = &out.window;
         assert!((least.payload_kg - (9.0 - 50.0 / 9.81)).abs() < 1e-9 && out.least_pose == "out", "{out:?}");
         assert!((most.payload_kg - (9.0 + 50.0 / 9.81)).abs() < 1e-9, "{out:?}");
-        // a tip force that a further pose adds shifts the window by its force over g: no payload holds in both poses
+        // the pose "pushed" has a force of 150 N at the tip, which shifts its window by 150 N / g; no payload is held
+        // in both poses
         let both = r#"[{"name": "out", "pose_deg": [0]}, {"name": "pushed", "pose_deg": [0], "tip_force_n": [0, 0, 150]}]"#;
         let both = found(chain, both, limits);
         assert!(!both.window.holds() && both.pose == "out" && both.least_pose == "pushed", "{both:?}");
@@ -297,7 +298,8 @@ mod tests {
 
     #[test]
     fn a_bearing_that_a_counterweight_tilts_needs_a_payload() {
-        // a vertical joint under the same lever: the moment across its axis is 9.81 |9 - m|, and 40 N m are permitted
+        // a vertical joint with the same link and counterweight: the moment across its axis is 9.81 |9 - m|, and 40 N m
+        // are permitted
         let found = found(
             r#"[{"type": "joint", "name": "waist", "axis": [0, 0, 1], "stiffness_nm_per_rad": null,
               "bearing": {"tilt_stiffness_nm_per_rad": null, "permissible_moment_nm": 40}},

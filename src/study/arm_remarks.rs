@@ -8,7 +8,7 @@ use crate::arm::section::LinkMaterial;
 use crate::arm::{Arm, Element, Link, LinkBody};
 use crate::catalog::Catalogs;
 
-/// What an analysis leaves out of every number of an arm with gears.
+/// The remark on what an analysis leaves out of every number of an arm with gears.
 const LEFT_OUT: &str = "Left out of every number, unless the file states it: the compliance of the connections between links and \
     joints, and the cables along the links. Also temperature, and whether the parts fit into each other.";
 

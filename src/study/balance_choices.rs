@@ -48,7 +48,7 @@ struct OpenNumber {
     of: String,
     /// Name and unit of the number.
     words: [&'static str; 2],
-    /// The values to choose from.
+    /// The values to choose from, in the unit of the key.
     values: Vec<f64>,
 }
 
@@ -112,7 +112,7 @@ fn open_numbers(study: &Map<String, Value>) -> Vec<OpenNumber> {
     out
 }
 
-/// The choice of `values`, one for each of the numbers `open`.
+/// The choice that gives each of the numbers `open` its value in `values`.
 fn choice(study: &Map<String, Value>, open: &[OpenNumber], values: &[f64]) -> BalanceChoice {
     let mut study = study.clone();
     for (number, value) in open.iter().zip(values) {

@@ -54,7 +54,7 @@ pub struct Capacity {
     /// The largest speed with the payloads of the study; `None` if even the study's speed is too large for them, if
     /// nothing limits the speed, or for an arm file, which states no motion.
     pub largest_speed: Option<LargestSpeed>,
-    /// What the numbers leave out, as sentences.
+    /// Remarks on what the numbers leave out, as sentences.
     pub remarks: Vec<String>,
 }
 

@@ -60,7 +60,7 @@ pub struct Completeness {
     pub by_exact_search: Option<String>,
 }
 
-/// What a finished front claims to be.
+/// A finished front, and the claims about it that are checked.
 #[derive(Debug, Clone, Copy)]
 pub struct Claim<'t> {
     /// The rows of the front.

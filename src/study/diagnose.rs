@@ -91,7 +91,7 @@ fn limits_in_the_way(limited: &Limited) -> Vec<String> {
     reasons
 }
 
-/// In words: how much is missing at each limit of a relaxation, and the values of the limits that suffice.
+/// The amount that is missing at each limit of a relaxation, and the values of the limits that suffice, in words.
 fn relaxation_words(relaxation: &Relaxation, constraints: &Constraints) -> String {
     let words = |(quantity, reached): &(Quantity, f64)| {
         let missing = quantity.shortfall_words(constraints, *reached);

@@ -24,7 +24,7 @@ pub struct Correction {
     pub what: String,
     /// Whether the correction applies to the study.
     pub applied: bool,
-    /// What the correction changes, or the reason why it does not apply.
+    /// The change that the correction makes, or the reason why it does not apply.
     pub words: String,
 }
 

@@ -146,8 +146,8 @@ fn by_any(asking: &[&SpaceJoint], holds: &dyn Fn(&FitRequirement, &DriveFilter) 
     asking.iter().any(|joint| joint.drive.filter().is_some_and(|filter| holds(&joint.fit, filter)))
 }
 
-/// In words: how many allowed gears have, in a size that the study limits, a catalog value that was not seen in a
-/// document; `None` if there are none.
+/// Words on how many allowed gears have an uncertain size: a size that the study limits and whose catalog value was not
+/// seen in a document. `None` if there are none.
 fn recalled_sizes(asking: &[&SpaceJoint], catalogs: &Catalogs) -> Option<String> {
     let gears = catalogs.gears.iter().filter(|gear| {
         by_any(asking, &|fit, filter| {

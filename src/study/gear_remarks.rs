@@ -66,8 +66,8 @@ fn of_row(gear: &Gear, catalogs: &Catalogs) -> Vec<String> {
     let row = catalogs.printed_row(&gear.provenance);
     let is_blank =
         |column: &str| !row.is_empty() && !row.iter().any(|(name, cell)| *name == column && !cell.is_empty());
-    // a blank cell means a strain-wave gear, and a built-in row with a blank cell is one; only a row of the user may be
-    // meant otherwise
+    // a blank cell means a strain-wave gear; every built-in row with a blank cell is one, but a user may have forgotten
+    // to state another kind
     let kind = (gear.kind == GearKind::StrainWave && !gear.provenance.is_built_in() && is_blank("kind"))
         .then(|| "taken as a strain-wave gear (column kind is blank)".to_string());
     let usual_rpm = gear.life.rated_speed_rpm.map_or(String::new(), |rpm| format!(" at {rpm} rpm"));
@@ -107,7 +107,7 @@ pub(crate) fn play_remarks(space: &DesignSpace, catalogs: &Catalogs, front: &Fro
 }
 
 /// The remarks on the play of the gears that the picks have at one joint. `reach_m` is the displacement of the tip per
-/// radian of the joint \[m\], or per metre of a rail. `gear` finds a gear by its name.
+/// radian of the joint \[m\], or per metre of a rail \[-\]. `gear` finds a gear by its name.
 fn said_of<'g>(
     joint: &str,
     reach_m: f64,

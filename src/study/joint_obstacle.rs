@@ -214,8 +214,8 @@ fn no_legal_drive(table: &DriveTable, demand: &JointDemand) -> String {
     }
 }
 
-/// In words, what the drive that comes nearest to meeting the demand lacks, followed by the ratings that other parts
-/// lack.
+/// The shortfall of the drive that comes nearest to meeting the demand, in words, followed by the ratings that other
+/// parts lack.
 fn in_words(table: &DriveTable, shortfall: &Shortfall) -> String {
     format!("{shortfall}{}", missing_words(table))
 }

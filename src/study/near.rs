@@ -162,8 +162,8 @@ fn nearest(front: &Front, design: &Objectives) -> (u128, [f64; 3]) {
     .unwrap_or_default()
 }
 
-/// The entry of `other` that differs from the entry of `one` at the same place, if exactly one entry differs. Entries
-/// are the choices of a design in words.
+/// The entry of `other` that differs from the entry of `one` at the same place, if exactly one entry differs; otherwise
+/// `None`. Entries are the choices of a design in words.
 fn only_difference<'w>(one: &[String], other: &'w [String]) -> Option<&'w str> {
     let mut different = one.iter().zip(other).filter(|(a, b)| a != b);
     let (_, word) = different.next()?;

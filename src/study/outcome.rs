@@ -104,7 +104,7 @@ pub fn sweep_shard(
     };
     let outcome =
         watched(keep, || watched(|finished| watch(designs, &|| sweep.visited(), finished), || sweep.run()));
-    // the state is saved even if the result is lost later, so that no design is evaluated twice
+    // the state is saved now, so that no design is evaluated twice even if the result is lost later
     if keeper.is_due() || stop.load(Ordering::Relaxed) {
         keeper.keep(&sweep.state().to_bytes());
     }

@@ -126,9 +126,9 @@ impl PoseRanges {
         Self { free: (0..turns.len()).collect(), turns }
     }
 
-    /// These ranges, searched only over the joints that influence `values`: numbers of the arm at a pose, such as the
-    /// score. A joint is left out if turning it changes no number, such as a vertical first joint under weight alone.
-    /// It then stays as near to zero as its range allows.
+    /// These ranges, in which the search turns only the joints that influence `values`. `values` returns numbers of the
+    /// arm at a pose, such as the score. A joint that changes none of them, such as a vertical first joint under weight
+    /// alone, stays as near to zero as its range allows.
     pub(super) fn that_matter<const N: usize>(mut self, values: impl Fn(&[f64]) -> [f64; N]) -> Self {
         const TURNED_DEG: [f64; 2] = [31.7, 123.4];
         let differs =

@@ -23,9 +23,9 @@ struct Held {
     movers: [String; 2],
     /// Unit of the torques: N m, or N of a prismatic joint.
     unit: &'static str,
-    /// Torque at this joint in the ramp and in the stop of another joint.
+    /// Torques at this joint in the ramp and in the emergency stop of another joint, in this order, in the unit `unit`.
     reaction_nm: [f64; 2],
-    /// Largest torque at this joint in its own ramp and in its own stop.
+    /// Largest torques at this joint in its own ramp and in its own emergency stop, in this order, in the unit `unit`.
     own_nm: [f64; 2],
     /// The check with the smallest margin; `None` if no check could be made.
     binding: Option<Check>,
@@ -70,7 +70,8 @@ impl Held {
         self.binding.as_ref().is_some_and(|check| check.state == CheckState::Fails)
     }
 
-    /// The check with the smallest margin, and the margin: `motor peak of w, 0.699`.
+    /// The check with the smallest margin and the joint, then the margin: `motor peak of w, 0.699`. `None` if no check
+    /// could be made.
     fn margin_words(&self) -> Option<String> {
         let label = self.binding.as_ref()?.kind.label();
         Some(format!("{label} of {}, {}", self.joint, significant(self.margin(), 3)))
@@ -141,7 +142,7 @@ fn sentence(all: Vec<Held>, whose: &str) -> Option<String> {
     Some(format!("Drives are sized for the motion of their own joint. {main}{blank}"))
 }
 
-/// The remark on one design.
+/// The remark on the reactions in one design, whose options are `chosen`; `None` if there is nothing to say.
 pub(super) fn reaction_remark_on(
     problem: &ArmProblem,
     catalogs: &Catalogs,
@@ -150,7 +151,7 @@ pub(super) fn reaction_remark_on(
     sentence(held(problem, catalogs, chosen)?, "in the sizing cases")
 }
 
-/// The remark on the picks of a front.
+/// The remark on the reactions in the picks of a front; `None` if there is nothing to say.
 pub(super) fn reaction_remark(
     problem: &ArmProblem,
     catalogs: &Catalogs,

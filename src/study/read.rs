@@ -198,7 +198,7 @@ fn under_gravity(
     mut motion: MotionRequirement,
 ) -> Option<MotionRequirement> {
     weight_is_needed(root, gravity_m_s2, &motion)?;
-    // without gravity the paper's reading of Eq 8 is refused, so the value is not used
+    // only the paper's reading of Eq 8 uses this value, and it was refused above if there is no gravity
     if gravity_m_s2 > 0.0 {
         motion.gravity_m_s2 = gravity_m_s2;
     }
@@ -273,8 +273,8 @@ fn number_materials(pieces: &mut [SpacePiece]) {
     }
 }
 
-/// What the file states for the whole study and not for one piece: the parts from which open pieces are chosen, and
-/// defaults for joints.
+/// The settings of a study that are not about a single piece: the parts from which open pieces are chosen, and defaults
+/// for joints.
 struct Open<'a> {
     catalogs: &'a Catalogs,
     drives: &'a Drives,

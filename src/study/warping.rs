@@ -17,7 +17,7 @@ const NEARLY_FREE: f64 = 0.95;
 /// Links that follow each other without a joint and have sections that warp, as one beam.
 struct Run<'a> {
     name: &'a str,
-    /// Sum of k L over the links.
+    /// Sum of k L over the links, with the length L and the decay constant k of each link.
     k_length: f64,
     length_m: f64,
 }

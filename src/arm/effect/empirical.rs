@@ -127,8 +127,8 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
         soften(softening, at, subject);
     } else if let Some(reading) = subject.channel_mut(at) {
         let [a, b, bend_scale, x, y, z, ref of_static @ ..] = numbers[..] else { return };
-        // a channel may have two laws, one with a nonlinearity and one with gains, and both act; so a law without a
-        // nonlinearity must not erase the nonlinearity of the other law
+        // a channel may have two laws that both act, one with a nonlinearity and one with gains; the law without a
+        // nonlinearity must not erase the nonlinearity of the other
         if [a, b] != [0.0; 2] {
             (reading.bend, reading.bend_scale) = ([a, b], bend_scale);
         }

@@ -23,7 +23,7 @@ impl Turned {
     }
 }
 
-/// What is special about the tests of one channel.
+/// The differences between the arm in the tests of one channel and the arm by itself.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Setup {
     /// Additional mass at the tip \[kg\].

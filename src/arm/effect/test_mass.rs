@@ -25,7 +25,8 @@ pub(crate) const KIND: Kind = Kind {
     parameters: |_| PARAMETERS,
     apply,
     traits: Traits {
-        // static readings are differences to the unloaded arm, which has this mass too, so they cannot show it
+        // static readings are differences from a reference state in which the arm has this mass as well, so they cannot
+        // show it
         sought_in: &[Channel::Modal],
         variants: &[&[("mass_kg", None)], &[("mass_kg", None), ("cg_m", None)]],
         odds: RARE_PRIOR,

@@ -62,7 +62,7 @@ pub(super) fn of_actuator(row: &Row) {
     }
 }
 
-/// The first of the columns that the row fills, with its number.
+/// The first of the columns that the row fills, with its number; `None` if the row fills none of them.
 fn rating(row: &Row, columns: &[&'static str]) -> Option<(&'static str, f64)> {
     columns.iter().find_map(|column| Some((*column, row.number(column)?)))
 }

@@ -114,7 +114,7 @@ pub(crate) fn model(snapshot: &Snapshot) -> Model {
     for item in &posed.items {
         match item {
             Item::Body(body) => builder.body(body),
-            // springs were removed before (see `Remainder`)
+            // balance springs were removed before, see `Remainder`
             Item::Load(_) => {}
             Item::Elastic(element) => {
                 let workings = workings.next().unwrap_or_default();
@@ -334,7 +334,8 @@ impl Builder<'_> {
         for d in 0..3 {
             let mut terms = vec![(node, d, -1.0)];
             for (n, p) in &places {
-                // best rotation θ = S⁻¹ Σ r × u; it moves the node by θ × a
+                // The rotation that fits best is θ = S⁻¹ Σ r × u, with the positions r of the nodes from their centre
+                // and their displacements u. It moves the node, which is at a from the centre, by θ × a.
                 let moved = Matrix3::identity() / count
                     - arm_m.cross_matrix() * inverse * (p - centre_m).cross_matrix();
                 terms.extend((0..3).map(|e| (*n, e, moved[(d, e)])));

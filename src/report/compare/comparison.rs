@@ -200,7 +200,8 @@ fn out_of_reach(question: Question, answers: &[Answer]) -> String {
     }
 }
 
-/// By how much `better` is better than `other` in the objective `sought`, in percent of the value of `other`: `12.3 %`.
+/// The advantage of the design `better` over the design `other` in the objective `sought`, in percent of the value of
+/// `other`: `12.3 %`.
 fn advantage(sought: Objective, better: &Design, other: &Design) -> String {
     let (a, b) = (sought.of(better), sought.of(other));
     let percent = 100.0 * ((a - b) / b).abs();
