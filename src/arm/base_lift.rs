@@ -7,7 +7,7 @@ use super::joint_law::Windup;
 /// about this axis beyond it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BaseLift {
-    /// Stiffness once the feet have lifted off \[N m/rad\].
+    /// Tilting stiffness of the base about a horizontal axis, once the feet have lifted off \[N m/rad\].
     pub stiffness_nm_per_rad: f64,
     /// Moment about a horizontal axis at which the feet lift off \[N m\].
     pub preload_nm: f64,

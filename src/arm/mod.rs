@@ -214,7 +214,7 @@ pub struct Joint {
     pub bearing: Option<Bearing>,
     /// Masses of the joint other than gear, motor and bearing.
     pub extras: Extras,
-    /// Rigid bodies on the joint, in addition to all these masses.
+    /// Rigid bodies on the joint, in addition to gear, motor, bearing and extras.
     pub bodies: JointBodies,
     /// Name of the gear, for information only; `None` if the file names none. The calculation uses the numbers of the
     /// other fields.

@@ -69,7 +69,7 @@ impl NamedPart {
     }
 }
 
-/// Mass by which the parts of a drive may exceed what stays of the joint, because masses are rounded \[kg\].
+/// Mass by which the parts of a drive together may exceed `fixed_mass_kg`, because masses in files are rounded \[kg\].
 pub(crate) const ROUNDED_KG: f64 = 1e-8;
 
 /// What travels in a prismatic joint.
@@ -92,8 +92,7 @@ impl Moves {
     }
 }
 
-/// Rotational stiffnesses of a guide, as moment per tilt \[N m/rad\], where `None` means rigid about this axis, and the
-/// loads that it holds.
+/// The guide of a prismatic joint: its three rotational stiffnesses and the loads that it holds.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Guide {
     /// Stiffness in roll, about the travel \[N m/rad\]; `None` means rigid.
@@ -195,7 +194,7 @@ pub(crate) struct Elastic {
     pub moves: Moves,
 }
 
-/// Reads a stiffness; `null` means rigid. Returns `None` after recording a fault.
+/// Reads a stiffness. The inner `None` (`null` in the file) means rigid, the outer `None` that a fault was recorded.
 fn positive_or_rigid(node: &Node) -> Option<Option<f64>> {
     if node.is_null() { Some(None) } else { node.positive().map(Some) }
 }

@@ -237,7 +237,8 @@ impl Section {
         }
     }
 
-    /// The section itself, or the solid bar that a tube is if its wall fills the whole section.
+    /// The section itself. If the wall of a tube fills the whole section, the result is the solid bar that the tube
+    /// then is.
     #[must_use]
     pub fn closed(self) -> Section {
         if matches!(self, Section::IBeam { .. } | Section::Stated(_)) {

@@ -64,8 +64,8 @@ pub(super) fn bar(b: f64, h: f64) -> Torsion {
     Torsion { constant_m4, shear_per_m3: bar_shear_m(b, h) / constant_m4 }
 }
 
-/// Torsion constant `J` of an I section with sharp edges \[m⁴\]: width b, height h, thickness of the web and of the
-/// flanges \[m\].
+/// Torsion constant `J` \[m⁴\] of an I section with sharp edges, of the width b, the height h and the thicknesses of
+/// web and flanges \[m\].
 pub(super) fn i_constant(b: f64, h: f64, web: f64, flange: f64) -> f64 {
     let sum = if web <= flange {
         let junction = web.powi(2) * flange.powi(2) * (0.21 + 0.085 * web / flange);
@@ -79,7 +79,8 @@ pub(super) fn i_constant(b: f64, h: f64, web: f64, flange: f64) -> f64 {
     sum.min(bar_constant(b, h))
 }
 
-/// Torsion constant `J` of a thin closed wall by Bredt's formula \[m⁴\]: outer sides b, h and wall t \[m\].
+/// Torsion constant `J` \[m⁴\] of a thin closed wall by Bredt's formula, with the outer sides b, h and the wall t
+/// \[m\].
 fn bredt(b: f64, h: f64, t: f64) -> f64 {
     let (bm, hm) = (b - t, h - t);
     2.0 * t * bm * bm * hm * hm / (bm + hm)
@@ -91,7 +92,8 @@ fn bredt_shear_m(b: f64, h: f64, t: f64) -> f64 {
     bm * hm / (bm + hm)
 }
 
-/// Torsion constant `J` of the wall of a tube that is cut open lengthwise \[m⁴\]: outer sides b, h and wall t \[m\].
+/// Torsion constant `J` \[m⁴\] of the wall of a tube that is cut open lengthwise, with the outer sides b, h and the
+/// wall t \[m\].
 fn open(b: f64, h: f64, t: f64) -> f64 {
     2.0 / 3.0 * t.powi(3) * ((b - t) + (h - t))
 }
@@ -100,8 +102,9 @@ fn open(b: f64, h: f64, t: f64) -> f64 {
 const ODD_FIFTH_POWERS: f64 = 1.004_523_762_795_139_5;
 const ODD_ORDERS: [f64; 5] = [1.0, 3.0, 5.0, 7.0, 9.0];
 
-/// Torsion constant `J` of a solid bar of sides b, h \[m\] \[m⁴\]. The sum over n⁻⁵ is taken exactly and only
-/// `1 - tanh` is summed as a series, which converges after few terms.
+/// Torsion constant `J` \[m⁴\] of a solid bar with the sides b, h \[m\]. In Saint-Venant's series each tanh is written
+/// as `1 - (1 - tanh)`. The sum of n⁻⁵ is a known constant, and the sum of `(1 - tanh) n⁻⁵` converges after a few
+/// terms.
 fn bar_constant(b: f64, h: f64) -> f64 {
     let (b, h) = (b.min(h), b.max(h));
     let rest: f64 = ODD_ORDERS.iter().map(|n| 2.0 / (n.powi(5) * (libm::exp(n * PI * h / b) + 1.0))).sum();
@@ -260,7 +263,8 @@ mod tests {
             load[here] += 2.0 * width(i) * width(j);
             edges.push((here, unknown(i + 1, j), width(j)));
             edges.push((here, unknown(i, j + 1), width(i)));
-            // a node of the outline has no unknown, so its edges are those of its neighbours inside
+            // a node of the outline is not visited by this loop, because it has no unknown; so its inner neighbour adds
+            // the edge between the two
             let outline = [(i.checked_sub(1), Some(j), width(j)), (Some(i), j.checked_sub(1), width(i))];
             for (i, j, stiffness) in outline {
                 if i.zip(j).is_some_and(|(i, j)| unknown(i, j).is_none()) {

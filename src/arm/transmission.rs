@@ -164,8 +164,9 @@ pub(crate) fn gear_is_at_motor(object: &Object) -> bool {
 }
 
 impl Transmission {
-    /// Reads the transmission from the keys of a joint. The inner `None` means that the joint has none of these keys.
-    /// `motor_kg` is the mass of the parts that sit at the motor \[kg\].
+    /// Reads the transmission from the keys of a joint. `motor_kg` is the mass of the parts that sit at the motor
+    /// \[kg\]. The inner `None` means that the joint has none of these keys, the outer `None` that a fault was
+    /// recorded.
     pub(crate) fn read(object: &Object, catalogs: &Catalogs, motor_kg: Option<f64>) -> Option<Option<Self>> {
         fits_beside(object)?;
         if !TRANSMISSION_KEYS.iter().any(|key| object.has(key)) {
@@ -315,7 +316,7 @@ pub(crate) enum HungOn {
 /// A motor or a stage of a transmission, as a body on an element of the chain.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Hung {
-    /// Number of the element.
+    /// Number of the element in the chain, counted from 0 at the base.
     pub element: usize,
     /// Side of the element on which the part is.
     pub on: HungOn,
@@ -326,11 +327,11 @@ pub(crate) struct Hung {
 /// The place of a motor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct MotorAt {
-    /// Number of the element.
+    /// Number of the element in the chain, counted from 0 at the base.
     pub element: usize,
     /// Side of the element on which the motor is.
     pub on: HungOn,
-    /// Position of the motor in the frame of that side \[m\].
+    /// Position of the motor in the frame of this side of the element \[m\].
     pub point_m: Vector3<f64>,
 }
 
@@ -402,8 +403,8 @@ impl Transmission {
     }
 
     /// The joints that the stages cross. Each has a factor: the turns of the driven joint per turn of that joint while
-    /// the motor stands still. From the index `along` on, each stage runs along the link outboard of one of these
-    /// joints. Returns `None` after recording a fault.
+    /// the motor stands still. `along` is the index of the first stage that runs along the link outboard of a crossed
+    /// joint, and `crossed` are the crossed joints, base to tip. Returns `None` after recording a fault.
     fn coupling(
         &self,
         node: &Node,
@@ -439,7 +440,8 @@ impl Transmission {
         terms
     }
 
-    /// The point masses of the motor and of the stages, each at its place.
+    /// The motor and the stages as point masses, each on the element and at the point where it sits. `along` is the
+    /// index of the first stage that does not sit at the motor.
     fn hung(
         &self,
         motor: MotorAt,

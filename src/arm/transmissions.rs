@@ -9,7 +9,7 @@ use crate::input::json::Node;
 pub(crate) struct Driven<'n> {
     /// The object of the joint in its file, for the place of faults.
     pub node: Node<'n>,
-    /// Number of the joint in the chain.
+    /// Number of the joint in the chain, counted from 0 at the base.
     pub joint: usize,
     /// How the motor drives the joint; `None` if the file has no key for it.
     pub transmission: Option<Transmission>,

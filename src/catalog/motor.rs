@@ -26,8 +26,8 @@ pub enum MotorKind {
 }
 
 impl MotorKind {
-    /// Whether the outer size of such a motor is the side of a square flange. The outer size of other motors is a
-    /// diameter.
+    /// Whether the outer size of a motor of this kind is the side of a square flange. The outer size of motors of the
+    /// other kinds is a diameter.
     pub fn has_square_flange(self) -> bool {
         matches!(self, MotorKind::AcServo | MotorKind::Stepper)
     }

@@ -77,8 +77,8 @@ impl Gear {
         lacks
     }
 
-    /// The rated torque, which a belt without a limit on its mean torque needs and lacks, with the checks for which it
-    /// is needed.
+    /// The entry for a belt whose limit on the mean torque and whose rated torque are both blank. It names the rated
+    /// torque, which would replace every blank torque limit, and the checks that would use it.
     fn lacking_of_belt(&self) -> Vec<Lack> {
         let is_blank = |rating: Option<f64>| rating.is_none();
         let purpose = match [self.repeated_peak_torque_nm, self.momentary_peak_torque_nm].map(is_blank) {

@@ -93,7 +93,8 @@ fn read_json(path: &Path) -> Option<Value> {
 }
 
 fn look(place: PathBuf, catalogs: &Catalogs) -> Found {
-    // a result whose writer died is completed first, as every reader does
+    // if a process was stopped while it wrote a result, the result is completed first, as in every function that reads
+    // results
     if place.is_dir()
         && let Err(failure) = complete(&place)
     {

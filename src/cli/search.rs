@@ -164,7 +164,7 @@ impl SearchArgs {
     }
 }
 
-/// A percentage, which may be 0.
+/// Reads a percentage such as `2%`, or a fraction such as `0.02`, which may be 0. Returns the fraction.
 pub(super) fn part_or_none(text: &str) -> Result<f64, String> {
     match text.trim_end_matches('%').trim_end().parse::<f64>() {
         Ok(0.0) => Ok(0.0),

@@ -155,7 +155,8 @@ impl<'a> Robot<'a> {
         mimicking.map(|joint| (joint.name.as_str(), held(joint))).collect()
     }
 
-    /// The arm, with the elastic properties `given` at its joints, and the report of its import.
+    /// Converts the robot to an arm whose joints have the elastic properties `given`. Returns the arm, and the report
+    /// of the import.
     pub(crate) fn arm(&self, given: &[GivenJoint]) -> (Arm, ImportReport) {
         let mut walk = Walk {
             tree: &self.tree,

@@ -64,7 +64,7 @@ impl Remainder {
     }
 
     /// Component of the displacement `part_m` \[m\] along the whole displacement of the tip, divided by the whole
-    /// displacement.
+    /// displacement; 0 if the tip is not displaced.
     fn share(&self, part_m: &Vector3<f64>) -> f64 {
         match self.tip_m.norm_squared() {
             0.0 => 0.0,

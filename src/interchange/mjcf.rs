@@ -26,7 +26,8 @@ const LEAST_MASS: f64 = 1e-10;
 const LEAST_RADIUS2_M2: f64 = 1e-7;
 /// Least armature of the hinge of a backlash, relative to the motor's.
 const PLAY_ARMATURE: f64 = 1e-3;
-/// Time step that stays stable in spite of a backlash \[s\]: the armature of its hinge is made large enough for it.
+/// Time step at which a simulation is stable in spite of a backlash \[s\]. The armature of the hinge of the backlash is
+/// chosen for this step.
 const PLAY_STEP_S: f64 = 1e-4;
 
 /// An MJCF file, and what the reader must know of it.

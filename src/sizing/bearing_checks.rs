@@ -148,7 +148,7 @@ impl RigidBearing {
     }
 }
 
-/// The rating with which a separate bearing of the joint would pass the failed check `check`, in words. `None` for
+/// The rating that a separate output bearing needs so that it passes the failed check `check`, in words. `None` for
 /// checks of other parts.
 pub(super) fn bearing_that_holds(check: &Check) -> Option<String> {
     let times = check.torque_margin().map(|margin| (100.0 / margin).ceil() / 100.0);

@@ -45,7 +45,7 @@ pub enum CheckKind {
     /// The outer diameter of the gear is at most a stated multiple of the width of the link that the joint carries.
     /// Checks of size are listed only if the study asks for them.
     GearWidth,
-    /// The motor fits into the hollow of the link that the joint carries.
+    /// The motor is narrow enough for the hollow of the link that the joint carries.
     MotorWidth,
     /// A motor in the hollow of the link that the joint carries is no longer than this link.
     MotorLength,

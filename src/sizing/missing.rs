@@ -6,9 +6,9 @@ use crate::catalog::lookup::first_names;
 use crate::catalog::motor::Motor;
 use crate::catalog::needs::{Lack, words};
 
-/// Number of groups of parts that a message names.
+/// Largest number of groups of parts that a message names.
 const GROUPS_NAMED: usize = 4;
-/// Number of parts of a group that a message names.
+/// Largest number of parts of one group that a message names.
 const NAMED_OF_GROUP: usize = 3;
 
 /// A part that lacks ratings.

@@ -13,8 +13,9 @@
 //! | stiffness of the shaft | E A / L, with both ends fixed 4 E A / L | the bar, the bar held at both ends |
 //!
 //! The factors depend on the ends of the shaft. In the order of [`Ends`], η₁ is 1/4, 1, 2, 4, and λ is 1.875, π, 3.927,
-//! 4.730, a root of the uniform beam. F_m is the cubic mean of the force over the way; the source gives the definition
-//! of C. The stiffness is taken with the nut farthest from the supports of the shaft.
+//! 4.730, the lowest root of the frequency equation of a uniform beam with these ends. F_m is the cubic mean of the
+//! force over the way; the source gives the definition of C. The stiffness is taken with the nut farthest from the
+//! supports of the shaft.
 //!
 //! I and A are the second moment and the area of the section at the root of the thread. E = 206 GPa and ρ = 7850 kg/m³
 //! are the values of steel. The mass of the shaft turns with the motor and does not travel.
@@ -65,7 +66,7 @@ impl Ends {
         }
     }
 
-    /// The lowest root λ of the uniform beam with these ends, which determines the critical speed.
+    /// The lowest root λ of the frequency equation of a uniform beam with these ends. It determines the critical speed.
     fn root(self) -> f64 {
         match self {
             Self::FixedFree => 1.875_104,

@@ -46,7 +46,8 @@ mod tests {
     use crate::arm::file::read_arm_document;
     use crate::input::json::Document;
 
-    /// The remarks on an arm with one link of this material, read with these catalogs; and the arm as it is written.
+    /// The remarks on an arm with one link, and the arm as JSON text. `materials` is the list of materials in its file,
+    /// as JSON; `name` is the material of the link. The file is read with the catalogs `catalogs`.
     fn remarks(materials: &str, name: &str, catalogs: &Catalogs) -> (String, String) {
         let text = format!(
             r#"{{"name": "a", "materials": {materials}, "chain": [

@@ -46,7 +46,7 @@ struct OpenNumber {
     key: &'static str,
     /// Name of the spring or counterweight.
     of: String,
-    /// Name and unit of the number.
+    /// Name of the number in words, and its unit.
     words: [&'static str; 2],
     /// The values to choose from, in the unit of the key.
     values: Vec<f64>,
@@ -130,13 +130,13 @@ fn choice(study: &Map<String, Value>, open: &[OpenNumber], values: &[f64]) -> Ba
 }
 
 impl OpenNumber {
-    /// Name of a column with the chosen value.
+    /// Name of the column, in tables of choices, with the chosen value of this number.
     fn column(&self) -> String {
         let plain = |c: char| if c.is_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
         format!("{}_{}", self.of.chars().map(plain).collect::<String>(), self.key)
     }
 
-    /// The chosen value in words.
+    /// The number with its chosen value, in words.
     fn in_words(&self, value: f64) -> String {
         let [name, unit] = self.words;
         format!("{}: {name} {value} {unit}", self.of)

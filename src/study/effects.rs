@@ -150,12 +150,12 @@ pub fn apply_corrections(
 }
 
 impl CorrectedStudy {
-    /// Notes a correction that is applied. `words` tell what it changes.
+    /// Notes a correction that is applied. `words` says what it changes.
     fn applies(&mut self, what: String, words: impl Into<String>) {
         self.corrections.push(Correction { what, applied: true, words: words.into() });
     }
 
-    /// Notes a correction that is not applied. `words` tell why.
+    /// Notes a correction that is not applied. `words` says why.
     fn leaves_out(&mut self, what: String, words: impl Into<String>) {
         self.corrections.push(Correction { what, applied: false, words: words.into() });
     }

@@ -36,7 +36,7 @@ pub type Front = Vec<Judged>;
 /// The result of a study: fronts, and facts of the search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StudyOutcome {
-    /// Counts and candidates of the search, by the fast model.
+    /// The result of the search with the fast model: counts of designs, and candidates for the fronts.
     pub sweep: SweepOutcome,
     /// The front of all designs.
     pub front: Front,

@@ -223,7 +223,8 @@ fn weight_is_needed(root: &Object, gravity_m_s2: f64, motion: &MotionRequirement
     }
 }
 
-/// Reads a fraction that is written in percent. Returns `None` after recording a fault.
+/// Reads the gap at which a search may end. The file has it in percent; the result is a fraction. Returns `None` after
+/// recording a fault.
 fn read_gap(node: &Node) -> Option<f64> {
     match node.non_negative()? {
         percent if percent < 100.0 => Some(percent / 100.0),

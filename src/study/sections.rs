@@ -32,7 +32,7 @@ pub(super) struct Sections {
 pub(super) struct Aside {
     /// Messages on options that were left out because a rating that a check needs is blank.
     pub not_checked: Vec<String>,
-    /// Remarks for the reader of the result.
+    /// Remarks on the options, as sentences for the reader of the result.
     pub remarks: Vec<String>,
     /// Number of options of all links read so far.
     pub options: usize,

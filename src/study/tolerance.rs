@@ -138,7 +138,8 @@ impl Stream {
     }
 }
 
-/// The result of one sample.
+/// The result of one sample: which designs of the front meet the limits, which are still on the front, and which are
+/// then its picks.
 struct Sample {
     keeps_limits: Vec<bool>,
     on_front: Vec<usize>,

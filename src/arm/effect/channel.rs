@@ -61,7 +61,7 @@ pub struct Reading {
     pub outlier_rows: Vec<usize>,
     /// Further factor on the actual value of each component. Channels with one component use the first number only.
     pub gain: [f64; 3],
-    /// What an instrument with axes that are turned or not square shows of the other directions. Row x has the
+    /// Crosstalk between the directions, if the axes of the instrument are turned or not square. Row x has the
     /// fractions of the actual y and z displacement that the reading in x shows as well. Zero on the diagonal, and for
     /// channels with one component.
     pub mix: Matrix3<f64>,

@@ -1,7 +1,10 @@
-//! `empirical`: a law without a name, as it was found in readings. At a joint it is a further twist, which is a
-//! polynomial of the torque, a housing that tilts about two axes unequally, or a compliance that changes in the course
-//! of the tests. At the base it is a tilt that differs about x and y. At a channel it is a nonlinearity, a gain for
-//! each direction, a rotation of the base between two rows, or axes that each show a part of the others.
+//! `empirical`: a law without a name, as it was found in readings.
+//!
+//! - At a joint it is one of three laws: a further twist that is a polynomial of the torque; a tilt of the housing that
+//!   differs about two axes; a compliance that changes in the course of the tests.
+//! - At the base it is a tilt that differs about x and y.
+//! - At a channel it is one of four laws: a nonlinearity; a gain for each direction; a rotation of the base between two
+//!   rows; axes that each show a part of the other directions.
 
 use super::channel::Channel;
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};

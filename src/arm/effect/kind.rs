@@ -115,9 +115,9 @@ pub struct Parameter {
     /// The largest value for which a search looks in an arm and a campaign of usual size. `None`: the largest value
     /// that a file may give.
     pub sought_up_to: Option<f64>,
-    /// For a torque: the limits between which a search looks for it, as fractions of the largest torque on the joint in
-    /// the campaign. A change of the joint law beyond the torques that occur could not be recognized. `None` for
-    /// parameters that are no torque.
+    /// If the parameter is a torque: the limits between which a search looks for its value, as fractions of the largest
+    /// torque on the joint in the campaign. A change of the joint law beyond the torques that occur could not be
+    /// recognized. `None` for parameters that are no torque.
     pub torque_parts: Option<(f64, f64)>,
 }
 
@@ -158,7 +158,8 @@ impl Parameter {
         Self { count: 3, ..Self::number(name, low, high, typical, Scale::Linear) }
     }
 
-    /// This parameter, expected by a fit between `low` and `high` instead of in its whole range.
+    /// This parameter, with `low` to `high` as the range in which a fit expects its value, in place of the whole range
+    /// of allowed values.
     pub const fn expected(self, low: f64, high: f64) -> Self {
         Self { prior: (low, high), ..self }
     }

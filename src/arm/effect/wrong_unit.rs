@@ -1,5 +1,5 @@
-//! `wrong_unit`: a channel is written in another unit than its column states, such as inches, metres or degrees, or the
-//! loads in its file are, such as forces in kgf.
+//! `wrong_unit`: the readings of a channel are written in another unit than their column states, such as inches, metres
+//! or degrees. Or the loads in the file of a channel are, such as forces in kgf.
 
 use super::channel::Channel;
 use super::kind::{EVERY_CHANNEL, Kind, Parameter, Scale, Scope, Traits};
@@ -39,11 +39,12 @@ pub enum UnitColumn {
 /// A unit that is mistaken for another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UnitSlip {
-    /// Factor by which the readings then differ from what the columns say.
+    /// Factor by which the readings differ from the readings that the model predicts, if the column is in this other
+    /// unit.
     pub factor: f64,
     /// The column that is written in another unit.
     pub column: UnitColumn,
-    /// The cause in words.
+    /// The mistake in words, for messages, such as "inches in a column of mm".
     pub cause: &'static str,
     /// The channels whose quantity has these units; all if the list is empty.
     pub channels: &'static [Channel],

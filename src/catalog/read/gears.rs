@@ -47,7 +47,7 @@ pub(crate) fn gear(row: &Row) -> Option<Gear> {
     })
 }
 
-/// The ratings of a gear that another rating of its row may stand for.
+/// Those ratings of a gear that, for a belt, are filled in from another rating of the row if they are blank.
 struct Ratings {
     average_nm: Option<f64>,
     repeated_peak_nm: Option<f64>,

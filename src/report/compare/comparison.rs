@@ -166,8 +166,8 @@ fn sentence(question: Question, limit: f64, answers: &[Answer]) -> String {
     capital(&(out + "."))
 }
 
-/// Words that state the value that the reference front reaches in the question. Empty if this value is no better than
-/// that of `winner`. The reference front itself cannot win.
+/// Words on the reference front, which cannot win: the best value that it reaches in this question. Empty if this value
+/// is no better than that of `winner`.
 fn mixed(question: Question, winner: &Design, answers: &[Answer]) -> String {
     let sought = question.sought();
     let better = |a: &&Answer| {

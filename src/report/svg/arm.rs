@@ -353,7 +353,8 @@ mod tests {
         let mut arm = sketch();
         let pivot = |name: &str| Pivot { name: name.into(), ..arm.pivots[0].clone() };
         arm.pivots = ["roll", "quill"].map(pivot).to_vec();
-        // the last tube of the drawing ends at x = 1 m, the tip is a quill below it
+        // the last tube of the drawing ends at x = 1 m; the tip is 0.2 m below this end, at the lower end of a vertical
+        // slide
         arm.tip = Some(((1.0, -0.2), (0.0, 0.0)));
         arm.payload = Some(((1.0, -0.4), (0.0, 0.0)));
         let svg = arm.to_svg();
