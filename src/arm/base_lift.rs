@@ -3,10 +3,11 @@
 
 use super::joint_law::Windup;
 
-/// A base that is rigid up to a moment about each horizontal axis, and deflects elastically beyond it.
+/// A base that is rigid as long as the moment about a horizontal axis is at most the preload, and tilts elastically
+/// about this axis beyond it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BaseLift {
-    /// Stiffness once the feet have lifted off \[N m/rad\].
+    /// Tilting stiffness of the base about a horizontal axis, once the feet have lifted off \[N m/rad\].
     pub stiffness_nm_per_rad: f64,
     /// Moment about a horizontal axis at which the feet lift off \[N m\].
     pub preload_nm: f64,

@@ -17,7 +17,7 @@ const ROUNDING: f64 = 1e-6;
 /// A rigid body on a link or a joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RigidBody {
-    /// Mass \[kg\].
+    /// Mass of the body \[kg\].
     pub mass_kg: f64,
     /// Position of the centre of gravity from the start of the element, in the carried frame \[m\].
     pub cg_m: Vector3<f64>,
@@ -53,9 +53,10 @@ impl RigidBody {
 /// The bodies of a joint.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct JointBodies {
-    /// Bodies inboard of the springs of the joint, in the frame before its rotation.
+    /// Bodies inboard of the springs of the joint. They are written in the frame that does not turn or travel with this
+    /// joint.
     pub fixed: Vec<RigidBody>,
-    /// Bodies outboard of the springs, in the frame after the rotation or the travel.
+    /// Bodies outboard of the springs. They are written in the frame that turns or travels with this joint.
     pub rotating: Vec<RigidBody>,
 }
 

@@ -18,10 +18,10 @@ pub(crate) const LINK_MODELS: Kind = Kind::Word(&words_of::<LinkModel, 3>(LinkMo
 /// The words for the joint models in files.
 pub(crate) const JOINT_MODELS: Kind = Kind::Word(&words_of::<JointModel, 3>(JointModel::WORDS));
 
-/// Name of a case or a pose.
+/// The key for the name of a case or a pose.
 pub(crate) const CASE_NAME: Key = optional("name", Kind::Text, "-", "its place in the list", "Name.");
 
-/// The pose as a list of angles.
+/// The key for a pose as a list of numbers, one for each driven joint \[deg, or m for a prismatic joint\].
 pub(crate) const POSE_DEG: Key = optional(
     "pose_deg",
     Kind::List(&Kind::Number),
@@ -30,7 +30,7 @@ pub(crate) const POSE_DEG: Key = optional(
     "One angle a driven joint, base to tip, of a chain without prismatic joints.",
 );
 
-/// The pose by the names of the joints.
+/// The key for a pose as a map from the names of joints to their angles.
 pub(crate) const POSE: Key = optional(
     "pose",
     Kind::Map(&Kind::Number),
@@ -39,18 +39,18 @@ pub(crate) const POSE: Key = optional(
     "Angles and travels by joint, `{\"rail_mm\": 250, \"j2_deg\": 30}`; joints left away stay at 0.",
 );
 
-/// What the arm holds.
+/// The key for the payload of a case.
 pub(crate) const HELD: Key = optional("payload", Kind::Object(&PAYLOAD), "-", "none", "What the arm holds.");
 
-/// Force at the tip.
+/// The key for the force at the tip \[N\].
 pub(crate) const TIP_FORCE: Key =
     optional("tip_force_n", VECTOR, "N", "[0, 0, 0]", "Force at the tip, in world axes.");
 
-/// Moment at the tip.
+/// The key for the moment at the tip \[N m\].
 pub(crate) const TIP_MOMENT: Key =
     optional("tip_moment_nm", VECTOR, "N m", "[0, 0, 0]", "Moment at the tip, in world axes.");
 
-/// Water around the arm.
+/// The key for the water around the arm.
 pub(crate) const AROUND: Key = optional("water", Kind::Object(&WATER), "-", "dry", "Water around the arm.");
 
 /// The keys of a load case.

@@ -11,7 +11,8 @@ use super::springs::{SpringEnd, SpringKind, SpringPlace};
 use super::structure::{FrameCompliance, LinkPiece, Piece, Structure};
 use nalgebra::Vector3;
 
-/// Smallest distance between two divisions, and to the ends of a link, relative to the length of the link.
+/// Smallest distance between two divisions, or between a division and an end of the link, relative to the length of the
+/// link.
 const LEAST_SPACING: f64 = 1e-3;
 
 impl Structure {
@@ -24,7 +25,7 @@ impl Structure {
         }
         let parts = self.pieces.iter().zip(&starts).flat_map(|(piece, starts)| parts(piece, starts));
         let mut out = Structure { pieces: parts.collect(), ..self.clone() };
-        // index of the first part of each piece
+        // index of the first part of each piece in the divided structure
         let first = |piece: usize| starts[..piece].iter().map(Vec::len).sum::<usize>();
         let moved = |end: &mut SpringEnd| {
             let SpringPlace::Element(piece) = end.on else { return };
@@ -54,8 +55,8 @@ fn along(link: &LinkPiece, point_m: &Vector3<f64>) -> f64 {
     if length2_m2 > 0.0 { link.vector_m.dot(point_m) / length2_m2 } else { 0.0 }
 }
 
-/// Where the parts of a piece begin along it, from root to end. There is one part unless the piece is a tube with
-/// bodies between its ends.
+/// Positions at which the parts of a piece begin: 0 at its root, 1 at its end. There is one part, at 0, unless the
+/// piece is a tube with bodies between its ends.
 fn starts(piece: &Piece) -> Vec<f64> {
     let mut out = vec![0.0];
     if let Piece::Link(link) = piece
@@ -69,12 +70,12 @@ fn starts(piece: &Piece) -> Vec<f64> {
     out
 }
 
-/// Index of the part in which the point at `xi` along a piece lies.
+/// Index of the part that contains the point at `xi` along a piece (0 at its root, 1 at its end).
 fn part_at(starts: &[f64], xi: f64) -> usize {
     starts.iter().rposition(|start| *start <= xi).unwrap_or_default()
 }
 
-/// The parts of a piece that begin at `starts` along it.
+/// The parts of a piece that begin at the positions `starts` (0 at its root, 1 at its end).
 fn parts(piece: &Piece, starts: &[f64]) -> Vec<Piece> {
     let Piece::Link(link) = piece else { return vec![piece.clone()] };
     let part = |(i, &start): (usize, &f64)| {
@@ -116,7 +117,8 @@ mod tests {
              "stiffness_n_per_m": 2000, "free_length_m": 0.3},
             {"name": "t", "joint": "k", "stiffness_nm_per_rad": 20, "free_deg": -30}]}"#;
 
-    /// Deflections are exact in both, with the springs at the same points of the same parts.
+    /// The deflections of the whole and of the divided arm are both exact, so they agree. Each spring acts at the same
+    /// points as before.
     #[test]
     fn a_divided_arm_is_as_heavy_and_bends_as_far_with_its_springs_where_they_were() {
         let arm = read_arm_document(Document::parse("a.json", ARM).unwrap(), &Catalogs::default()).unwrap();

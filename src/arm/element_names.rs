@@ -68,7 +68,7 @@ pub(crate) fn part_of<'n>(
     found.map(|(joint, _)| joint)
 }
 
-/// The problem in words if an element has the name `name`, which results use for the bearing or the guide of the joint
+/// The problem in words, if results already use the name `name` of an element for the bearing or the guide of the joint
 /// `joint`.
 pub(crate) fn part_problem(name: &str, joint: &str) -> String {
     format!("the name \"{name}\" is taken: results have it for a part of the joint \"{joint}\"")

@@ -39,12 +39,12 @@ pub enum ExtrasSource {
     Stated(Extras),
 }
 
-/// Mass of the housing relative to the mass of the parts that it contains: 20 % over 65 %, from published fractions of
-/// the mass of a joint.
+/// Mass of the housing relative to the mass of the parts that it contains: 20 % divided by 65 %, both published
+/// fractions of the mass of a joint.
 const HOUSING_SHARE: f64 = 0.31;
-/// Mass of the brake relative to the mass of motor and component set: 10 % over 65 %.
+/// Mass of the brake relative to the mass of motor and component set: 10 % divided by 65 %.
 const BRAKE_SHARE: f64 = 0.15;
-/// Mass of the encoders relative to the mass of motor and component set: 4 % over 65 %.
+/// Mass of the encoders relative to the mass of motor and component set: 4 % divided by 65 %.
 const ENCODER_SHARE: f64 = 0.06;
 /// Smallest mass of the encoders \[kg\].
 const LEAST_ENCODER_KG: f64 = 0.05;
@@ -56,8 +56,8 @@ const LEAST_HOUSING_KG: f64 = 0.35;
 const FLANGE_KG_PER_M3: f64 = 170.0;
 /// Mass of cables and connectors of one joint \[kg\].
 const CABLE_KG: f64 = 0.05;
-/// Estimated outer diameter of a housed strain-wave gear per unit of its size \[m\], for gears without a diameter in the
-/// catalog. There HFUC gears of size 20 have 0.093 m.
+/// Estimated outer diameter of a housed strain-wave gear per unit of its size \[m\], for gears without a diameter in
+/// the catalog. There HFUC gears of size 20 have 0.093 m.
 const DIAMETER_PER_SIZE_M: f64 = 0.0046;
 
 /// Outer diameter of a gear \[m\]. If the catalog has none, as for every component set, the diameter of a strain-wave
@@ -99,7 +99,7 @@ impl Extras {
         Self {
             housing_kg: motor_housing_kg + gear_housing_kg,
             brake_kg: BRAKE_SHARE * (set_kg + motor_kg),
-            // a motor with a housing has an encoder in its mass, so only the smallest mass is added
+            // the mass of a motor with a housing includes an encoder, so only the smallest mass is added here
             encoder_kg: match frameless {
                 true => (ENCODER_SHARE * (set_kg + motor_kg)).max(LEAST_ENCODER_KG),
                 false => LEAST_ENCODER_KG,

@@ -256,7 +256,8 @@ fn read_joint(object: &Object, catalogs: &Catalogs) -> Option<(Joint, Option<Tra
 }
 
 /// The output bearing of a joint: the bearing that the file states, else the bearing of the named gear if the catalogs
-/// know this gear and it sits at the joint. Returns `None` after recording a fault.
+/// know this gear and it sits at the joint. The inner `None` means that the joint has no bearing, the outer `None` that
+/// a fault was recorded.
 pub(crate) fn read_joint_bearing(object: &Object, catalogs: &Catalogs) -> Option<Option<Bearing>> {
     if let Stated::Bearing(bearing) = read_bearing(object, catalogs)? {
         return Some(bearing);

@@ -201,8 +201,8 @@ impl Curve {
         }
     }
 
-    /// The curve as it acts at the output of a reduction whose input it drives. Torques are multiplied by `ratio`, and
-    /// angles of torsion are divided by it.
+    /// This curve seen from the output of a reduction whose input the gear turns. `ratio` is the turns of the input per
+    /// turn of the output. Torques are multiplied by `ratio`, and angles of torsion are divided by it.
     #[must_use]
     pub fn behind(&self, ratio: f64) -> Curve {
         let stiffened = self.stiffened(ratio * ratio);
@@ -342,8 +342,9 @@ impl From<Curve> for JointLaw {
 }
 
 impl JointLaw {
-    /// This law with the compliance that it has at the joint angle `angle_rad`. Needed if the compliance varies with
-    /// the angle: the law itself then has the mean over all angles.
+    /// The law of the joint at the joint angle `angle_rad`. If the compliance varies with the angle
+    /// ([`waves`](Self::waves)), the result has the compliance at this angle, whereas `self` has the mean over all
+    /// angles.
     #[must_use]
     pub fn at_angle(&self, angle_rad: f64) -> Self {
         if self.waves == [0.0; 4] {
@@ -378,7 +379,7 @@ impl JointLaw {
         let named = self.curve.tangent_compliance_rad_per_nm(torque_nm) + self.connection_rad_per_nm + play;
         match self.further {
             None => named,
-            // the further term may make the joint stiffer, but at most rigid
+            // the further term may make the joint stiffer, but the compliance must not become negative
             Some(twist) => (named + twist.tangent_compliance_rad_per_nm(torque_nm)).max(0.0),
         }
     }
@@ -430,9 +431,9 @@ impl JointLaw {
         (compliance > 0.0).then(|| 1.0 / compliance)
     }
 
-    /// Angle of torsion \[rad\] at a torque \[N m\], with friction play. `state` is what the play remembers of earlier
-    /// torques, and is updated. It is a torque \[N m\] that follows the torque on the joint; the two differ by at most
-    /// the spring stiffness times the half width.
+    /// Angle of torsion \[rad\] at a torque \[N m\], with friction play. `state` is the memory of the friction: a
+    /// torque \[N m\] that trails the torque on the joint by at most the spring stiffness times the half width. The
+    /// function updates it.
     pub fn play_angle_rad(&self, torque_nm: f64, state: &mut f64) -> f64 {
         let angle = self.angle_rad(torque_nm);
         let Some(stiffness) = self.play_stiffness_nm_per_rad() else { return angle };

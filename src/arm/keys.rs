@@ -9,7 +9,7 @@ pub(crate) const VECTOR: Kind = Kind::Array(3, &Kind::Number);
 /// A number greater than zero, or `null`.
 pub(crate) const POSITIVE_OR_NULL: Kind = Kind::Either(&[Kind::Positive, Kind::Null]);
 
-/// Gravity of an arm or a study.
+/// The key for the gravity of an arm or a study.
 pub(crate) const GRAVITY: Key = optional(
     "gravity_m_s2",
     Kind::Either(&[Kind::NonNegative, VECTOR]),
@@ -30,7 +30,7 @@ pub(crate) const LINK_BODIES: Kind = Kind::List(&Kind::Object(&LINK_BODY));
 /// A list of rigid bodies on a joint.
 pub(crate) const JOINT_BODIES: Kind = Kind::List(&Kind::Object(&JOINT_BODY));
 
-/// The driving joints of a passive joint, with their factors.
+/// A map from the names of the driving joints of a passive joint to their factors.
 pub(crate) const COUPLING: Kind = Kind::Map(&Kind::Number);
 
 /// The section of a link that is given, not chosen by the search.
@@ -91,10 +91,10 @@ pub(crate) static BEARING: Shape = Shape::new(
     &[],
 );
 
-/// Mass of a body.
+/// The key for the mass of a body.
 pub(super) const BODY_MASS: Key = required("mass_kg", Kind::NonNegative, "kg", "Mass.");
 
-/// Inertia of a body.
+/// The key for the inertia tensor of a body.
 pub(super) const BODY_INERTIA: Key = optional(
     "inertia_kgm2",
     Kind::Array(3, &VECTOR),
@@ -223,7 +223,7 @@ pub(crate) static STATED: Shape = Shape::new(
     &[],
 );
 
-/// A stage between a motor and the joint that it drives.
+/// The keys of a stage between a motor and the joint that it drives.
 pub(crate) static STAGE: Shape = Shape::new(
     "stage",
     "A belt, chain, shaft or gear stage between a motor and the joint that it drives.",
@@ -345,19 +345,19 @@ pub(crate) const COUNTERWEIGHTS: Kind = Kind::List(&Kind::Object(&COUNTERWEIGHT)
 /// A list of counterweights of a study.
 pub(crate) const OPEN_COUNTERWEIGHTS: Kind = Kind::List(&Kind::Object(&OPEN_COUNTERWEIGHT));
 
-/// The kinds of the numbers of springs and counterweights: any number, a number that is not negative, and a
-/// positive number.
+/// The kinds of value that the numbers of springs and counterweights have in a file: any number, a number that is not
+/// negative, and a positive number.
 struct BalanceNumbers {
     any: Kind,
     non_negative: Kind,
     positive: Kind,
 }
 
-/// In an arm each number has one value.
+/// The kinds of value in an arm file, where each number has one value.
 const ONE_VALUE: BalanceNumbers =
     BalanceNumbers { any: Kind::Number, non_negative: Kind::NonNegative, positive: Kind::Positive };
 
-/// In a study each number may be a list of values to choose from.
+/// The kinds of value in a study, where each number may be a list of values to choose from.
 const CHOICES: BalanceNumbers = BalanceNumbers {
     any: Kind::Either(&[Kind::Number, Kind::NonEmpty(&Kind::Number)]),
     non_negative: Kind::Either(&[Kind::NonNegative, Kind::NonEmpty(&Kind::NonNegative)]),
@@ -487,7 +487,7 @@ static OPEN_COUNTERWEIGHT: Shape = Shape::new(
 /// A list of pieces of a link.
 pub(crate) const PIECES: Kind = Kind::NonEmpty(&Kind::Object(&PIECE));
 
-/// Factor on the moduli of a tube, for holes and inserts.
+/// The key for a factor on the moduli of a tube, for holes and inserts.
 pub(crate) const STIFFNESS_FACTOR: Key = optional(
     "stiffness_factor",
     Kind::Positive,
@@ -496,7 +496,7 @@ pub(crate) const STIFFNESS_FACTOR: Key = optional(
     "Factor on the moduli of a tube, for holes and inserts.",
 );
 
-/// Factor on the mass of a tube, for holes and inserts.
+/// The key for a factor on the mass of a tube, for holes and inserts.
 pub(crate) const MASS_FACTOR: Key =
     optional("mass_factor", Kind::Positive, "-", "1", "Factor on the mass of a tube, for holes and inserts.");
 

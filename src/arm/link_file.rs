@@ -115,8 +115,9 @@ pub(crate) fn material_of(row: &Material) -> Option<LinkMaterial> {
     })
 }
 
-/// What to do about a row of the catalog that states no shear modulus. It is not computed for the user, because it enters
-/// every number, and because the relation to Young's modulus holds for isotropic materials only.
+/// Advice on a row of the catalog that states no shear modulus. The program does not compute the missing value for the
+/// user, because it enters every number, and because the relation to Young's modulus holds for isotropic materials
+/// only.
 pub(crate) fn shear_modulus_hint(row: &Material) -> String {
     let from = match (&row.provenance.file, row.provenance.line) {
         (file, line) if !row.provenance.is_built_in() => format!(" ({file}:{line})"),
@@ -210,7 +211,7 @@ mod tests {
             assert!(material_of(row).is_none());
             shear_modulus_hint(row)
         };
-        // 7e10 / 2.66 and 2e9 / 2.76
+        // the hints have E / (2 (1 + ν)): 7e10 / 2.66 and 2e9 / 2.76
         assert!(
             hint("A").contains("the column g_pa of its row") && hint("A").contains("= 2.632e10 Pa"),
             "{}",

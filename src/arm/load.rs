@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 /// The payload of an arm. Centre of gravity and inertia are written in the last frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Payload {
-    /// Mass \[kg\].
+    /// Mass of the payload \[kg\].
     pub mass_kg: f64,
     /// Position of the centre of gravity from the tip \[m\].
     pub cg_m: Vector3<f64>,
@@ -45,15 +45,15 @@ pub struct LoadCase {
     /// The pose in the units of files, with one entry for each driven joint, base to tip: an angle \[deg\], or the
     /// travel of a prismatic joint \[mm\].
     pub pose_deg: Vec<f64>,
-    /// The payload.
+    /// The payload that the arm holds.
     pub payload: Payload,
     /// Force at the tip in world axes \[N\].
     pub tip_force_n: Vector3<f64>,
     /// Moment at the tip in world axes \[N m\].
     pub tip_moment_nm: Vector3<f64>,
-    /// Model of the links.
+    /// Model of the links: which of their deformations are computed.
     pub links: LinkModel,
-    /// Model of the joints.
+    /// Model of the joints: which torsion curve of their gears is used.
     pub joints: JointModel,
     /// The water around the arm in this case. `None`: the effects of the arm decide whether there is water.
     pub water: Option<Water>,

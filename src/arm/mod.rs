@@ -214,11 +214,12 @@ pub struct Joint {
     pub bearing: Option<Bearing>,
     /// Masses of the joint other than gear, motor and bearing.
     pub extras: Extras,
-    /// Rigid bodies on the joint, in addition to all these masses.
+    /// Rigid bodies on the joint, in addition to gear, motor, bearing and extras.
     pub bodies: JointBodies,
-    /// Name of the gear, for information only. The calculation uses the numbers above.
+    /// Name of the gear, for information only; `None` if the file names none. The calculation uses the numbers of the
+    /// other fields.
     pub gear: Option<String>,
-    /// Name of the motor, for information only.
+    /// Name of the motor, for information only; `None` if the file names none.
     pub motor: Option<String>,
     /// Driving joints of a passive joint, each with its factor: the angle is the sum of factors times the angles of
     /// these joints. `None` for a driven joint.

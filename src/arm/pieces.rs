@@ -66,7 +66,7 @@ impl Factors {
     }
 }
 
-/// Text that follows the name of a material whose moduli and density are multiplied by factors.
+/// Text between the name of a material and the factors on its moduli and its density.
 const MARK: &str = " (stiffness x ";
 
 /// The name of the material without the factors that were appended to it.

@@ -38,9 +38,9 @@ pub struct Prismatic {
     /// Rigid bodies on the joint. Bodies that stay are measured from where the joint begins, bodies that travel from
     /// the point to which the joint has travelled.
     pub bodies: JointBodies,
-    /// The screw or rack within `fixed_mass_kg`, for information only.
+    /// The screw or rack within `fixed_mass_kg`, for information only; `None` if the file names none.
     pub gear: Option<NamedPart>,
-    /// The motor within `fixed_mass_kg`, for information only.
+    /// The motor within `fixed_mass_kg`, for information only; `None` if the file names none.
     pub motor: Option<NamedPart>,
 }
 
@@ -69,7 +69,7 @@ impl NamedPart {
     }
 }
 
-/// Mass by which the parts of a drive may exceed what stays of the joint, because masses are rounded \[kg\].
+/// Mass by which the parts of a drive together may exceed `fixed_mass_kg`, because masses in files are rounded \[kg\].
 pub(crate) const ROUNDED_KG: f64 = 1e-8;
 
 /// What travels in a prismatic joint.
@@ -92,15 +92,15 @@ impl Moves {
     }
 }
 
-/// Rotational stiffnesses of a guide, as moment per tilt \[N m/rad\], where `None` means rigid about this axis, and the
-/// loads that it holds.
+/// The guide of a prismatic joint: its three rotational stiffnesses and the loads that it holds.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Guide {
-    /// Stiffness in roll, about the travel \[N m/rad\].
+    /// Stiffness in roll, about the travel \[N m/rad\]; `None` means rigid.
     pub roll_nm_per_rad: Option<f64>,
-    /// Stiffness in pitch, about the y axis of the section frame whose x axis is the travel \[N m/rad\].
+    /// Stiffness in pitch, about the y axis of the section frame whose x axis is the travel \[N m/rad\]; `None` means
+    /// rigid.
     pub pitch_nm_per_rad: Option<f64>,
-    /// Stiffness in yaw, about the z axis of the same section frame \[N m/rad\].
+    /// Stiffness in yaw, about the z axis of the same section frame \[N m/rad\]; `None` means rigid.
     pub yaw_nm_per_rad: Option<f64>,
     /// The largest loads, each acting alone.
     pub limits: GuideLimits,
@@ -110,9 +110,9 @@ pub struct Guide {
 /// factor for which the maker asks. `None` means unknown.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GuideLimits {
-    /// Force across the travel, along the y or the z axis of the guide \[N\].
+    /// Force across the travel, along the y or the z axis of the guide \[N\]; `None` means unknown.
     pub force_n: Option<f64>,
-    /// Moments in the order roll, pitch, yaw \[N m\].
+    /// Moments in the order roll, pitch, yaw \[N m\]; `None` means unknown.
     pub moment_nm: [Option<f64>; 3],
 }
 
@@ -194,7 +194,7 @@ pub(crate) struct Elastic {
     pub moves: Moves,
 }
 
-/// Reads a stiffness; `null` means rigid. Returns `None` after recording a fault.
+/// Reads a stiffness. The inner `None` (`null` in the file) means rigid, the outer `None` that a fault was recorded.
 fn positive_or_rigid(node: &Node) -> Option<Option<f64>> {
     if node.is_null() { Some(None) } else { node.positive().map(Some) }
 }
@@ -343,9 +343,9 @@ pub struct PrismaticPiece {
     pub guide_rad_per_nm: Vector3<f64>,
     /// Whether a carriage or a ram travels. It decides where the springs of the guide are.
     pub moves: Moves,
-    /// Mass that travels \[kg\].
+    /// Mass that travels with the joint \[kg\].
     pub mass_kg: f64,
-    /// Mass that stays \[kg\].
+    /// Mass that stays where the joint begins \[kg\].
     pub fixed_mass_kg: f64,
     /// Rigid bodies on the joint. Some stay, others travel.
     pub bodies: JointBodies,
@@ -398,7 +398,8 @@ mod tests {
         let limits = rail.guide.limits;
         assert_eq!((limits.force_n, limits.moment_nm), (Some(2000.0), [None, None, Some(50.0)]));
         assert_eq!(limits.unknown(), ["max_roll_nm", "max_pitch_nm"]);
-        // (100 + 300) / 2000 and 10 / 50; nothing is known of roll and pitch, and the drive holds the first force
+        // (100 + 300) / 2000 of the forces across the travel and 10 / 50 of the yaw moment; roll and pitch have no
+        // limit, and the force along the travel does not count, because the drive holds it
         let used = limits.part_used(&[900.0, -100.0, 300.0].into(), &[70.0, 80.0, -10.0].into());
         assert!((used.expect("a limit") - 0.4).abs() < 1e-12);
         assert_eq!(GuideLimits::default().part_used(&[1.0; 3].into(), &[1.0; 3].into()), None);

@@ -7,7 +7,7 @@ use crate::input::key::{Key, Kind, Rule, Shape, optional, required};
 /// A list of bodies of a prismatic joint.
 const PRISMATIC_BODIES: Kind = Kind::List(&Kind::Object(&PRISMATIC_BODY));
 
-/// The stiffness of the drive along the travel.
+/// The key for the stiffness of the drive along the travel.
 pub(crate) const DRIVE_STIFFNESS: Key = required(
     "stiffness_n_per_m",
     POSITIVE_OR_NULL,
@@ -15,11 +15,11 @@ pub(crate) const DRIVE_STIFFNESS: Key = required(
     "Stiffness of the drive along the travel; null is rigid.",
 );
 
-/// The stiffnesses of the guide, and the loads that it holds.
+/// The key for the stiffnesses of the guide and the loads that it holds.
 pub(crate) const GUIDE_STIFFNESSES: Key =
     optional("guide", Kind::Object(&GUIDE), "-", "rigid", "Stiffnesses of the guide, and what it holds.");
 
-/// Whether the guide travels.
+/// The key that says whether the springs of the guide travel.
 pub(crate) const MOVES: Key = optional(
     "moves",
     Kind::Word(&["carriage", "ram"]),

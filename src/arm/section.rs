@@ -36,8 +36,8 @@ pub struct LinkMaterial {
     pub density_kg_m3: f64,
     /// Poisson's ratio. It is used only in Cowper's shear factor. It is never derived from E and G.
     pub poisson: f64,
-    /// Class of the material, from which a report knows whether it creeps. `None` if it is not stated. No number depends
-    /// on it.
+    /// Class of the material, from which a report knows whether it creeps. `None` if it is not stated. No number
+    /// depends on it.
     pub class: Option<MaterialClass>,
 }
 
@@ -203,8 +203,8 @@ impl Section {
         }
     }
 
-    /// Warping constant Cw \[m⁶\] of a section whose twist depends much on whether its ends can warp; `None` for sections
-    /// whose ends hardly warp. The mechanics does not use it.
+    /// Warping constant Cw \[m⁶\] of a section whose twist depends much on whether its ends can warp; `None` for
+    /// sections whose ends hardly warp. The mechanics does not use it.
     pub fn warping_constant_m6(&self) -> Option<f64> {
         match *self {
             Section::IBeam { height_m, flange_m, .. } => {
@@ -237,7 +237,8 @@ impl Section {
         }
     }
 
-    /// The section itself, or the solid bar that a tube is if its wall fills the whole section.
+    /// The section itself. If the wall of a tube fills the whole section, the result is the solid bar that the tube
+    /// then is.
     #[must_use]
     pub fn closed(self) -> Section {
         if matches!(self, Section::IBeam { .. } | Section::Stated(_)) {

@@ -31,7 +31,7 @@ pub enum SpringKind {
     Torsion {
         /// Index of the joint among all elements of the chain, base to tip.
         joint: usize,
-        /// Stiffness \[N m/rad\].
+        /// Stiffness of the torsion spring \[N m/rad\].
         stiffness_nm_per_rad: f64,
         /// Angle of the joint at which the torque of the spring is zero, in the unit of files \[deg\].
         free_deg: f64,
@@ -64,7 +64,7 @@ pub enum SpringPlace {
 pub struct SpringLaw {
     /// Force at the free length \[N\]. If positive it pulls the ends together, if negative it pushes them apart.
     pub force_n: f64,
-    /// Stiffness \[N/m\].
+    /// Stiffness of the spring \[N/m\].
     pub stiffness_n_per_m: f64,
     /// Length at which the force is `force_n`, because the stiffness adds nothing to it \[m\].
     pub free_length_m: f64,
@@ -120,7 +120,7 @@ pub(crate) struct EndLoad {
     pub moment_nm: Vector3<f64>,
 }
 
-/// Length and force, or torque, of a spring in a pose.
+/// The state of a spring in a pose: its length and force, or its torque.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Drawn {
     /// A spring between two points.

@@ -85,8 +85,8 @@ pub struct JointPiece {
     pub law: JointLaw,
     /// Torque on the joint in addition to weight and load.
     pub torque: JointTorque,
-    /// Tilting compliance about both axes perpendicular to the joint's axis \[rad/(N m)\]: the nominal bearing, in
-    /// series with what effects add.
+    /// Tilting compliance about each axis perpendicular to the joint's axis \[rad/(N m)\]: the nominal bearing in
+    /// series with the springs that effects add.
     pub tilt_rad_per_nm: f64,
     /// Further tilting compliance about each of two axes \[rad/(N m)\]. Both axes are perpendicular to the joint's axis
     /// and stand still in the housing. The first axis is the cross product of the joint's axis and the coordinate axis

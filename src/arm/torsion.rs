@@ -16,12 +16,12 @@
 //! % of the exact solution up to the solid bar (sides 1:1 to 1:4), and it never falls as the wall grows. Bredt's shear
 //! stress is the mean over the wall; at the outside of a wall of 0.15 the stress is up to 29 % higher.
 //!
-//! The two numbers 0.21 and 0.085 of the junctions of an I section, and the 0.2 of its outstands, are fitted to Prandtl's
-//! stress function on a grid, for sharp inner edges; both formulas agree at t = T within 2e-5. `J` is within 1.3 % of the
-//! grid if the flanges stand out by at least their thickness and the clear web is at least as high as it is thick. For
-//! flanges that stand out by half their thickness it is up to 5.5 % too large. The usual sum `(2 b T³ + (h-T) t³)/3` counts the
-//! junctions twice and has no free ends: it is 4 % too large for 100 x 200 x 6 x 10 mm and 7 % for 60 x 80 x 20 x 20
-//! mm. A rolled section has more, by the fillets that are left out here.
+//! The two numbers 0.21 and 0.085 of the junctions of an I section, and the 0.2 of its outstands, are fitted to
+//! Prandtl's stress function on a grid, for sharp inner edges; both formulas agree at t = T within 2e-5. `J` is within
+//! 1.3 % of the grid if the flanges stand out by at least their thickness and the clear web is at least as high as it
+//! is thick. For flanges that stand out by half their thickness it is up to 5.5 % too large. The usual sum `(2 b T³ +
+//! (h-T) t³)/3` counts the junctions twice and has no free ends: it is 4 % too large for 100 x 200 x 6 x 10 mm and 7 %
+//! for 60 x 80 x 20 x 20 mm. A rolled section has more, by the fillets that are left out here.
 
 use std::f64::consts::PI;
 
@@ -64,8 +64,8 @@ pub(super) fn bar(b: f64, h: f64) -> Torsion {
     Torsion { constant_m4, shear_per_m3: bar_shear_m(b, h) / constant_m4 }
 }
 
-/// Torsion constant `J` of an I section with sharp edges \[m⁴\]: width b, height h, thickness of the web and of the
-/// flanges \[m\].
+/// Torsion constant `J` \[m⁴\] of an I section with sharp edges, of the width b, the height h and the thicknesses of
+/// web and flanges \[m\].
 pub(super) fn i_constant(b: f64, h: f64, web: f64, flange: f64) -> f64 {
     let sum = if web <= flange {
         let junction = web.powi(2) * flange.powi(2) * (0.21 + 0.085 * web / flange);
@@ -75,11 +75,12 @@ pub(super) fn i_constant(b: f64, h: f64, web: f64, flange: f64) -> f64 {
         let outstand = (b - web) / 2.0 * flange.powi(3) / 3.0 - free_end + 0.2 * web * flange.powi(3);
         bar_constant(h, web) + 4.0 * outstand
     };
-    // no section is stiffer than the bar that contains it
+    // an I section is not stiffer in torsion than the solid bar of the same outline
     sum.min(bar_constant(b, h))
 }
 
-/// Torsion constant `J` of a thin closed wall by Bredt's formula \[m⁴\]: outer sides b, h and wall t \[m\].
+/// Torsion constant `J` \[m⁴\] of a thin closed wall by Bredt's formula, with the outer sides b, h and the wall t
+/// \[m\].
 fn bredt(b: f64, h: f64, t: f64) -> f64 {
     let (bm, hm) = (b - t, h - t);
     2.0 * t * bm * bm * hm * hm / (bm + hm)
@@ -91,17 +92,19 @@ fn bredt_shear_m(b: f64, h: f64, t: f64) -> f64 {
     bm * hm / (bm + hm)
 }
 
-/// Torsion constant `J` of the wall of a tube that is cut open lengthwise \[m⁴\]: outer sides b, h and wall t \[m\].
+/// Torsion constant `J` \[m⁴\] of the wall of a tube that is cut open lengthwise, with the outer sides b, h and the
+/// wall t \[m\].
 fn open(b: f64, h: f64, t: f64) -> f64 {
     2.0 / 3.0 * t.powi(3) * ((b - t) + (h - t))
 }
 
-/// Sum of n⁻⁵ over the odd n, which is 31/32 ζ(5).
+/// Sum of n⁻⁵ over the odd numbers n from 1 on, which is 31/32 ζ(5) with Riemann's zeta function ζ.
 const ODD_FIFTH_POWERS: f64 = 1.004_523_762_795_139_5;
 const ODD_ORDERS: [f64; 5] = [1.0, 3.0, 5.0, 7.0, 9.0];
 
-/// Torsion constant `J` of a solid bar of sides b, h \[m\] \[m⁴\]. The sum over n⁻⁵ is taken exactly and only
-/// `1 - tanh` is summed as a series, which converges after few terms.
+/// Torsion constant `J` \[m⁴\] of a solid bar with the sides b, h \[m\]. In Saint-Venant's series each tanh is written
+/// as `1 - (1 - tanh)`. The sum of n⁻⁵ is a known constant, and the sum of `(1 - tanh) n⁻⁵` converges after a few
+/// terms.
 fn bar_constant(b: f64, h: f64) -> f64 {
     let (b, h) = (b.min(h), b.max(h));
     let rest: f64 = ODD_ORDERS.iter().map(|n| 2.0 / (n.powi(5) * (libm::exp(n * PI * h / b) + 1.0))).sum();
@@ -221,7 +224,8 @@ mod tests {
             let double = (2.0 * b * flange.powi(3) + (h - flange) * web.powi(3)) / 3.0;
             [i_constant(b, h, web, flange) / exact - 1.0, double / exact - 1.0]
         };
-        // 100 x 200 x 6 x 10 mm, 60 x 80 x 20 x 20 mm, a thick web, a thin one, the shortest outstands and webs
+        // sides in cells: sections of 100 x 200 x 6 x 10 mm and 60 x 80 x 20 x 20 mm, a thick web, a thin web, the
+        // shortest outstands and webs
         let sections = [
             [100, 200, 6, 10],
             [36, 48, 12, 12],
@@ -259,7 +263,8 @@ mod tests {
             load[here] += 2.0 * width(i) * width(j);
             edges.push((here, unknown(i + 1, j), width(j)));
             edges.push((here, unknown(i, j + 1), width(i)));
-            // a node of the outline has no unknown, so its edges are those of its neighbours inside
+            // a node of the outline is not visited by this loop, because it has no unknown; so its inner neighbour adds
+            // the edge between the two
             let outline = [(i.checked_sub(1), Some(j), width(j)), (Some(i), j.checked_sub(1), width(i))];
             for (i, j, stiffness) in outline {
                 if i.zip(j).is_some_and(|(i, j)| unknown(i, j).is_none()) {
@@ -270,8 +275,9 @@ mod tests {
         4.0 * load.dot(&conjugate_gradients(&edges, &load))
     }
 
-    /// Solves a network of springs `edges` (from, to, stiffness) under a load. A spring without `to` is fixed to the
-    /// ground.
+    /// The displacements of the nodes of a network of springs under the forces `load` on them, by the method of
+    /// conjugate gradients. Each item of `edges` has the two nodes that a spring connects and its stiffness. A spring
+    /// without a second node is fixed to the ground.
     fn conjugate_gradients(edges: &[(usize, Option<usize>, f64)], load: &DVector<f64>) -> DVector<f64> {
         let times = |x: &DVector<f64>| {
             let mut out = DVector::zeros(x.len());

@@ -32,13 +32,13 @@ use serde_json::{Value, json};
 pub struct Stage {
     /// Turns of the input per turn of the output.
     pub ratio: f64,
-    /// Part of the power that arrives at the output.
+    /// Fraction of the input power that arrives at the output.
     pub efficiency: f64,
     /// Twist of the output per torque at the output, with the input held \[rad/(N m)\].
     pub rad_per_nm: f64,
-    /// Moment of inertia at the input \[kg m²\].
+    /// Moment of inertia of the stage, referred to its input \[kg m²\].
     pub inertia_kgm2: f64,
-    /// Mass \[kg\].
+    /// Mass of the stage \[kg\].
     pub mass_kg: f64,
 }
 
@@ -89,7 +89,7 @@ pub struct Stages {
     pub before: Stage,
     /// Between the gear and the joint.
     pub after: Stage,
-    /// Ratio of the gear, if the file states it in numbers.
+    /// Ratio of the gear, if the file states it in numbers; otherwise `None`.
     pub gear_ratio: Option<f64>,
 }
 
@@ -134,7 +134,7 @@ impl Stages {
     }
 }
 
-/// Keys of a joint whose motor does not sit at the joint, or drives it through stages.
+/// The keys of a joint that say where its motor sits and through which stages it drives the joint.
 pub(crate) const TRANSMISSION_KEYS: [&str; 6] =
     ["motor_at", "motor_point_m", "motor_mass_kg", "gear_at", "gear_ratio", "transmission"];
 
@@ -164,8 +164,9 @@ pub(crate) fn gear_is_at_motor(object: &Object) -> bool {
 }
 
 impl Transmission {
-    /// Reads the transmission from the keys of a joint. The inner `None` means that the joint has none of these keys.
-    /// `motor_kg` is the mass of the parts that sit at the motor \[kg\].
+    /// Reads the transmission from the keys of a joint. `motor_kg` is the mass of the parts that sit at the motor
+    /// \[kg\]. The inner `None` means that the joint has none of these keys, the outer `None` that a fault was
+    /// recorded.
     pub(crate) fn read(object: &Object, catalogs: &Catalogs, motor_kg: Option<f64>) -> Option<Option<Self>> {
         fits_beside(object)?;
         if !TRANSMISSION_KEYS.iter().any(|key| object.has(key)) {
@@ -282,7 +283,7 @@ fn gear_ratio(object: &Object, catalogs: &Catalogs) -> Option<f64> {
     catalogs.gear(gear.value().as_str()?).ok().map(|gear| gear.ratio)
 }
 
-/// What a transmission needs to know of an element of its chain.
+/// The properties of an element of the chain that a transmission needs.
 #[derive(Debug, Clone)]
 pub(crate) struct Seen {
     /// Name of the element.
@@ -308,14 +309,14 @@ pub(crate) enum SeenMotion {
 pub(crate) enum HungOn {
     /// The inboard side, which does not move with the joint.
     Start,
-    /// The outboard side, which moves with the joint. For a link, it is the link itself.
+    /// The outboard side of a joint, which moves with the joint; for a link, the link itself.
     Moving,
 }
 
-/// A part of a transmission, as a body of an element of the chain.
+/// A motor or a stage of a transmission, as a body on an element of the chain.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Hung {
-    /// Number of the element.
+    /// Number of the element in the chain, counted from 0 at the base.
     pub element: usize,
     /// Side of the element on which the part is.
     pub on: HungOn,
@@ -326,11 +327,11 @@ pub(crate) struct Hung {
 /// The place of a motor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct MotorAt {
-    /// Number of the element.
+    /// Number of the element in the chain, counted from 0 at the base.
     pub element: usize,
     /// Side of the element on which the motor is.
     pub on: HungOn,
-    /// Position of the motor in the frame of that side \[m\].
+    /// Position of the motor in the frame of this side of the element \[m\].
     pub point_m: Vector3<f64>,
 }
 
@@ -402,8 +403,8 @@ impl Transmission {
     }
 
     /// The joints that the stages cross. Each has a factor: the turns of the driven joint per turn of that joint while
-    /// the motor stands still. From the index `along` on, each stage runs along the link outboard of one of these
-    /// joints. Returns `None` after recording a fault.
+    /// the motor stands still. `along` is the index of the first stage that runs along the link outboard of a crossed
+    /// joint, and `crossed` are the crossed joints, base to tip. Returns `None` after recording a fault.
     fn coupling(
         &self,
         node: &Node,
@@ -439,7 +440,8 @@ impl Transmission {
         terms
     }
 
-    /// The point masses of the motor and of the stages, each at its place.
+    /// The motor and the stages as point masses, each on the element and at the point where it sits. `along` is the
+    /// index of the first stage that does not sit at the motor.
     fn hung(
         &self,
         motor: MotorAt,

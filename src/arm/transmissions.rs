@@ -7,9 +7,9 @@ use crate::input::json::Node;
 
 /// A joint of a chain, with what its file says about its drive.
 pub(crate) struct Driven<'n> {
-    /// The joint in its file.
+    /// The object of the joint in its file, for the place of faults.
     pub node: Node<'n>,
-    /// Number of the joint in the chain.
+    /// Number of the joint in the chain, counted from 0 at the base.
     pub joint: usize,
     /// How the motor drives the joint; `None` if the file has no key for it.
     pub transmission: Option<Transmission>,
@@ -36,7 +36,7 @@ pub(crate) fn place_all(driven: &[Driven], chain: &[Seen]) -> Option<Vec<(usize,
 }
 
 impl Element {
-    /// What a transmission needs to know of this element.
+    /// The properties of this element that a transmission needs.
     pub(crate) fn seen(&self) -> Seen {
         let motion = match self {
             Element::Joint(joint) => SeenMotion::turning(&joint.axis, joint.coupled.as_deref()),
@@ -46,7 +46,7 @@ impl Element {
         Seen { name: self.name().to_string(), motion }
     }
 
-    /// The bodies of the element.
+    /// The bodies of the element, so that parts of transmissions can be added to them.
     pub(crate) fn carrier(&mut self) -> Carrier<'_> {
         match self {
             Element::Joint(joint) => Carrier::Joint(&mut joint.bodies),

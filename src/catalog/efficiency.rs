@@ -50,7 +50,7 @@ pub struct EfficiencyPoint {
     pub ratio: Option<f64>,
     /// Input speed \[rpm\], or torque divided by rated torque.
     pub x: f64,
-    /// Efficiency, or factor on the efficiency.
+    /// Efficiency, or factor on the efficiency, as `kind` says.
     pub value: f64,
     /// Source of the row.
     pub provenance: Provenance,
@@ -101,7 +101,7 @@ impl Catalogs {
         input_speed_rpm: f64,
         torque_over_rated: f64,
     ) -> Option<f64> {
-        // the curves were measured on harmonic drives
+        // the curves were measured on strain-wave gears, so no other kind gets an efficiency from them
         let rated = gear.efficiency.filter(|_| gear.kind == GearKind::StrainWave)?;
         let model = |of: &Gear, kind| Some(self.efficiency_curve(of, kind)).filter(|curve| !curve.is_empty());
         let other = self.gear(REPRESENTATIVE_GEAR).ok();

@@ -99,9 +99,9 @@ impl fmt::Display for GearKind {
 /// The number is `None` if the kind has no value either.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LifeLaw {
-    /// L10 life at rated torque and at [`Self::rated_speed_rpm`] \[h\].
+    /// L10 life at rated torque and at [`Self::rated_speed_rpm`] \[h\]; `None` if unknown.
     pub rated_h: Option<f64>,
-    /// Input speed at which the rated life is stated \[rpm\].
+    /// Input speed at which the rated life is stated \[rpm\]; `None` if unknown.
     pub rated_speed_rpm: Option<f64>,
     /// Exponent of the torque ratio in the life equation.
     pub exponent: f64,
@@ -131,13 +131,13 @@ pub enum GearMass {
 /// means that the catalog does not give the number.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BearingRatings {
-    /// Pitch circle diameter dp of the rollers \[m\].
+    /// Pitch circle diameter dp of the rollers \[m\]; `None` if unknown.
     pub pitch_diameter_m: Option<f64>,
-    /// Distance R from the bearing's centre to the face of the output flange \[m\].
+    /// Distance R from the bearing's centre to the face of the output flange \[m\]; `None` if unknown.
     pub offset_m: Option<f64>,
-    /// Static load rating C0 \[N\].
+    /// Static load rating C0 \[N\]; `None` if unknown.
     pub static_load_rating_n: Option<f64>,
-    /// Dynamic load rating C \[N\].
+    /// Dynamic load rating C \[N\]; `None` if unknown.
     pub dynamic_load_rating_n: Option<f64>,
 }
 
@@ -156,58 +156,58 @@ pub struct Gear {
     pub ratio: f64,
     /// Life equation of the gear.
     pub life: LifeLaw,
-    /// Torque for which the life is stated \[N m\]; for harmonic drives at 2000 rpm input.
+    /// Torque for which the life is stated \[N m\]; for harmonic drives at 2000 rpm input; `None` if unknown.
     pub rated_torque_nm: Option<f64>,
-    /// Limit for repeated peak torque \[N m\].
+    /// Limit for repeated peak torque \[N m\]; `None` if unknown.
     pub repeated_peak_torque_nm: Option<f64>,
-    /// Limit for average torque \[N m\].
+    /// Limit for average torque \[N m\]; `None` if unknown.
     pub average_torque_limit_nm: Option<f64>,
-    /// Limit for momentary peak torque \[N m\].
+    /// Limit for momentary peak torque \[N m\]; `None` if unknown.
     pub momentary_peak_torque_nm: Option<f64>,
-    /// Largest input speed \[rpm\].
+    /// Largest input speed \[rpm\]; `None` if unknown.
     pub max_input_speed_rpm: Option<f64>,
-    /// Limit for average input speed \[rpm\].
+    /// Limit for average input speed \[rpm\]; `None` if unknown.
     pub average_input_speed_limit_rpm: Option<f64>,
-    /// Moment of inertia at the gear's input (of the wave generator) \[kg m²\].
+    /// Moment of inertia at the gear's input (of the wave generator) \[kg m²\]; `None` if unknown.
     pub inertia_input_kgm2: Option<f64>,
-    /// Mass of the component set \[kg\].
+    /// Mass of the component set \[kg\]; `None` if unknown.
     pub mass_component_set_kg: Option<f64>,
-    /// Mass of the housed unit \[kg\].
+    /// Mass of the housed unit \[kg\]; `None` if unknown.
     pub mass_housed_unit_kg: Option<f64>,
-    /// Torsion curve: end of the first segment \[N m\].
+    /// Torsion curve: end of the first segment \[N m\]; `None` if unknown.
     pub t1_nm: Option<f64>,
-    /// Torsion curve: end of the second segment \[N m\].
+    /// Torsion curve: end of the second segment \[N m\]; `None` if unknown.
     pub t2_nm: Option<f64>,
-    /// Torsion curve: stiffness up to T1 \[N m/rad\].
+    /// Torsion curve: stiffness up to T1 \[N m/rad\]; `None` if unknown.
     pub k1_nm_per_rad: Option<f64>,
-    /// Torsion curve: stiffness between T1 and T2 \[N m/rad\].
+    /// Torsion curve: stiffness between T1 and T2 \[N m/rad\]; `None` if unknown.
     pub k2_nm_per_rad: Option<f64>,
-    /// Torsion curve: stiffness beyond T2 \[N m/rad\].
+    /// Torsion curve: stiffness beyond T2 \[N m/rad\]; `None` if unknown.
     pub k3_nm_per_rad: Option<f64>,
     /// Hysteresis loss, as the vendor states it \[arcmin\]: the difference between the two output angles at zero
-    /// torque, after a torque of one sign and after a torque of the other.
+    /// torque, after a torque of one sign and after a torque of the other; `None` if unknown.
     pub hysteresis_loss_arcmin: Option<f64>,
-    /// Backlash: play without torque \[arcmin\].
+    /// Backlash: play without torque \[arcmin\]; `None` if unknown.
     pub backlash_arcmin: Option<f64>,
     /// Lost motion \[arcmin\]: the rotation of the output between a few percent of the rated torque in one direction
-    /// and in the other.
+    /// and in the other; `None` if unknown.
     pub lost_motion_arcmin: Option<f64>,
     /// Transmission accuracy, as the vendor states it \[arcmin\]: the difference between the actual output angle and
-    /// the input angle divided by the ratio.
+    /// the input angle divided by the ratio; `None` if unknown.
     pub transmission_accuracy_arcmin: Option<f64>,
-    /// Tilting stiffness of the output bearing (housed unit) \[N m/rad\].
+    /// Tilting stiffness of the output bearing (housed unit) \[N m/rad\]; `None` if unknown.
     pub tilting_stiffness_nm_per_rad: Option<f64>,
-    /// Permissible tilting moment of the output bearing while the gear runs \[N m\].
+    /// Permissible tilting moment of the output bearing while the gear runs \[N m\]; `None` if unknown.
     pub permissible_tilting_moment_nm: Option<f64>,
     /// Ratings of the output bearing (housed unit).
     pub bearing: BearingRatings,
-    /// Torque at which the flexspline buckles \[N m\].
+    /// Torque at which the flexspline buckles \[N m\]; `None` if unknown.
     pub buckling_torque_nm: Option<f64>,
-    /// Torque at which teeth slip past each other \[N m\].
+    /// Torque at which teeth slip past each other \[N m\]; `None` if unknown.
     pub ratcheting_torque_nm: Option<f64>,
     /// Outer size of the housed unit.
     pub envelope: Envelope,
-    /// Efficiency at rated torque and 2000 rpm.
+    /// Efficiency at rated torque and 2000 rpm; `None` if unknown.
     pub efficiency: Option<f64>,
     /// Source of the row.
     pub provenance: Provenance,
@@ -295,7 +295,7 @@ impl Gear {
             ("t1_nm", self.t1_nm),
             ("t2_nm", self.t2_nm),
         ];
-        // if no number of the curve is given, K1 alone would be enough
+        // if no number of the curve is given, only K1 is named, because K1 alone would be enough
         let wanted = if figures.iter().all(|(_, figure)| figure.is_none()) { 1 } else { figures.len() };
         figures[..wanted].iter().filter(|(_, figure)| figure.is_none()).map(|(name, _)| *name).collect()
     }

@@ -172,8 +172,8 @@ fn has_word(id: &str, name: &str) -> bool {
     starts.into_iter().any(|(i, _)| begins(&id[i..], name))
 }
 
-/// Up to four names similar to `wanted`. Names that continue it come first, then names that differ by a typing
-/// error.
+/// Up to four of the names `ids` that are similar to `wanted`, a name in lower case. Names that begin with `wanted`
+/// come first, then names that differ from it by a typing error.
 fn nearest(wanted: &str, mut ids: Vec<&str>) -> Vec<String> {
     let mut out: Vec<&str> = Vec::new();
     while out.len() < 4 {

@@ -64,19 +64,20 @@ pub struct Material {
     pub class: MaterialClass,
     /// Young's modulus along the link \[Pa\].
     pub youngs_modulus_pa: f64,
-    /// Shear modulus \[Pa\]; for unidirectional composites it is G12, the shear modulus along and across the fibres.
+    /// Shear modulus \[Pa\]; for unidirectional composites it is G12, the shear modulus along and across the fibres;
+    /// `None` if unknown.
     pub shear_modulus_pa: Option<f64>,
     /// Density \[kg/m³\].
     pub density_kg_m3: f64,
-    /// Poisson's ratio.
+    /// Poisson's ratio; `None` if unknown.
     pub poisson: Option<f64>,
-    /// Yield strength of a metal, or tensile strength of a composite \[Pa\].
+    /// Yield strength of a metal, or tensile strength of a composite \[Pa\]; `None` if unknown.
     pub strength_pa: Option<f64>,
     /// Compressive strength along the link \[Pa\]; `None` if it equals the tensile strength or is unknown.
     pub compressive_strength_pa: Option<f64>,
     /// Kind of strength that `strength_pa` states.
     pub strength_kind: String,
-    /// Cost of the raw material \[EUR/kg\].
+    /// Cost of the raw material \[EUR/kg\]; `None` if unknown.
     pub cost_eur_per_kg: Option<f64>,
     /// Behaviour in sea water and in air, in words.
     pub corrosion_note: String,

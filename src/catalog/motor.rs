@@ -26,8 +26,8 @@ pub enum MotorKind {
 }
 
 impl MotorKind {
-    /// Whether the outer size of such a motor is the side of a square flange. The outer size of other motors is a
-    /// diameter.
+    /// Whether the outer size of a motor of this kind is the side of a square flange. The outer size of motors of the
+    /// other kinds is a diameter.
     pub fn has_square_flange(self) -> bool {
         matches!(self, MotorKind::AcServo | MotorKind::Stepper)
     }
@@ -119,10 +119,10 @@ impl fmt::Display for MotorKind {
 pub struct MotorCurvePoint {
     /// Speed of the motor \[rpm\].
     pub speed_rpm: f64,
-    /// Torque that the motor can give continuously at this speed \[N m\].
+    /// Torque that the motor can give continuously at this speed \[N m\]; `None` if unknown.
     pub continuous_torque_nm: Option<f64>,
-    /// Torque that the motor can give for a short time at this speed \[N m\]. For a stepper, it is the largest
-    /// torque without loss of steps.
+    /// Torque that the motor can give for a short time at this speed \[N m\]. For a stepper, it is the largest torque
+    /// without loss of steps. `None` if unknown.
     pub peak_torque_nm: Option<f64>,
 }
 
@@ -135,21 +135,21 @@ pub struct Motor {
     pub kind: MotorKind,
     /// Vendor of the motor.
     pub vendor: String,
-    /// Torque that the motor can give continuously \[N m\].
+    /// Torque that the motor can give continuously \[N m\]; `None` if unknown.
     pub rated_torque_nm: Option<f64>,
-    /// Torque that the motor can give for a short time \[N m\].
+    /// Torque that the motor can give for a short time \[N m\]; `None` if unknown.
     pub peak_torque_nm: Option<f64>,
-    /// Speed at rated torque \[rpm\].
+    /// Speed at rated torque \[rpm\]; `None` if unknown.
     pub rated_speed_rpm: Option<f64>,
-    /// Largest speed of the motor \[rpm\].
+    /// Largest speed of the motor \[rpm\]; `None` if unknown.
     pub max_speed_rpm: Option<f64>,
-    /// Rotor inertia \[kg m²\].
+    /// Rotor inertia \[kg m²\]; `None` if unknown.
     pub rotor_inertia_kgm2: Option<f64>,
-    /// Mass of the motor \[kg\].
+    /// Mass of the motor \[kg\]; `None` if unknown.
     pub mass_kg: Option<f64>,
     /// Torque curve, by ascending speed; empty if only the single ratings above are known.
     pub curve: Vec<MotorCurvePoint>,
-    /// Rated power \[W\].
+    /// Rated power \[W\]; `None` if unknown.
     pub rated_power_w: Option<f64>,
     /// Outer size; for a frameless motor, the outer size of rotor and stator.
     pub envelope: Envelope,

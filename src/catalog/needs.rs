@@ -7,7 +7,7 @@ use std::fmt;
 /// A number that a part's row leaves blank.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Lack {
-    /// Column of the number.
+    /// Name of the column that the number would have.
     pub figure: &'static str,
     /// The check or property for which the number is needed.
     pub purpose: &'static str,
@@ -57,8 +57,8 @@ impl Gear {
         lacks
     }
 
-    /// The missing limits of torque and speed. For each blank limit of a belt stands the next lower one of its row, so the
-    /// rated torque and the largest speed of a belt suffice.
+    /// The missing limits of torque and speed. For a belt, a blank limit is replaced by the next lower limit of its
+    /// row, so its rated torque and its largest speed suffice.
     fn lacking_limits(&self) -> Vec<Lack> {
         let is_belt = self.kind == GearKind::Belt;
         let mut lacks = match is_belt && self.average_torque_limit_nm.is_none() {
@@ -77,7 +77,8 @@ impl Gear {
         lacks
     }
 
-    /// The rated torque, which a belt without a limit on its mean torque lacks, and the checks for which it is needed.
+    /// The entry for a belt whose limit on the mean torque and whose rated torque are both blank. It names the rated
+    /// torque, which would replace every blank torque limit, and the checks that would use it.
     fn lacking_of_belt(&self) -> Vec<Lack> {
         let is_blank = |rating: Option<f64>| rating.is_none();
         let purpose = match [self.repeated_peak_torque_nm, self.momentary_peak_torque_nm].map(is_blank) {

@@ -101,8 +101,8 @@ fn of_arm(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     Ok(said(args, &arm.name, &capacity_of_arm(&arm, cases?, limits?, catalogs)?, &[]))
 }
 
-/// The payload at the upper end of `window`, a range of payloads that hold, as text: kilograms, "no limit", or "none"
-/// if no payload holds.
+/// The payload at the upper end of `window`, the range of payloads that an arm holds, as text: kilograms, "no limit",
+/// or "none" if the arm holds no payload.
 fn kilograms(window: &Window) -> String {
     match (window.holds(), window.most.payload_kg) {
         (false, _) => "none".into(),
@@ -116,7 +116,7 @@ fn failing(limit: &Limit) -> String {
     format!("{} (check: {})", limit.piece, limit.check)
 }
 
-/// The first sentence: which payloads hold in all poses, and what fails beyond them.
+/// The first sentence: which payloads the arm holds in all poses, and what fails beyond them.
 fn headline(name: &str, found: &Capacity) -> String {
     if found.window.holds() { held(name, found) } else { nothing_held(name, found) }
 }
@@ -126,15 +126,15 @@ fn first_in(pose: &str) -> String {
     if pose.is_empty() { String::new() } else { format!(", first in the pose {pose}") }
 }
 
-/// The words on payloads below the smallest one that holds in all poses: "less than 2.000 kg is too little for j2
-/// (...), first in the pose down".
+/// The words on payloads below the smallest one that the arm holds in all poses: "less than 2.000 kg is too little for
+/// j2 (...), first in the pose down".
 fn too_little(found: &Capacity) -> String {
     let least = &found.window.least;
     let (least_kg, joint) = (fixed(least.payload_kg, 3), failing(least));
     format!("less than {least_kg} kg is too little for {joint}{}", first_in(&found.least_pose))
 }
 
-/// The sentence for an arm that no payload suits in all poses: what is too much for one joint is too little for
+/// The sentence for an arm that holds no payload in all poses: what is too much for one joint is too little for
 /// another.
 fn nothing_held(name: &str, found: &Capacity) -> String {
     let Window { least, most } = &found.window;
@@ -155,7 +155,7 @@ fn nothing_held(name: &str, found: &Capacity) -> String {
     format!("{name} holds no payload in all of its poses: {words}\n")
 }
 
-/// The range of payloads that passes in all poses, and what ends it.
+/// The sentence on the range of payloads that the arm holds in all poses, and on what fails at its ends.
 fn held(name: &str, found: &Capacity) -> String {
     let Window { least, most } = &found.window;
     let too_much = format!("more is too much for {}{}", failing(most), first_in(&found.pose));
@@ -207,12 +207,12 @@ struct End<'a> {
     pose: &'a AtPose,
     /// The payload at this end, in words.
     kg: String,
-    /// What fails beyond it.
+    /// The joint or link that fails beyond this end, and the check that it fails.
     limit: &'a Limit,
 }
 
-/// A table with one row for each pose: reach, payload at one end of the range that holds, and what fails beyond this
-/// end. `payload` and `end` are the headers of the payload and of the piece that fails.
+/// A table with one row for each pose: reach, payload at one end of the range that the arm holds, and what fails beyond
+/// this end. `payload` and `end` are the headers of the payload and of the piece that fails.
 fn table(payload: &str, end: &str, rows: &[End]) -> String {
     let widest = |head: &str, of: fn(&Limit) -> &str| {
         let widths = rows.iter().map(|row| of(row.limit).chars().count());

@@ -375,8 +375,8 @@ fn show_part(catalogs: &Catalogs, parts: Option<Parts>, name: &str) -> Result<St
             Err(error) => errors.push(error),
         }
     }
-    // A name that belongs to several parts of one kind is a more useful error than a name that other kinds do not
-    // have.
+    // If several kinds of parts were searched, the most useful error is that the name fits several parts of one kind.
+    // Next comes the error of a kind that has similar names.
     let ambiguous = errors.iter().position(|e| matches!(e, PartError::Ambiguous { .. }));
     let near =
         errors.iter().position(|e| matches!(e, PartError::Unknown { nearest, .. } if !nearest.is_empty()));

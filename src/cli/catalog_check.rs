@@ -127,7 +127,8 @@ fn unchoosable(catalogs: &Catalogs) -> String {
         }
     };
     for gear in &catalogs.gears {
-        // a gear sold as a component set has no mass of a housed unit, and vice versa
+        // the mass that is needed is that of the version in which the gear is sold: as a component set or as a housed
+        // unit
         let mass = match gear.mass_housed_unit_kg {
             None if gear.mass_component_set_kg.is_some() => GearMass::ComponentSet,
             _ => GearMass::HousedUnit,
@@ -200,7 +201,7 @@ fn rigid_bearings(catalogs: &Catalogs) -> String {
     }
 }
 
-/// Ratings that the row of a belt may leave blank, each as its column and the number that then stands for it.
+/// Ratings that the row of a belt may leave blank: the column of each, and the number that the checks use in its place.
 fn ratings_of_belt(belt: &Gear) -> [(&'static str, Option<f64>); 4] {
     [
         ("average_torque_limit_nm", belt.average_torque_limit_nm),
@@ -210,7 +211,8 @@ fn ratings_of_belt(belt: &Gear) -> [(&'static str, Option<f64>); 4] {
     ]
 }
 
-/// A list of the belts with their blank ratings, the numbers that stand for them, and what no check of a belt sees.
+/// A list of the belts with their blank ratings, the numbers that the checks use in their place, and the properties of
+/// belts that no check considers.
 fn belts(catalogs: &Catalogs) -> String {
     let mut out = String::new();
     // a belt without a rated torque is listed with the parts that cannot be used

@@ -19,13 +19,13 @@ use crate::study::read_study;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// What was found out about one file or folder.
+/// The findings on one file or folder.
 struct Found {
     /// Path of the file or folder.
     place: PathBuf,
     /// Kind of the file or folder in words, such as "study".
     what: &'static str,
-    /// Why the file is not sound; `Ok` if it is sound.
+    /// `Ok` if the file or folder has no faults, else the reason why it is not sound.
     outcome: Result<(), Problem>,
 }
 
@@ -93,7 +93,8 @@ fn read_json(path: &Path) -> Option<Value> {
 }
 
 fn look(place: PathBuf, catalogs: &Catalogs) -> Found {
-    // a result whose writer died is completed first, as every reader does
+    // if a process was stopped while it wrote a result, the result is completed first, as in every function that reads
+    // results
     if place.is_dir()
         && let Err(failure) = complete(&place)
     {
@@ -117,7 +118,7 @@ fn look_at_folder(folder: &Path, catalogs: &Catalogs) -> Look {
     if CatalogFile::ALL.iter().any(|file| has(file.file_name())) {
         return ("catalogs", Catalogs::load(Some(folder)).map(drop).map_err(Problem::from));
     }
-    // an export of an arm file has an arm.json too
+    // the order matters: an export of an arm file has an arm.json too
     if let Some(name) = ["export.json", "study.json", "arm.json"].into_iter().find(|name| has(name)) {
         let (what, outcome) = look_at_file(&folder.join(name), catalogs);
         return (what, outcome);
@@ -240,7 +241,8 @@ fn result_words(manifest: &str) -> &'static str {
     }
 }
 
-/// Checks that the files of a result still have the hashes that the file `manifest` lists. Returns what this file says.
+/// Checks that the files of a result still have the hashes that the file `manifest` lists. Returns the content of this
+/// file.
 fn unchanged(folder: &Path, manifest: &str) -> Result<Value, Problem> {
     let path = folder.join(manifest);
     let text = std::fs::read_to_string(&path).map_err(|e| Problem::Unreadable(e.to_string()))?;

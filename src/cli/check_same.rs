@@ -10,8 +10,8 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Commands in summary.md and report.html after which the folder of results is named. The name is left out of the
-/// comparison, because each result is in a folder of its own.
+/// Texts in summary.md and report.html that are followed by the name of the folder of results. The name is left out of
+/// the comparison, because each result is in a folder of its own.
 const COMMANDS: [&str; 5] =
     ["armwright design ", "armwright analyze ", "armwright compare ", "armwright front check ", " --cases "];
 
@@ -76,7 +76,8 @@ fn files_of(folder: &Path) -> Result<BTreeSet<String>, Failure> {
 fn neutral(folder: &Path, name: &str) -> Result<Vec<u8>, Failure> {
     let bytes = fs_err::read(folder.join(name)).map_err(|e| Failure::File(e.to_string()))?;
     let inside = folder_of(&folder.join(name));
-    // a folder of a campaign has results of studies in folders of their own
+    // the result of a campaign has results of studies in subfolders, so the last part of the name decides what the file
+    // is
     Ok(match Path::new(name).file_name().and_then(|name| name.to_str()) {
         // the hashes of files that contain times differ from run to run as well
         Some(RUN | SHARD | CHOICES) => without_keys(bytes, &[&OF_A_RUN[..], &["files"]].concat()),

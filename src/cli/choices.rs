@@ -40,10 +40,10 @@ const FILES: [&str; 6] = [FRONT, STUDY, CHOICES, PICTURE, SUMMARY, PAGE];
 /// Number of letters of a hash in the name of a choice's folder.
 const HASH_LETTERS: usize = 6;
 
-/// How the search of a choice ended.
+/// How the search of one choice of springs and counterweights ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 enum Ended {
-    /// Its result is in its folder.
+    /// At least one design was found, and the result is in the folder of the choice.
     Written,
     /// No design meets the limits.
     Infeasible,
@@ -51,16 +51,16 @@ enum Ended {
     NothingFound,
 }
 
-/// Searches a study, with its text, in a given way and writes its result to a folder.
+/// A function that searches a study, given with its text, and writes its result to a folder.
 type SearchInto<'a> = dyn Fn(&SearchArgs, &Path, Study, String) -> Result<Written, Failure> + 'a;
 
 /// How each choice is searched.
 pub(super) struct Each<'a> {
     /// The search options that the user gives. The time limit is for all choices together.
     pub how: &'a SearchArgs,
-    /// The other options, as text by which an unfinished run is recognized.
+    /// The other options of the command line as text. An unfinished run is continued only if they are the same.
     pub further: String,
-    /// Searches one choice.
+    /// The function that searches one choice.
     pub search: &'a SearchInto<'a>,
 }
 
@@ -116,8 +116,8 @@ fn fronts_of_all(
         .collect()
 }
 
-/// The time limit of the next search: an equal share of the time until `deadline`, which is left for `searches`
-/// searches. `None` if there is no deadline.
+/// The time limit of the next search: the time that is left until `deadline`, divided by the number `searches` of
+/// searches that remain. `None` if there is no deadline.
 fn share_of_time(deadline: Option<Instant>, searches: usize) -> Option<Duration> {
     deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()) / searches as u32)
 }

@@ -209,7 +209,7 @@ fn materials_of(dir: &Path) -> Result<Vec<Contender>, Failure> {
 /// A material of `run.json`.
 struct Listed {
     name: String,
-    /// Short name that is used in names of files.
+    /// Short name of the material, which is a part of the names of its files.
     slug: String,
 }
 

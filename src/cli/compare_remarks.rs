@@ -8,7 +8,7 @@ use crate::report::number::{shortest, significant};
 use serde_json::Value;
 use std::path::PathBuf;
 
-/// A result that is compared: its label, its `run.json`, which has its remarks, and its study.
+/// A result that is compared: its label, its `run.json`, which also has its remarks, and its study.
 pub(super) struct Said {
     label: String,
     run: Value,
@@ -103,18 +103,20 @@ fn differing_keys<'a>(known: &'a [&Said], keys: &'a [&'a str]) -> impl Iterator<
     keys.iter().copied().filter(|key| differs(known, |study| study[*key].clone()))
 }
 
-/// Whether the studies do not all have the same value of `of`.
+/// Whether the function `of` has different values for two of the studies.
 fn differs(known: &[&Said], of: impl Fn(&Value) -> Value) -> bool {
     known.windows(2).any(|pair| of(&pair[0].study) != of(&pair[1].study))
 }
 
-/// The words of every study with its label: `2 kg in a, 3 kg in b`.
+/// Words on every study, each followed by the label of its result: `2 kg in a, 3 kg in b`. `words` makes the words on
+/// one study.
 fn each(known: &[&Said], words: impl Fn(&Value) -> String) -> String {
     let labelled = known.iter().map(|said| format!("{} in {}", words(&said.study), said.label));
     labelled.collect::<Vec<_>>().join(", ")
 }
 
-/// What differs in the vectors of the links, with the reach of each stretched arm; `None` if nothing differs.
+/// Words on the differences in the vectors of the links, with the reach of each stretched arm; `None` if nothing
+/// differs.
 fn reaches_differ(known: &[&Said]) -> Option<String> {
     let vectors = |study: &Value| elements(study, "link").map(|link| link["vector_m"].clone()).collect();
     differs(known, vectors).then(|| {
@@ -123,7 +125,7 @@ fn reaches_differ(known: &[&Said]) -> Option<String> {
     })
 }
 
-/// What differs in number, kind and axes of the joints; `None` if nothing differs.
+/// Words on the differences in number, kind and axes of the joints; `None` if nothing differs.
 fn joints_differ(known: &[&Said]) -> Option<String> {
     let joints = |study: &Value| -> Vec<Value> {
         let axis = |kind| elements(study, kind).map(|joint| joint["axis"].clone()).collect::<Value>();

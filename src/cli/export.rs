@@ -61,7 +61,7 @@ pub(crate) struct ExportArgs {
     backlash: bool,
 }
 
-/// Executes the verb.
+/// Runs `armwright export`: writes the files, and returns the text to print.
 pub(super) fn run(args: &ExportArgs, catalogs: &Catalogs) -> Result<String, Failure> {
     let Source { arm, cases, inputs } = source(args, catalogs)?;
     let request = ExportRequest {
@@ -101,7 +101,7 @@ fn said(exported: &Exported) -> String {
     left_out.chain(notes).collect()
 }
 
-/// What is exported.
+/// The arm that is exported, and its load cases.
 struct Source {
     arm: Arm,
     cases: Vec<LoadCase>,

@@ -29,7 +29,8 @@ impl ExtraFiles {
         made.map_err(|panic| self.missing.push(format!("{what}: {}", words_of(&*panic)))).ok()
     }
 
-    /// What could not be made, and what could not be written because a name is `taken` by a file of someone else.
+    /// One entry for each file that could not be made, and one for each name in `taken`, under which nothing was
+    /// written because a file that is not part of a result has this name.
     pub(super) fn missing_with(&self, taken: &[String]) -> Vec<String> {
         self.missing.iter().cloned().chain(taken.iter().map(|name| another_stands(name))).collect()
     }

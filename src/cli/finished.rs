@@ -80,7 +80,8 @@ pub(super) struct Written {
     pub elapsed_s: f64,
 }
 
-/// Text for `run.json` while only the front is written: the names of all files that are still missing.
+/// Text that `run.json` has under `not_written` while only the front is written. It stands for all files that are made
+/// after the front.
 pub(super) const NOTHING_ELSE: &str =
     "what goes with the front: budget.csv, summary.md, report.html, plots, ties and supplements";
 
@@ -94,7 +95,7 @@ pub(super) fn is_front_of_material(name: &str) -> bool {
     name.starts_with("front.") && name.ends_with(".csv") && name != FRONT
 }
 
-/// What an exact search proved about its front.
+/// The facts that an exact search proved about its front.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FoundExactly {
     /// Number of boxes whose bounds were computed, and number of boxes that were left open.
@@ -120,9 +121,9 @@ pub(super) struct Finished<'a> {
     pub whole: &'a DesignSpace,
     /// The fronts that were found.
     pub outcome: &'a StudyOutcome,
-    /// Near designs, if an exact search looked for them.
+    /// The near designs that an exact search listed; `None` if it was not asked for them, or could not list them.
     pub near: Option<&'a NearDesigns>,
-    /// What an exact search proved about its front; `None` if every design was visited.
+    /// The facts that an exact search proved about its front; `None` if every design was visited.
     pub exact: Option<FoundExactly>,
     /// Time that the search took \[s\].
     pub elapsed_s: f64,
@@ -131,7 +132,7 @@ pub(super) struct Finished<'a> {
     pub dir: &'a Path,
 }
 
-/// What a search found that visited every design.
+/// The result of a search that visited every design.
 pub(super) struct Visited<'a> {
     pub problem: &'a ArmProblem<'a>,
     pub outcome: &'a StudyOutcome,
@@ -140,8 +141,8 @@ pub(super) struct Visited<'a> {
 }
 
 impl<'a> Finished<'a> {
-    /// The result of a search that visited every design of a study, on one computer or in shards. `dir` is the folder
-    /// of results.
+    /// A finished search that visited every design of a study, on one computer or in shards. `dir` is the folder of
+    /// results.
     pub(super) fn visit(asked: &'a Asked, visited: Visited<'a>, dir: &'a Path, setup: Setup<'a>) -> Self {
         let Asked { study, text, corrections } = asked;
         let Visited { problem, outcome, elapsed_s } = visited;
@@ -229,7 +230,7 @@ impl Finished<'_> {
         Ok(supplements)
     }
 
-    /// Makes the tables, the picture, the summary and the page, and adds them to `extra`. Returns the contents of
+    /// Makes the tables, the picture, the summary and the page, and adds them to `extra`. Returns the content of
     /// `run.json`.
     fn fill(&self, summary: &SummaryInput, supplements: &[Supplement], extra: &mut ExtraFiles) -> Value {
         for (file, of) in self.file_names().iter().zip(&self.outcome.by_material) {
@@ -404,9 +405,9 @@ impl Finished<'_> {
 
 /// The facts of `run.json` that are a word or a number, as text for people. Each is a name and a value.
 pub(super) struct Facts {
-    /// Those that are equal in every run of the study.
+    /// The facts that are equal in every run of the study.
     pub lasting: Vec<(String, String)>,
-    /// Those that differ from run to run.
+    /// The facts that differ from run to run.
     pub timing: Vec<(String, String)>,
 }
 

@@ -56,7 +56,7 @@ struct CheckArgs {
     time_limit: Option<Duration>,
 }
 
-/// Executes the verb.
+/// Runs `armwright front check` and returns the text to print.
 pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs, log: Log) -> Result<Answer, Failure> {
     let FrontVerb::Check(args) = &args.verb;
     let results = open_results(&args.results, catalogs)?;
@@ -71,7 +71,7 @@ pub(super) fn run(args: &FrontArgs, catalogs: &Catalogs, log: Log) -> Result<Ans
     let gap = claimed_gap(run);
     let ties_listed = run["ties_listed"].as_bool().unwrap_or(true);
     let stop = stopped_by_signal();
-    // a result without the file of ties has no ties
+    // a result without this file has no ties
     let ties_csv = match results.is_there(ties::FILE) {
         true => results.with_todays_ids(ties::FILE)?,
         false => Vec::new(),

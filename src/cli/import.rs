@@ -36,8 +36,8 @@ pub(crate) struct ImportArgs {
 /// Name of the file with the stiffness of all joints, which an import without one writes to be filled in.
 const STIFFNESS: &str = "stiffness.json";
 
-/// Whether a file has something that a user has written into it: a value other than null. A file that is no JSON is
-/// taken to have.
+/// Whether a file has a value other than null, which a user must have written into it. A file that is no JSON counts as
+/// having one.
 fn holds_values(path: &Path) -> bool {
     fn has_value(value: &Value) -> bool {
         match value {

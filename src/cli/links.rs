@@ -18,7 +18,7 @@ pub(super) fn refuse_link(path: &Path) -> Result<(), Failure> {
     }
 }
 
-/// The error if the file `name` of `folder` cannot be moved to or from there without following a symbolic link.
+/// Checks that the file `name` of `folder` can be moved to or from its place without following a symbolic link.
 ///
 /// # Errors
 /// A folder on the way from `folder` to the file is a link or no folder.

@@ -51,7 +51,7 @@ impl Lock {
 
     /// Whether a process has the lock that is the file at `path`. The lock is not taken.
     pub(super) fn is_held(path: &Path) -> bool {
-        // a lock that is shared is refused exactly while a process has it for itself
+        // a shared lock is refused exactly while another process holds the lock
         File::open(path).is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
     }
 }

@@ -17,7 +17,7 @@ pub(super) enum LogForm {
     Json,
 }
 
-/// In which form messages and progress are printed, and whether they are printed at all.
+/// A log: the form in which messages and progress are printed, and whether they are printed at all.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Log {
     form: LogForm,

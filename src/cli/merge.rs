@@ -175,7 +175,7 @@ impl Joining<'_> {
     }
 }
 
-/// Executes `status`.
+/// Runs `armwright status` and returns the text to print.
 pub(super) fn status(args: &StatusArgs) -> Result<String, Failure> {
     let (mut finished, mut begun) = (Vec::new(), Vec::new());
     for folder in &args.shards {
@@ -268,20 +268,20 @@ impl Shards {
         }
     }
 
-    /// The study, and the sum of the times that the shards took \[s\].
+    /// The study that the shards searched, and the sum of the times that they took \[s\].
     fn asked(&self, catalogs: &Catalogs) -> Result<(Asked, f64), Failure> {
         let first = self.by_number.values().next().ok_or_else(|| Failure::Internal("no shard".into()))?;
         let elapsed_s = |found: &Found| found.manifest["elapsed_s"].as_f64().unwrap_or_default();
         Ok((first.study(catalogs)?, self.by_number.values().map(elapsed_s).sum()))
     }
 
-    /// What each shard of an exhaustive search found.
+    /// The result of each shard of an exhaustive search.
     fn swept(&self, study: &Study) -> Result<Vec<Swept>, Failure> {
         let materials = study.space.material_names().len();
         self.by_number.values().map(|found| found.swept(materials)).collect()
     }
 
-    /// What each shard of an exact search found, with one entry for each of its fronts.
+    /// The result of each shard of an exact search, with one entry for each of its fronts.
     fn found(&self, study: &Study) -> Result<Vec<Vec<FoundInShard>>, Failure> {
         let read = |found: &Found| read_candidates_of(&found.dir, &found.manifest, study);
         self.by_number.values().map(read).collect()

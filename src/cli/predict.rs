@@ -54,7 +54,8 @@ pub(crate) fn run(args: &PredictArgs, catalogs: &Catalogs, log: Log) -> Result<S
     let inputs: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
     let name = out.file_name().map(|name| name.to_string_lossy().into_owned());
     let name = name.ok_or_else(|| Failure::Usage(format!("{} is no name of a file", out.display())))?;
-    // an earlier prediction has the same columns, and readings lack those of the model
+    // an earlier prediction begins with the same columns; a file of readings lacks the columns of the model and is not
+    // replaced
     let header = found.csv.lines().next().unwrap_or_default();
     let is_prediction = |_: &str, there: &[u8]| there.starts_with(format!("{header}\n").as_bytes());
     write_recognized(&folder_of(out), &[(name, found.csv.clone().into_bytes())], &inputs, is_prediction)?;

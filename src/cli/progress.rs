@@ -27,11 +27,11 @@ const RECORD_EVERY: Duration = Duration::from_secs(1);
 pub(super) struct Progress {
     /// Number of designs visited so far. In an exact search, number of designs evaluated so far.
     pub designs: u64,
-    /// Optimality gap proved so far, as a fraction.
+    /// Optimality gap proved so far, as a fraction; `None` if it is not known.
     pub gap: Option<f64>,
-    /// Number of designs on the front so far.
+    /// Number of designs on the front so far; `None` if it is not known.
     pub front_size: Option<u64>,
-    /// Number of boxes that are not yet decided.
+    /// Number of boxes of an exact search that are not yet decided; `None` if there are none to count.
     pub boxes_open: Option<u64>,
 }
 

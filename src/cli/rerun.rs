@@ -29,7 +29,7 @@ use std::path::Path;
 /// Name of the file with all designs of both fronts under both models.
 pub(super) const CHANGES: &str = "study_changes.csv";
 
-/// The results of both runs, and what the corrections change.
+/// The result of running a study again: the results of both runs, and what the corrections change.
 pub(super) struct Rerun {
     /// Text for the terminal.
     pub text: String,
@@ -54,14 +54,14 @@ impl Rerun {
     }
 }
 
-/// The study is not run again, because the verdict names no effect.
+/// The result if the study is not run again, because the verdict names no effect.
 fn not_explained(outcome: &Outcome, study: &str) -> Rerun {
     let verdict = outcome.verdict.word();
     let why = format!("not re-run: the verdict is {verdict}, so there is no effect to put into it");
     Rerun::without(study, "not_run", &why)
 }
 
-/// The study is not run again, because no effect of the corrected arm applies to it.
+/// The result if the study is not run again, because no effect of the corrected arm applies to it.
 fn nothing_applies(name: &str, corrected: &Asked) -> Rerun {
     let mut rerun = Rerun::without(name, "not_run", "not re-run: no effect of the arm applies to it");
     rerun.text.push_str(corrections::to_text(&corrected.corrections).trim_start());
@@ -69,7 +69,7 @@ fn nothing_applies(name: &str, corrected: &Asked) -> Rerun {
     rerun
 }
 
-/// What is run again, and where its files go.
+/// The study that is run again, how it is searched, and where its files go.
 pub(super) struct Again<'a> {
     /// Name or file of the study.
     pub study: &'a str,
@@ -77,7 +77,7 @@ pub(super) struct Again<'a> {
     pub how: &'a SearchArgs,
     /// Folder of the campaign's result.
     pub dir: &'a Path,
-    /// Writes the files of a finished run there at once.
+    /// The function that writes the files of a finished run into this folder at once.
     pub keep: &'a Keep<'a>,
 }
 
@@ -126,8 +126,8 @@ pub(super) fn rerun(outcome: &Outcome, again: &Again, setup: Setup) -> Result<Re
     Ok(rerun)
 }
 
-/// Searches the study with one of the two models, whose results go into `folder`. `kept` has the files of the run
-/// before.
+/// Searches the study with one of the two models. Its files go into the folder `study/` followed by `folder`. `kept`
+/// has the files of the run that was finished before.
 fn run_once(
     asked: &Asked,
     folder: &str,
@@ -135,7 +135,7 @@ fn run_once(
     again: &Again,
     setup: Setup,
 ) -> Result<Written, Failure> {
-    // the names that are taken in this run's own folder are those that concern it
+    // only the names in this run's own folder that are taken by other files concern this run
     let own = format!("study/{folder}/");
     let keep = |files: &[(String, Vec<u8>)]| {
         let taken = (again.keep)(&[kept.clone(), placed(files, folder)?].concat())?;

@@ -48,7 +48,8 @@ impl ResultFolder {
         let state = folder.join(STATE);
         refuse_links(&state)?;
         create_folder(&state).map_err(|e| Failure::file(folder, "create", &e))?;
-        // the value is made first, so that empty folders are removed again if anything fails from here on
+        // `out` is made before the lock is taken, so that its `drop` removes empty folders if anything fails from here
+        // on
         let mut out = Self { folder: folder.to_path_buf(), manifest, lock: None };
         out.lock = Some(Lock::take(&state.join(LOCK), folder)?);
         roll_forward(folder).map_err(|e| Failure::file(folder, "complete", &e))?;
@@ -86,7 +87,7 @@ impl ResultFolder {
         let taken: Vec<String> = foreign.into_iter().map(|(name, _)| name).collect();
         let state = self.folder.join(STATE);
         let staged = self.stage(&sealed(own, self.manifest, &taken)?).and_then(|()| {
-            // from here on the new result counts
+            // by this renaming the new result begins to count
             rename(&state.join("next"), &state.join("ready"))
         });
         if let Err(e) = staged {

@@ -104,7 +104,8 @@ impl Results {
         }
     }
 
-    /// Whether a file of this name belongs to the result.
+    /// Whether a file of this name belongs to the result. It is true of every name if the result is of an early
+    /// version, which listed no files.
     pub(super) fn has(&self, name: &str) -> bool {
         self.files.as_ref().is_none_or(|files| files.contains_key(name))
     }

@@ -272,7 +272,7 @@ fn search_into(
     written
 }
 
-/// Searches one part of the designs.
+/// Searches one shard of a study (the part of its designs that `--shard M/N` names), and writes the shard.
 fn run_part(args: &RunArgs, shard: Shard, asked: &Asked, setup: Setup) -> Result<Answer, Failure> {
     if args.effects.is_some() {
         let hint = "run the study.json of a run with --effects, which has them, in shards";

@@ -46,7 +46,7 @@ const WRITTEN_HEAD: &str = "The following files are written by the program, for 
     no change of the form; none is renamed. What stands under *default* says when a key is missing. The columns of `front.csv` and \
     `bom.csv` are printed by `armwright schema front` and `bom`, the parameters of effects by `armwright schema effects`.\n";
 
-/// Executes the verb.
+/// Runs `armwright schema` and returns the text to print.
 ///
 /// # Errors
 /// There is no kind of file with this name.

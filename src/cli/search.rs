@@ -59,7 +59,7 @@ impl SearchArgs {
         Self { search, gap, ..Self::default() }
     }
 
-    /// What the user asks of the search: the method, and whether there is a gap and a time limit.
+    /// The wishes of the user for the search: the method, and whether there is a gap and a time limit.
     fn wish(&self) -> SearchWish {
         let (has_gap, has_time_limit) = (self.gap.is_some(), self.time_limit.is_some());
         SearchWish { method: self.search, has_gap, has_time_limit }
@@ -144,7 +144,7 @@ impl SearchArgs {
         self.fresh
     }
 
-    /// What becomes of a state that an earlier process saved.
+    /// Whether a state that an earlier process saved is read or removed.
     pub(super) fn earlier(&self) -> Earlier {
         if self.fresh { Earlier::Removed } else { Earlier::Read }
     }
@@ -164,7 +164,7 @@ impl SearchArgs {
     }
 }
 
-/// A percentage, which may be 0.
+/// Reads a percentage such as `2%`, or a fraction such as `0.02`, which may be 0. Returns the fraction.
 pub(super) fn part_or_none(text: &str) -> Result<f64, String> {
     match text.trim_end_matches('%').trim_end().parse::<f64>() {
         Ok(0.0) => Ok(0.0),
@@ -186,7 +186,7 @@ pub(super) struct SearchSettings<'a> {
     pub how: &'a SearchArgs,
     /// Supplements that the user asks for in addition to the front.
     pub supplements: &'a SupplementArgs,
-    /// File in which the progress is recorded, if the user asks for it.
+    /// File in which the progress is recorded; `None` if the user does not ask for it.
     pub record: Option<&'a Record>,
 }
 
@@ -392,7 +392,7 @@ fn none_found(boxes: u64, is_interrupted: bool) -> Failure {
     if is_interrupted { Failure::Interrupted(why) } else { Failure::Partial(why) }
 }
 
-/// Words on the time that a search with a time limit takes after the limit.
+/// Words on the time that a search with a time limit took after the limit, to evaluate designs and write files.
 fn finishing_words(finishing: Duration) -> String {
     format!("Working out and writing the files took {:.1} s more.\n", finishing.as_secs_f64())
 }

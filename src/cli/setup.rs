@@ -1,10 +1,10 @@
-//! What the options of every verb set: the catalogs, and where messages go.
+//! The settings that all verbs share: the catalogs, and the log for messages.
 
 use super::log::Log;
 use crate::catalog::Catalogs;
 use std::path::Path;
 
-/// What the options that every verb has set.
+/// The settings that all verbs share.
 #[derive(Clone, Copy)]
 pub(crate) struct Setup<'a> {
     /// The built-in catalogs with the user's rows.

@@ -206,7 +206,7 @@ fn search_exactly(
     Ok((Searched { candidates: found_csv(&found), facts }, started.elapsed().as_secs_f64()))
 }
 
-/// What shards of other exact searches of the study found.
+/// The candidates that shards of other exact searches of the study found.
 struct Incumbents {
     found: Vec<Vec<FoundInShard>>,
     /// Hashes of the files with the candidates, one for each shard in `found`.

@@ -83,7 +83,7 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs, log: Log) -> Result<Stri
         )?;
     }
     if args.json {
-        // the list of joints has no place for what is left out of it
+        // the JSON list of the joints has no place for these remarks, so they are printed on standard error
         said.iter().for_each(|words| log.note(&wrap(words, TERMINAL, "")));
         return Ok(json);
     }
@@ -113,7 +113,7 @@ fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32], is_trial: bool) 
     out
 }
 
-/// A design on the way to one of its joints.
+/// A design that is built from the tip as far as one of its joints.
 struct AtJoint {
     /// Place of the joint in the order in which the arm is built.
     slot: usize,
@@ -123,7 +123,8 @@ struct AtJoint {
     outboard: Partial,
 }
 
-/// The design `chosen` at the joint named `joint`. Fails if the arm outboard of it breaks a limit.
+/// The design with the options `chosen`, built as far as the joint named `joint`. Fails if the study has no such joint,
+/// or if the arm outboard of it breaks a limit.
 fn before(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<AtJoint, Failure> {
     let is_joint = |p: &&SpacePiece| matches!(p, SpacePiece::Joint(_) | SpacePiece::Prismatic(_));
     let pieces = &problem.space().pieces;

@@ -56,7 +56,7 @@ pub(super) struct Found<'a> {
     pub catalogs: &'a Catalogs,
     /// The fronts that were found.
     pub outcome: &'a StudyOutcome,
-    /// Near designs, if an exact search looked for them.
+    /// The near designs that an exact search listed; `None` if it was not asked for them, or could not list them.
     pub near: Option<&'a NearDesigns>,
     /// Whether the search was exact.
     pub is_exact: bool,

@@ -49,14 +49,14 @@ pub(super) struct Unfinished {
 
 struct Due {
     at: Instant,
-    /// Time at which the next state became due, while it is not saved yet. The time from then on counts as the cost of
-    /// saving.
+    /// Moment at which a state was last found to be due; `None` if none is due. The time from then until the state is
+    /// saved counts as the cost of saving.
     since: Option<Instant>,
     every: Duration,
     has_failed: bool,
 }
 
-/// What becomes of a state that an earlier process saved.
+/// What is done with a state that an earlier process saved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Earlier {
     /// The search goes on from it.

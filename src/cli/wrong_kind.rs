@@ -18,7 +18,7 @@ pub(super) fn refuse_other_kind(path: &Path, wanted: &str) -> Result<(), Failure
     let text = std::fs::read_to_string(path).unwrap_or_default();
     let Ok(value) = serde_json::from_str::<Value>(&text) else { return Ok(()) };
     let Some(kind) = kind_of(&value).filter(|kind| *kind != wanted) else { return Ok(()) };
-    // if the object has as many keys of the kind that is wanted, it is accepted
+    // a file that has at least as many keys of the wanted kind is accepted
     match kind == "cases" || keys_of_kind(kind, &value) > keys_of_kind(wanted, &value) {
         true => Err(Faults(vec![Fault {
             file: path.display().to_string(),
@@ -41,7 +41,7 @@ pub(super) fn study_of(name: &str, catalogs: &Catalogs) -> Result<(Study, String
     Ok(load_study(name, catalogs)?)
 }
 
-/// The kind of a file in words.
+/// The kind of a file in words, with its article, for messages.
 fn with_article(kind: &str) -> String {
     match kind {
         "arm" => "an arm file".into(),
@@ -55,7 +55,7 @@ fn with_article(kind: &str) -> String {
     }
 }
 
-/// What to do with a file of a kind.
+/// Advice what to do with the file `path`, which is of the kind `kind`.
 fn next_step(kind: &str, path: &Path) -> String {
     let file = path.display();
     match kind {

@@ -54,7 +54,7 @@ impl Csv {
         for record in reader.byte_records() {
             if out.records.len() > most {
                 out.unreadable.push((lines.line(), format!("has more than {most} rows, which is the limit")));
-                // a text that is refused as a whole is not examined row by row
+                // a text with too many rows is refused as a whole, so its rows are not examined one by one
                 out.records.truncate(1);
                 break;
             }

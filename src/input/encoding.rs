@@ -5,9 +5,9 @@
 pub(crate) struct NotUtf8 {
     /// Line with the first byte that is not UTF-8, counted from 1; 1 for a file in UTF-16.
     pub line: usize,
-    /// What is wrong, for a message.
+    /// Description of the problem, for a message.
     pub problem: String,
-    /// What to do about it.
+    /// Advice what to do about the problem.
     pub hint: &'static str,
 }
 

@@ -180,8 +180,8 @@ impl Document {
         &self.file
     }
 
-    /// Records a fault of the field at `path`, which is its place in the document, such as `chain[2].mass_kg`. A fault that
-    /// is recorded already is not repeated.
+    /// Records a fault of the field at `path`, which is its place in the document, such as `chain[2].mass_kg`. A fault
+    /// that is recorded already is not repeated.
     pub fn fault(&self, path: &str, problem: String, hint: &str) {
         let fault = Fault {
             file: self.file.clone(),

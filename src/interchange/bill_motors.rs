@@ -19,7 +19,7 @@ pub(super) struct Elsewhere {
     pub body: (usize, usize),
     /// The rows of this body: the motor, and the gear if it sits at the motor.
     pub rows: Vec<Row>,
-    /// The row of a gear that sits at the joint.
+    /// The row of the gear if it sits at the joint; `None` if it sits at the motor or is unknown.
     pub gear_row: Option<Row>,
 }
 

@@ -114,7 +114,7 @@ pub(crate) fn export(asked: &Asked, catalogs: &Catalogs) -> Export {
 }
 
 impl Export {
-    /// What the export consists of and what the other program should compute, as JSON: the content of `export.json`.
+    /// The parts of the export, and what the other program should compute, as JSON: the content of `export.json`.
     pub(crate) fn to_json(&self, asked: &Asked) -> Value {
         let names: Vec<&str> = self.files.iter().map(|(name, _)| name.as_str()).collect();
         json!({

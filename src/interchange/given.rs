@@ -36,9 +36,9 @@ pub(crate) enum GivenSprings {
         curve: Curve,
         /// Output bearing; `None` if the joint does not tilt.
         bearing: Option<Bearing>,
-        /// Name of the gear, if one is stated.
+        /// Name of the gear; `None` if none is stated.
         gear: Option<String>,
-        /// Name of the motor, if one is stated.
+        /// Name of the motor; `None` if none is stated.
         motor: Option<String>,
     },
     /// A joint that slides.

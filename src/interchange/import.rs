@@ -132,7 +132,7 @@ impl<'a> Robot<'a> {
                 return match (joint.name == name, on_way.contains(joint.name.as_str())) {
                     (true, _) => Moves::Driven,
                     (false, true) => Moves::With(&joint.name, factor, offset_rad),
-                    // the joint that it follows is not on the path and is held
+                    // the joint that it follows is not on the path and is held, so this joint is held too
                     (false, false) => Moves::Not(offset_rad),
                 };
             };
@@ -155,7 +155,8 @@ impl<'a> Robot<'a> {
         mimicking.map(|joint| (joint.name.as_str(), held(joint))).collect()
     }
 
-    /// The arm, with the elastic properties `given` at its joints, and the report of its import.
+    /// Converts the robot to an arm whose joints have the elastic properties `given`. Returns the arm, and the report
+    /// of the import.
     pub(crate) fn arm(&self, given: &[GivenJoint]) -> (Arm, ImportReport) {
         let mut walk = Walk {
             tree: &self.tree,
@@ -205,7 +206,7 @@ struct Walk<'t> {
     at: Isometry3<f64>,
     /// Position in the world at which the link of the arm that is being built begins \[m\].
     start_m: Vector3<f64>,
-    /// Name of the present link of the arm.
+    /// Name of the link of the arm that is being built.
     name: String,
     /// Bodies of the link of the arm that is being built. Their positions are measured from where the link begins.
     bodies: Vec<RigidBody>,
@@ -216,7 +217,8 @@ struct Walk<'t> {
 }
 
 impl<'t> Walk<'t> {
-    /// Begins a link of the arm with the URDF link `link` and the side branches that hang on it.
+    /// Begins a link of the arm at the URDF link `link`. The bodies of this link and of the side branches that hang on
+    /// it are added to it.
     fn begin(&mut self, link: &str) {
         self.start_m = self.at.translation.vector;
         // in a URDF a link and a joint may have the same name; in an arm no two elements may
@@ -291,7 +293,8 @@ impl<'t> Walk<'t> {
     }
 }
 
-/// The motion of a joint that stands at `at` \[rad or m\].
+/// The displacement that a joint makes when it is held at `at` \[rad or m\]: a rotation or a translation. A fixed joint
+/// makes none.
 fn moved(joint: &urdf_rs::Joint, at: f64) -> Isometry3<f64> {
     if !moves(joint) {
         return Isometry3::identity();

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 /// A property of an arm or a case that a file does not represent.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct LeftOut {
-    /// What the property is, such as `water` or `link_compliance`.
+    /// Kind of the property, such as `water` or `link_compliance`.
     pub what: &'static str,
     /// Element that has the property: the name of a link, a joint or a spring, or `arm` or `tip`.
     pub at: String,
@@ -51,19 +51,20 @@ impl Remainder {
         Self { structure, case: case.clone(), whole, whole_case, springs, tip_m, left_out: Vec::new() }
     }
 
-    /// What remains, with the springs of the file and the link model `links`.
+    /// The arm without the properties that were removed so far, with the springs of the file and the link model
+    /// `links`.
     pub(crate) fn snapshot(&self, links: LinkModel) -> Snapshot {
         let whole = Snapshot::new(self.whole.clone(), &self.whole_case, links);
         Snapshot::new(self.structure.clone(), &self.case, links).with_springs(self.springs, &whole)
     }
 
-    /// Displacement of the tip of what remains \[m\].
+    /// Displacement of the tip of the arm without the properties that were removed so far \[m\].
     fn rest_m(&self) -> Vector3<f64> {
         self.snapshot(self.case.links).tip_m()
     }
 
     /// Component of the displacement `part_m` \[m\] along the whole displacement of the tip, divided by the whole
-    /// displacement.
+    /// displacement; 0 if the tip is not displaced.
     fn share(&self, part_m: &Vector3<f64>) -> f64 {
         match self.tip_m.norm_squared() {
             0.0 => 0.0,

@@ -26,7 +26,8 @@ const LEAST_MASS: f64 = 1e-10;
 const LEAST_RADIUS2_M2: f64 = 1e-7;
 /// Least armature of the hinge of a backlash, relative to the motor's.
 const PLAY_ARMATURE: f64 = 1e-3;
-/// Time step that stays stable in spite of a backlash \[s\]: the armature of its hinge is made large enough for it.
+/// Time step at which a simulation is stable in spite of a backlash \[s\]. The armature of the hinge of the backlash is
+/// chosen for this step.
 const PLAY_STEP_S: f64 = 1e-4;
 
 /// An MJCF file, and what the reader must know of it.
@@ -95,7 +96,7 @@ pub(crate) fn mjcf(
     Mjcf { text: xml.finish(), balanced, step }
 }
 
-/// What limits the time step, in words for the head of the file.
+/// Words for the head of the file that say what limits the time step.
 fn step_words(step: TimeStep) -> String {
     match step.highest_hz > 0.0 {
         true => format!(
@@ -353,7 +354,7 @@ fn name_bodies(nodes: &mut [Node]) {
     nodes.iter_mut().for_each(|node| node.name = free.take(&node.name, "_body"));
 }
 
-/// Mass and inertia that are too small to change anything, for bodies that have none.
+/// Least values of mass and inertia, too small to change anything, for bodies that have less.
 struct Least {
     /// Mass of a body without mass \[kg\].
     mass_kg: f64,
@@ -366,7 +367,7 @@ impl Least {
         Self { mass_kg: LEAST_MASS * if arm_kg > 0.0 { arm_kg } else { 1.0 } }
     }
 
-    /// A body as the file has it.
+    /// The body as the file states it: its own mass and inertia, raised to the least values.
     fn written(&self, node: &Node) -> RigidBody {
         let RigidBody { mass_kg, cg_m, inertia_kgm2 } = mass_properties(&node.inertia);
         let inertia_kgm2 = self.raised(mass_kg, inertia_kgm2);

@@ -58,7 +58,7 @@ pub(super) fn motors(arm: &Arm, catalogs: &Catalogs, notes: &mut Vec<String>) ->
     out
 }
 
-/// What is not known of the drive of a joint.
+/// The property of the drive of a joint that is not known.
 enum Unknown {
     Rotor,
     Ratio,

@@ -13,7 +13,7 @@ use urdf_rs::{Joint, JointType, Link};
 pub(super) struct Held {
     /// Its angle \[rad\] or travel \[m\].
     pub at: f64,
-    /// The joint of the arm that it follows in the robot, and the factor.
+    /// The joint of the arm that it follows in the robot, and the factor; `None` if it follows none.
     pub follows: Option<(String, f64)>,
 }
 

@@ -17,8 +17,8 @@ pub struct ExportRequest<'a> {
     pub arm: &'a Arm,
     /// The load cases of the arm. An export as an arm file has all of them.
     pub cases: &'a [LoadCase],
-    /// Name of the case that fixes the pose and, by its loads, the stiffness of joints with a torsion curve. Without a
-    /// name it is the case with the largest tip deflection.
+    /// Name of the case that fixes the pose and, by its loads, the stiffness of joints with a torsion curve. `None`:
+    /// the case with the largest tip deflection.
     pub case: Option<&'a str>,
     /// The file format.
     pub format: Format,

@@ -45,7 +45,7 @@ impl TimeStep {
     pub(super) fn below(highest_rad_per_s: f64) -> Self {
         let longest_s = (USED * 2.0 / highest_rad_per_s).min(LONGEST_S);
         let digits_per_s = 10f64.powi(1 - libm::log10(longest_s).floor() as i32);
-        // a step of whole digits must not lose one to rounding
+        // a step that has only two digits must not lose the last one to rounding
         let digits = (longest_s * digits_per_s * (1.0 + 1e-9)).floor();
         Self { step_s: digits / digits_per_s, highest_hz: highest_rad_per_s / TAU }
     }
@@ -111,7 +111,8 @@ impl Moving<'_> {
     }
 }
 
-/// Motion per unit of a hinge at zero joint angles.
+/// Motion of the body outboard of a hinge per unit of the hinge's position, at zero joint angles, as a twist about the
+/// world's origin.
 fn twist(hinge: &Hinge) -> Twist {
     match hinge.slides {
         true => stack(&hinge.axis, &Vector3::zeros()),
@@ -128,8 +129,8 @@ fn turned(hinge: &Hinge, by: f64) -> Isometry3<f64> {
     Isometry3::from_parts(Translation3::from(hinge.at_m - rotation * hinge.at_m), rotation)
 }
 
-/// The matrix that converts a twist to the twist of the same motion after its axis was moved by `by`. Before that, the
-/// axis is where it stands at zero joint angles.
+/// The matrix that converts a twist whose axis is in its place at zero joint angles to the twist about the same axis
+/// after the displacement `by`.
 fn moved(by: &Isometry3<f64>) -> Matrix6<f64> {
     let mut out = Matrix6::zeros();
     for (i, mut column) in out.column_iter_mut().enumerate() {

@@ -74,7 +74,8 @@ pub(crate) struct Node {
     pub origin_m: Vector3<f64>,
     /// Hinges between the body inboard of this body and this body, base to tip. The first body has none.
     pub hinges: Vec<Hinge>,
-    /// Inertia matrix (6 x 6, mass included) about the world's origin at zero joint angles.
+    /// Inertia matrix about the world's origin at zero joint angles, 6 x 6: mass \[kg\], first moments \[kg m\] and
+    /// moments of inertia \[kg m²\].
     pub inertia: Matrix6<f64>,
     /// Rods for drawing: both ends in the world and radius \[m\].
     pub rods: Vec<(Vector3<f64>, Vector3<f64>, f64)>,
@@ -190,7 +191,8 @@ impl Builder<'_> {
         let is_first = self.nodes.len() == 1;
         let last = self.last();
         let shares = !is_first && last.name == node && last.inertia == Matrix6::zeros();
-        // room for the further hinges of the same joint: the motor's, and the backlash's if the joint turns
+        // a body must have room for the further hinges of the same joint: the motor's, and the backlash's if the joint
+        // turns
         let more = if slides { 1 } else { 2 };
         if !shares || last.hinges.len() + element.twists.len() > MOST_HINGES - more {
             self.open(&node, element.at_m);
@@ -218,7 +220,7 @@ impl Builder<'_> {
                 self.last().hinges.push(play);
             }
         }
-        // the spring of a passive joint is in its first hinge
+        // a passive joint has its spring in its first hinge, so it gets no further hinges
         if !is_compliant || is_passive {
             return;
         }

@@ -27,7 +27,7 @@ pub(crate) struct Urdf {
 /// Writes an arm as URDF. The payload of the case is not included.
 pub(crate) fn urdf(arm: &Arm, snapshot: &Snapshot) -> Urdf {
     let nodes = tree(snapshot, &TreeOptions::default());
-    // readers differ in whether a link and a joint may have the same name
+    // some readers of URDF refuse a link and a joint of the same name
     let joints = arm.joints().map(|joint| joint.name.clone());
     let mut free = FreeNames::all_but(joints.chain(arm.prismatics().map(|joint| joint.name.clone())));
     let names: Vec<String> =

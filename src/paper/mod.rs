@@ -8,8 +8,8 @@
 //! | `fig3-wall-or-width` | whether a kilogram is better spent on the wall or on the outer dimensions |
 //! | `fig4-composites` | composites compared with the best metal |
 //!
-//! The paper's equations are written as printed ([`equations`], [`coupled`]), separately from the general
-//! mechanics. So the equations and the mechanics can be checked against each other.
+//! The paper's equations are written as printed ([`equations`], [`coupled`]), separately from the general mechanics. So
+//! the equations and the mechanics can be checked against each other.
 
 pub mod arm;
 pub mod claim;

@@ -46,7 +46,7 @@ impl CatalogGears {
 /// The error of the tip's position that remains after a correction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ErrorLeft {
-    /// What is measured or computed for the correction, in words.
+    /// The method of the correction, in words: what is measured or computed for it.
     pub method: String,
     /// Error of the tip's position that remains if the gears are springs of stiffness K2 \[m\].
     pub middle_slope_m: f64,

@@ -7,7 +7,7 @@ use super::rows::PaperRow;
 use crate::arm::LinkModel;
 use crate::report::number::{fixed, percent_change};
 
-/// All static rows.
+/// All rows on the paper's static numbers. `gears` are the catalog's gears in the joints of the arm.
 pub(crate) fn rows(gears: &CatalogGears) -> Vec<PaperRow> {
     let arm = PaperArm::table_1();
     [torques(&arm), joints(&arm), links(&arm), total(&arm), catalog_gears(gears)].concat()

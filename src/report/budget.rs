@@ -119,8 +119,8 @@ impl PickBudget {
         self.rows.iter().filter(|r| r.kind != PieceKind::Link).map(|r| r.share).sum()
     }
 
-    /// Among the pieces of this kind (joints, or links), the one at which one more kilogram reduces the tip deflection
-    /// most, with the changes per kilogram; `None` if the arm has no such piece.
+    /// The piece of this kind (joints, or links) at which one more kilogram reduces the tip deflection most, with the
+    /// changes per kilogram; `None` if the arm has no such piece.
     fn best(&self, kind: PieceKind) -> Option<(&BudgetRow, Gain)> {
         let of_kind = self.rows.iter().filter(|r| r.kind == kind).filter_map(|r| Some((r, r.in_place?)));
         of_kind.min_by(|a, b| a.1.mm_per_kg.total_cmp(&b.1.mm_per_kg))

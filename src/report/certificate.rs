@@ -73,8 +73,9 @@ pub(crate) fn gap_words(gap: f64) -> String {
     )
 }
 
-/// What an exact search proved, for the terminal. The array has the number of boxes that were bounded, and the number
-/// that were left open. `up_to_kg` is the largest mass up to which the whole front is proved.
+/// Words on what an exact search proved, for the terminal. The array has the number of boxes that were bounded, and the
+/// number that were left open. `up_to_kg` is the largest mass up to which the whole front is proved \[kg\]; `None` if
+/// the study does not limit the mass or the front is not whole.
 pub(crate) fn certificate_words([boxes, open]: [u64; 2], gap: Option<f64>, up_to_kg: Option<f64>) -> String {
     match (open, gap) {
         (0, None | Some(0.0)) => {

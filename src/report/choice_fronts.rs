@@ -10,14 +10,14 @@ const CHOICE: &str = "choice";
 /// Column of a front with the number of the set of equally good designs to which a design belongs.
 const TIE_GROUP: &str = "tie_group";
 
-/// The front of one choice.
+/// The front of one choice of springs and counterweights.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ChoiceFront {
     /// Name of the folder with the result of this choice.
     pub folder: String,
-    /// The choice in words.
+    /// The choice of springs and counterweights in words.
     pub words: String,
-    /// Column of each number that is chosen, and its value.
+    /// Name of the column of each number that is chosen, and the number's value.
     pub values: Vec<(String, f64)>,
     /// How the search of this choice ended, as in its `run.json`.
     pub status: String,
@@ -27,7 +27,7 @@ pub(crate) struct ChoiceFront {
     pub front: FrontTable,
 }
 
-/// Those designs of all choices that no design of any choice dominates, as one front. Its columns are the choice, the
+/// The joint front: the designs of all choices that no design of any choice dominates. Its columns are the choice, the
 /// numbers that are chosen, and the columns of the fronts; a cell is blank where a front does not have the column.
 pub(crate) fn joint_front(choices: &[ChoiceFront]) -> FrontTable {
     let listed: Vec<(&ChoiceFront, Design)> = choices

@@ -39,7 +39,7 @@ pub struct SummaryFacts {
     pub not_checked: Vec<String>,
     /// Remarks about the study that a reader of the result should know, in sentences.
     pub remarks: Vec<String>,
-    /// For each material that some open links may not be of, the names of these links.
+    /// For each material that only some of the open links offer, the names of the links that do not offer it.
     pub materials_of_some_links: BTreeMap<String, Vec<String>>,
     /// Parts whose ratings were not read from a document.
     pub caveats: Caveats,

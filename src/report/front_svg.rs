@@ -18,7 +18,7 @@ const HEIGHT_PX: f64 = 460.0;
 /// An axis whose ends differ by more than this factor is logarithmic. On a linear axis light arms would crowd at
 /// the left.
 pub(crate) const LOGARITHMIC_ABOVE: f64 = 5.0;
-/// Of the designs of one front that are closer together than this fraction of each axis, only one is drawn.
+/// Distance, as a fraction of each axis, within which only one design of a front is drawn.
 const DRAWN_DISTANCE: f64 = 1.0 / 200.0;
 /// Least distance between two markers on the line of best designs of a front, in units of [`DRAWN_DISTANCE`].
 const MARKER_STEPS: f64 = 3.0;

@@ -156,7 +156,7 @@ pub struct Pick {
     pub design: Design,
 }
 
-/// Of all checks of the drives of a design, the one that is nearest to its limit.
+/// The tightest check of a design: of all checks of its drives, the check that is nearest to its limit.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct TightestCheck {
     /// Name of the joint.

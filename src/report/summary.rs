@@ -382,8 +382,8 @@ const MARKDOWN_MATERIALS: [&str; 7] = [
 const TERMINAL_MATERIALS: [&str; 7] =
     ["material", "front", "least kg", "least mm", "most Hz", "share", "EUR/kg"];
 
-/// The reason for each front of a material that is empty although its search ended, in sentences: some links may not be
-/// of the material, or no design of it alone meets the limits.
+/// The reason for each front of a material that is empty although its search ended, in sentences: some links do not
+/// offer the material, or no design of this material alone meets the limits.
 pub(crate) fn empty_fronts(input: &SummaryInput) -> Vec<String> {
     let reason = |material: &MaterialFront| {
         let name = &material.name;

@@ -46,7 +46,7 @@ pub(crate) fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
 #[cfg(unix)]
 fn as_any_new_file(builder: &mut tempfile::Builder) {
     use std::os::unix::fs::PermissionsExt;
-    // the operating system removes the bits of umask
+    // the operating system removes the permissions that `umask` excludes
     builder.permissions(std::fs::Permissions::from_mode(0o666));
 }
 

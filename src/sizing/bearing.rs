@@ -22,9 +22,9 @@
 
 use crate::arm::bearing::Bearing;
 
-/// Static safety at rest: the vendor's value for high precision.
+/// Static safety factor fs that is required at rest: the vendor's value for high precision.
 pub(crate) const SAFETY_AT_REST: f64 = 3.0;
-/// Static safety in an emergency stop: the vendor's value for shocks.
+/// Static safety factor fs that is required in an emergency stop: the vendor's value for shocks.
 pub(crate) const SAFETY_IN_A_STOP: f64 = 2.0;
 /// Load factor f_w of the life: the vendor's value for its own tables, which lies in the range of normal use, 1.2 to
 /// 1.5.
@@ -51,8 +51,8 @@ pub struct BearingLoad {
 }
 
 /// The loads on the output bearing of a joint in a study. Each number is the largest over the sizing cases (in which
-/// drives and stresses are checked) and over the ramps or stops of single joints. The numbers of one load may come from
-/// different cases, which is on the safe side.
+/// drives and stresses are checked) and over the ramps or stops of single joints. The moment and the forces of one load
+/// may come from different cases, which is on the safe side.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BearingDemand {
     /// Loads from gravity, payload and tip force alone, with all joints at rest.
@@ -63,7 +63,8 @@ pub struct BearingDemand {
     pub in_stop: BearingLoad,
 }
 
-/// Thresholds of an output bearing. A bearing passes its checks exactly if no load exceeds its threshold.
+/// Thresholds of an output bearing. A bearing passes its checks exactly if no load exceeds its threshold. A threshold
+/// is infinite if the rating behind it is unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BearingLimits {
     /// Distance R from the bearing's centre to the face of the flange \[m\].
@@ -130,8 +131,9 @@ impl BearingDemand {
         }
     }
 
-    /// An upper bound of this demand when all accelerations are multiplied by `factor`, at most 1. The norm of a load
-    /// is a convex function of the accelerations, so interpolation between rest and full acceleration overestimates it.
+    /// An upper bound of this demand when all accelerations are multiplied by `factor` (0 to 1). The norm of a load is
+    /// a convex function of the accelerations, so a linear interpolation between the load at rest and the load at full
+    /// acceleration is not below it.
     pub fn slowed(self, factor: f64) -> Self {
         let between = |at_rest: f64, moving: f64| at_rest + factor * (moving - at_rest).max(0.0);
         let load = |moving: BearingLoad| BearingLoad {
@@ -210,8 +212,8 @@ impl BearingLimits {
     }
 
     /// Dynamic equivalent load P_c \[N\]. The vendor changes from one pair of X and Y to the other where the axial
-    /// force is 1.5 times `F_r + 2 M / d_p`. On either side of this point the vendor's value is the larger of the two,
-    /// so no case distinction is needed.
+    /// force is 1.5 times `F_r + 2 M / d_p`. On either side of this point the vendor's formula is the one with the
+    /// larger result, so the larger of the two is taken and no case distinction is needed.
     #[inline]
     pub fn dynamic_load_n(&self, load: &BearingLoad) -> f64 {
         let across_n = self.across_n(load);

@@ -70,8 +70,8 @@ impl DriveTable<'_> {
         ))
     }
 
-    /// `gear` with the failed check of its output bearing, or `None` if its bearing passes. If several checks of the
-    /// bearing fail, it is the check with the smallest margin.
+    /// The failed check of the output bearing that the joint has with `gear`; `None` if the bearing passes. If several
+    /// checks of the bearing fail, it is the check with the smallest margin.
     fn overloaded<'t>(&self, gear: &'t Gear, demand: &JointDemand) -> Option<Overloaded<'t>> {
         let bearing = self.bearing_of(gear);
         let checks = gear_checks(gear, self.gear_mass(), bearing.as_ref(), self.motion(), demand);

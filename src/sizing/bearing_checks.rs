@@ -1,4 +1,5 @@
-//! The single checks of an output bearing, the ratings that are missing for them, and what helps where a check fails.
+//! The checks of an output bearing one by one, the ratings that are missing for them, and what helps where a check
+//! fails.
 
 use super::bearing::{self, BearingDemand, BearingLimits, BearingLoad};
 use super::check::{Check, CheckKind, check, plain};
@@ -7,7 +8,8 @@ use super::drive::known;
 use crate::arm::bearing::{Bearing, BearingSource};
 use crate::catalog::gear::{Gear, GearMass};
 
-/// The checks of an output bearing: moment, static safety at rest and in a stop, life.
+/// The four checks of an output bearing: moment while running, static safety at rest, static safety in an emergency
+/// stop, life.
 pub(super) fn bearing_checks(bearing: &Bearing, motion: &JointMotion, demand: &BearingDemand) -> [Check; 4] {
     let speed_rad_s = motion.mean_speed_rad_s();
     let limits = BearingLimits::of(Some(bearing), speed_rad_s, motion.life_h);
@@ -105,7 +107,7 @@ const STIFFNESS: [&str; 2] = ["tilting_stiffness_nm_per_rad", "tilt_stiffness_nm
 /// A bearing whose tilting stiffness is unknown, so that it is taken as rigid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct RigidBearing {
-    /// Name of the stiffness that is blank.
+    /// Name under which the blank stiffness is reported, one of [`STIFFNESS`].
     lacks: &'static str,
 }
 
@@ -146,7 +148,7 @@ impl RigidBearing {
     }
 }
 
-/// In words, the rating with which a separate bearing of the joint would pass the failed check `check`. `None` for
+/// The rating that a separate output bearing needs so that it passes the failed check `check`, in words. `None` for
 /// checks of other parts.
 pub(super) fn bearing_that_holds(check: &Check) -> Option<String> {
     let times = check.torque_margin().map(|margin| (100.0 / margin).ceil() / 100.0);

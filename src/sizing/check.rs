@@ -9,7 +9,7 @@ use std::fmt;
 pub enum CheckKind {
     /// Static plus linear torque is at most the gear's limit for repeated peaks.
     GearPeak,
-    /// Cubic mean torque is at most the gear's limit for average torque.
+    /// The cubic mean of the torque is at most the gear's limit for average torque.
     GearMean,
     /// Torque in an emergency stop is at most the gear's limit for momentary peaks.
     GearStop,
@@ -45,7 +45,7 @@ pub enum CheckKind {
     /// The outer diameter of the gear is at most a stated multiple of the width of the link that the joint carries.
     /// Checks of size are listed only if the study asks for them.
     GearWidth,
-    /// The motor fits into the hollow of the link that the joint carries.
+    /// The motor is narrow enough for the hollow of the link that the joint carries.
     MotorWidth,
     /// A motor in the hollow of the link that the joint carries is no longer than this link.
     MotorLength,
@@ -158,8 +158,9 @@ impl CheckKind {
     }
 
     /// Whether a drive is excluded if the rating that this check needs is blank. Blank ratings of an output bearing and
-    /// blank sizes do not exclude it; they are left unchecked. Nor do blank buckling and ratcheting torques, which few
-    /// vendors state; both lie above the momentary peak torque, which must be known.
+    /// blank sizes do not exclude it; they are left unchecked. Blank buckling and ratcheting torques do not exclude it
+    /// either, because few vendors state them and both lie above the momentary peak torque, which must be known. The
+    /// number of stops is left unchecked for kinds of gears that have no rule for it.
     pub fn needs_its_rating(self) -> bool {
         !self.is_bearing()
             && !self.is_fit()
@@ -200,7 +201,7 @@ pub enum CheckState {
 /// The comparison of one limit of a part with one demand.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Check {
-    /// Which limit is checked.
+    /// The limit that is checked.
     pub kind: CheckKind,
     /// The needed value in [`CheckKind::unit`]; `None` if it cannot be computed.
     pub needed: Option<f64>,
@@ -211,7 +212,7 @@ pub struct Check {
     /// Exponent p of the torque: the margin is proportional to torque^-p. It is 1 for most checks, and for lives the
     /// exponent of the life formula.
     pub torque_exponent: f64,
-    /// Whether forces along a travel take the place of torques about an axis.
+    /// Whether the joint slides. The check then compares forces along the travel \[N\] in the place of torques.
     pub slides: bool,
 }
 
@@ -225,7 +226,7 @@ impl Check {
         }
     }
 
-    /// A check that a blank rating prevents.
+    /// A check of the kind `kind` that could not be made because `rating` is blank.
     pub(super) fn not_made(kind: CheckKind, rating: MissingRating) -> Self {
         let torque_exponent = kind.torque_exponent();
         Self {

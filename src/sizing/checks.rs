@@ -40,7 +40,7 @@ pub fn gear_checks(
     }
     checks.retain(|check| !limit::is_unlimited(gear, check.kind));
     if gear.kind == GearKind::Actuator {
-        // its motor brakes its own rotor too, see `motor_checks`
+        // an actuator in an emergency stop must brake its own rotor too; its stop is therefore one of `motor_checks`
         checks.retain(|check| check.kind != CheckKind::GearStop);
     }
     checks.extend(gear_fits(gear, which, &motion.fit, &demand.room));
@@ -159,9 +159,9 @@ pub fn checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -> Vec<
     all
 }
 
-/// The checks of a drive that stands still and holds a reaction: `ramp_nm` while another joint ramps, `stop_nm` while
-/// it makes an emergency stop \[N m\]. Only checks that compare a single torque are made. Mean values over the cycle
-/// are left out, because these short torques hardly change them.
+/// The checks of a drive that stands still and holds the reaction to the motion of another joint: `ramp_nm` while the
+/// other joint ramps, `stop_nm` while it makes an emergency stop \[N m\]. Only checks that compare a single torque are
+/// made. Mean values over the cycle are left out, because these short torques hardly change them.
 pub(crate) fn reaction_checks(drive: &Drive, motion: &JointMotion, ramp_nm: f64, stop_nm: f64) -> Vec<Check> {
     use CheckKind::{GearBuckling, GearPeak, GearRatcheting, GearStop, MotorPeak};
     let still = JointMotion { speed_rad_s: 0.0, acceleration_rad_s2: 0.0, stated: None, ..*motion };

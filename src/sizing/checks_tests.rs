@@ -65,8 +65,8 @@ fn each_check_fails_alone_when_its_own_limit_is_lowered() {
     assert_eq!(failing(|_, m, _, _| m.max_speed_rpm = Some(707.0)), [CheckKind::MotorSpeed]);
 }
 
-/// In addition to the load, the motor of an actuator stops its own rotor: with 0.5 kg m² at the output, a ramp of α and
-/// a stop of 2 α, T + 2 T_lin + 2 · 0.5 α may reach the peak torque.
+/// The motor of an actuator stops its own rotor in addition to the load. With 0.5 kg m² at the output, a ramp of α and
+/// a stop of 2 α, the torque T + 2 T_lin + 2 · 0.5 α may reach the peak torque.
 #[test]
 fn an_actuator_stops_its_own_rotor_too() {
     let (mut gear, mut motor) = ample();
@@ -122,7 +122,7 @@ fn a_brake_holds_what_the_motor_need_not() {
 
 #[test]
 fn the_bearing_is_checked_if_something_loads_it_and_its_ratings_are_known() {
-    // 661 N m and the offset of 0.02 m times 1983 N of radial force are 701 N m
+    // the moment at the bearing's centre: 661 N m plus 0.02 m times 1983 N of radial force are 701 N m
     let loaded = |d: &mut JointDemand| d.bearing = bearing_loads(661.0);
     assert_eq!(failing(|_, _, _, d| loaded(d)), [CheckKind::BearingMoment]);
     let blank = |g: &mut Gear, d: &mut JointDemand| {

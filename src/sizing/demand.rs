@@ -25,10 +25,11 @@ pub struct Stop {
     /// Deceleration of the joint that follows from the stop of the tip which the study states \[rad/s²\]; `None` if the
     /// study states none, and the deceleration is then twice that of the ramps.
     pub stated_rad_s2: Option<f64>,
-    /// Ratio of the torque of the checks of a stop to the torque of a ramp. It is at least 1: what holds in a stop must
-    /// hold in every ramp of the cycle too, also where a gentle stop is stated.
+    /// Factor on the linear torque in the checks of an emergency stop: emergency deceleration divided by the
+    /// acceleration of a ramp, but at least 1. So a drive that passes these checks also passes every ramp of the cycle,
+    /// even where a gentle stop is stated.
     pub factor: f64,
-    /// Duration of the stop in ramp times.
+    /// Duration of the stop divided by the ramp time.
     pub ramps: f64,
 }
 

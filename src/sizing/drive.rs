@@ -201,8 +201,8 @@ impl Drive<'_> {
 
 /// Torque that accelerates rotor and gear input, on the motor's side \[N m\]: T_rot = J_in N α (Eqs 10-11).
 ///
-/// The paper's n_j is the speed of the motor, so its θ̈ is N α. `acceleration_rad_s2` is α, the acceleration of the
-/// joint.
+/// In the paper's Eq 10, n_j is the speed of the motor, so θ̈ there is N α. `acceleration_rad_s2` is α, the
+/// acceleration of the joint.
 pub fn rotary_torque_motor_nm(input_inertia_kgm2: f64, ratio: f64, acceleration_rad_s2: f64) -> f64 {
     input_inertia_kgm2 * ratio * acceleration_rad_s2
 }

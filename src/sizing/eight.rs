@@ -24,8 +24,8 @@ pub(crate) struct EightDemands<V> {
     /// Largest widths of gear, round motor and square flange that the links leave room for \[m\]; `None` if the study
     /// does not ask for this check.
     room: Option<[V; 3]>,
-    /// T + T_lin, the torque while speeding up \[N m\] (T: static torque, T_lin: linear torque). The next field has
-    /// max(T - T_lin, 0) and max(T_lin - T, 0) \[N m\], which are needed while slowing down.
+    /// Torque while speeding up \[N m\]: T + T_lin, with the static torque T and the linear torque T_lin. The field
+    /// `down_nm` has max(T - T_lin, 0) and max(T_lin - T, 0) \[N m\], from which the torque while slowing down follows.
     up_nm: V,
     down_nm: [V; 2],
     heat_weights: HeatWeights,
@@ -92,8 +92,8 @@ impl<V: Lanes> EightBearing<V> {
         Self { at_rest: EightLoad::zero(), running: EightLoad::zero(), in_stop: EightLoad::zero() }
     }
 
-    /// Takes a load at rest into account. The five components are two forces across the axis, the force along it, and
-    /// two moments across it.
+    /// Raises the largest load at rest, lane by lane, to a further load at rest. The five components of that load are
+    /// two forces across the axis \[N\], the force along it \[N\], and two moments across it \[N m\].
     #[inline(always)]
     pub(crate) fn rest(&mut self, [u, v, along, about_u, about_v]: &[V; 5]) {
         let (radial, moment) = (*u * *u + *v * *v, *about_u * *about_u + *about_v * *about_v);
@@ -102,8 +102,9 @@ impl<V: Lanes> EightBearing<V> {
         // loads the bearing at least as much as the load at rest does
     }
 
-    /// Takes into account the load s at rest together with the load d that a ramp adds: s ± d in the ramp, and s ±
-    /// `stop_factor` d in an emergency stop. Of the two signs the larger squared norm is `|s|² + |d|² + 2 |s·d|`.
+    /// Raises the largest loads in a ramp and in an emergency stop, lane by lane, to those of a further ramp. With the
+    /// load s at rest and the load d that the ramp adds, they are s ± d in the ramp and s ± `stop_factor` d in the
+    /// stop. Of the two signs the larger squared norm is `|s|² + |d|² + 2 |s·d|`.
     #[inline(always)]
     pub(crate) fn moving(&mut self, at_rest: &[V; 5], ramp: &[V; 5], stop_factor: V) {
         let (radial, moment) = (Pair::new(at_rest, ramp, 0), Pair::new(at_rest, ramp, 3));
@@ -143,9 +144,9 @@ impl<V: Lanes> EightBearing<V> {
 struct Pair<V> {
     /// `|s|²` of the load at rest.
     rest: V,
-    /// `|d|²` of the ramp.
+    /// `|d|²` of the load d that the ramp adds.
     ramp: V,
-    /// `2 |s·d|`.
+    /// `2 |s·d|`, the mixed term of both loads.
     both: V,
 }
 
@@ -274,8 +275,8 @@ impl DriveTable<'_> {
         let ladder = self.ladder();
         let reach = ladder.reach;
         let mut start = (*step).min(reach.len());
-        // `reach` only grows along the ladder, so the first step that may meet the demand of some lane can be found
-        // from either side
+        // `reach[step]` has the weakest value of each limit up to this step, so it only grows along the ladder. The
+        // first step that may meet the demand of some lane can therefore be found from either side.
         while start > 0 && demands.held_by(&reach[start - 1], wanted) != 0 {
             start -= 1;
         }
@@ -291,7 +292,7 @@ impl DriveTable<'_> {
             for step in steps {
                 let mut held = demands.held_by(&ladder.limits[step], open);
                 open &= !held;
-                // one pass for each bit that is set
+                // one pass for each bit of the mask that is set, that is, for each lane whose drive is found
                 while held != 0 {
                     fits[held.trailing_zeros() as usize] = ladder.indices[step] as usize;
                     held &= held - 1;

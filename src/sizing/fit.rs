@@ -4,14 +4,14 @@
 //! |---|---|---|
 //! | gear at the link that the joint carries | outer diameter of the gear | factor times width of the link |
 //! | motor in the hollow of that link | outer diameter of the motor; the side of a square flange | the smaller clear width of the hollow; for a square in a round tube its diameter over √2 |
-//! | the same | length of the motor | length of the tubes from the joint to the next one |
+//! | motor in that hollow | length of the motor | length of the tubes from the joint to the next one |
 //! | cables along the axis | bore of the gear, and of a motor behind it | at least the bore that the study states |
 //! | space at the joint | length of the gear, plus the length of a motor behind it | the length that the study states |
 //!
 //! A size that the catalog leaves blank is not checked and excludes nothing. For component sets the catalog has no
 //! sizes at all. The limits of the first two checks follow from the link, so they are part of the
-//! [demand](super::demand::JointDemand) on the joint. The other two checks exclude a drive whatever the arm. The places
-//! of the parts do not depend on these sizes, because the geometry of a chain is stated.
+//! [demand](super::demand::JointDemand) on the joint. The other checks exclude a drive whatever the arm. The places of
+//! the parts do not depend on these sizes, because the geometry of a chain is stated.
 
 use crate::catalog::envelope::Envelope;
 use crate::catalog::motor::Motor;
@@ -23,16 +23,17 @@ const ROUNDING: f64 = 1e-9;
 /// Limits that a study sets to the sizes of a joint's parts. By default there are none; `None` means no limit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FitRequirement {
-    /// Largest ratio of the gear's outer diameter to the width of the link that the joint carries.
+    /// Largest ratio of the gear's outer diameter to the width of the link that the joint carries; `None` means no
+    /// limit.
     pub gear_to_link_max: Option<f64>,
     /// Where the motor is mounted.
     pub motor: MotorPlace,
-    /// Smallest diameter of the passage along the axis \[m\].
+    /// Smallest diameter of the passage along the axis \[m\]; `None` means no limit.
     pub cable_bore_min_m: Option<f64>,
-    /// Largest length of the drive along the axis \[m\].
+    /// Largest length of the drive along the axis \[m\]; `None` means no limit.
     pub drive_length_max_m: Option<f64>,
-    /// Largest length of a motor in the hollow of the link \[m\]: the length of that link. It follows from the chain, so
-    /// no key states it; `None` if the motor is elsewhere or the joint carries no tube.
+    /// Largest length of a motor in the hollow of the link \[m\]: the length of that link. It follows from the chain,
+    /// so no key states it; `None` if the motor is elsewhere or the joint carries no tube.
     pub link_length_m: Option<f64>,
 }
 
@@ -114,7 +115,7 @@ impl DriveWidths {
         }
     }
 
-    /// Whether gear and motor fit into `room`: no width exceeds the largest one that the link allows.
+    /// Whether gear and motor fit into `room`: none of their widths exceeds the largest width that the link allows.
     #[inline]
     pub fn fit(&self, room: &LinkRoom) -> bool {
         (self.gear_m <= room.gear_m) & (self.motor_m <= room.motor_m) & (self.square_m <= room.square_m)
@@ -157,8 +158,9 @@ impl FitRequirement {
         self.gear_to_link_max.is_some() || self.motor == MotorPlace::InLink
     }
 
-    /// The largest widths of gear and motor \[m\] next to a link of width `width_m` across the joint's axis \[m\].
-    /// `hollow_m` is the clear width of the link's hollow for a round motor and for a square flange \[m\].
+    /// The largest widths of gear and motor, if the link that the joint carries has the width `width_m` across the
+    /// joint's axis \[m\]. `hollow_m` has two clear widths of the link's hollow \[m\]: for a round motor, and for the
+    /// side of a square flange.
     pub(crate) fn room(&self, width_m: f64, hollow_m: [f64; 2]) -> LinkRoom {
         let any = f64::INFINITY;
         let in_link = self.motor == MotorPlace::InLink;
@@ -171,8 +173,8 @@ impl FitRequirement {
         }
     }
 
-    /// Whether the bores and the length of a gear and a motor are within the limits, whatever the link. A size that is
-    /// unknown is not checked.
+    /// Whether the bores and the length of a gear and a motor are within those limits that do not depend on the link. A
+    /// size that is unknown is not checked.
     pub(crate) fn allows(&self, gear: &Envelope, motor: &Envelope) -> bool {
         let bore_holds = |bore_m: Option<f64>| match (self.least_bore_m(), bore_m) {
             (Some(least_m), Some(bore_m)) => least_m <= bore_m,
@@ -202,8 +204,8 @@ impl FitRequirement {
         self.drive_length_max_m.map(|most_m| most_m * (1.0 + ROUNDING))
     }
 
-    /// Largest length of a motor in the link that passes \[m\], increased by the tolerance for rounding; `None` if it is
-    /// not limited.
+    /// Largest length of a motor in the link that passes \[m\], increased by the tolerance for rounding; `None` if it
+    /// is not limited.
     pub(super) fn most_motor_length_m(&self) -> Option<f64> {
         self.link_length_m
             .filter(|_| self.motor == MotorPlace::InLink)

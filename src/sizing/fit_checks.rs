@@ -1,4 +1,4 @@
-//! The single checks of the sizes of parts, for printing.
+//! The checks of the sizes of parts one by one, as they are printed.
 
 use super::check::{Check, CheckKind, check};
 use super::drive::{Drive, Rating, known};

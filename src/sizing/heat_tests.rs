@@ -247,7 +247,7 @@ fn the_makers_example_of_an_integrated_actuator_comes_out() {
         inertia_input_kgm2: None,
         ..gear("FHA25C-25-50", [1.0, 1.0, 1.0, 1.0], [1.0, 1.0], 0.0, [0.0, 4.0])
     };
-    // the figures of the output, converted to its motor, which is 50 times as fast
+    // the manual's ratings at the output, converted to the motor, which turns 50 times as fast
     let motor =
         motor("FHA-25C-50", [40.0 / 50.0, 151.0 / 50.0], [50.0 * 45.0, 50.0 * 90.0], 0.86 / 2500.0, 0.0);
     let phase = |duration_s, kind| Phase { duration_s, kind };

@@ -123,8 +123,8 @@ impl DriveLimits {
             & (self.heat.share_squared(demand) <= 1.0)
     }
 
-    /// For each limit the weaker of the values of this drive and of `other`: the larger value, but for heat and widths
-    /// the smaller value. If one of the two drives meets a demand, the demand is within these limits.
+    /// The weaker limits of this drive and of `other`, one by one: the larger value of each limit, but the smaller
+    /// value for heat and widths. If one of the two drives meets a demand, the demand is within these limits.
     pub(crate) fn max(&self, other: &Self) -> Self {
         Self {
             static_torque_nm: self.static_torque_nm.max(other.static_torque_nm),
@@ -137,8 +137,8 @@ impl DriveLimits {
         }
     }
 
-    /// For each limit the stricter of the values of this drive and of `other`: the smaller value, but for heat and
-    /// widths the larger value. Both drives meet every demand that is within these limits.
+    /// The stricter limits of this drive and of `other`, one by one: the smaller value of each limit, but the larger
+    /// value for heat and widths. Both drives meet every demand that is within these limits.
     pub(crate) fn min(&self, other: &Self) -> Self {
         Self {
             static_torque_nm: self.static_torque_nm.min(other.static_torque_nm),
@@ -280,7 +280,8 @@ pub(super) fn actuator_stop_of_rotor_nm(drive: &Drive, motion: &JointMotion) -> 
 /// selection procedure); the formula as in the public program AimanHaidar/harmonic-drive-selector.
 pub(super) fn stops_allowed(gear: &Gear, motion: &JointMotion) -> Option<f64> {
     const LIFE_WAVES: f64 = 1e4;
-    // a study states whole numbers of stops, and speeds are converted to rad/s
+    // relative tolerance: a study states whole numbers of stops, but the number that is allowed is computed from a
+    // speed that was converted to rad/s
     const ROUNDING: f64 = 1e-9;
     if gear.kind != GearKind::StrainWave {
         return None;

@@ -6,24 +6,24 @@ use crate::catalog::lookup::first_names;
 use crate::catalog::motor::Motor;
 use crate::catalog::needs::{Lack, words};
 
-/// Number of groups of parts that a message names.
+/// Largest number of groups of parts that a message names.
 const GROUPS_NAMED: usize = 4;
-/// Number of parts of a group that a message names.
+/// Largest number of parts of one group that a message names.
 const NAMED_OF_GROUP: usize = 3;
 
 /// A part that lacks ratings.
 struct LackingPart<'t> {
     id: &'t str,
     is_built_in: bool,
-    /// Whether the known sizes of the part are allowed.
+    /// Whether the sizes of the part that are known are within the study's limits.
     fits: bool,
     lacks: Vec<Lack>,
 }
 
 impl DriveTable<'_> {
-    /// In words, the parts that cannot be checked and the ratings that they lack. Parts of the user's own catalogs
-    /// come first. Built-in parts whose known sizes do not fit are left out if others fit. `None` if every part has all
-    /// its ratings.
+    /// The parts that cannot be checked and the ratings that they lack, in words. Parts of the user's own catalogs come
+    /// first. Built-in parts whose known sizes do not fit are left out if others fit. `None` if every part has all its
+    /// ratings.
     ///
     /// `PLE-60-40, PLE-60-50: no rated_life_h (life), no efficiency_rated_2000rpm (motor torque)`
     pub fn missing_figures(&self) -> Option<String> {
@@ -55,7 +55,8 @@ impl DriveTable<'_> {
             fits: fit.allows(&g.envelope_as(self.gear_mass()), &no_size),
             lacks: g.lacks(self.gear_mass()),
         });
-        // a motor that goes with none of the gears, such as any motor if only actuators may be chosen, does not matter
+        // a motor that goes with none of the allowed gears does not matter; if only actuators may be chosen, this is
+        // every other motor
         let matters = |m: &&&Motor| self.gears().iter().any(|gear| gear.goes_with(m));
         let motors = self.motors().iter().filter(matters).map(|m| LackingPart {
             id: &m.id,
@@ -71,7 +72,7 @@ impl DriveTable<'_> {
                 None => lacking.push(part),
             }
         }
-        // what does not fit cannot be chosen, whatever figures it has
+        // a part that does not fit cannot be chosen, whatever its other ratings are
         if lacking.iter().any(|part| part.fits) {
             lacking.retain(|part| part.fits || !part.is_built_in);
         }
@@ -79,7 +80,7 @@ impl DriveTable<'_> {
         lacking
     }
 
-    /// In words, the parts that cannot be checked and the ratings that they lack, for messages that also name the
+    /// The parts that cannot be checked and the ratings that they lack, in words, for messages that also name the
     /// nearest drive. `None` if only built-in motors lack ratings.
     pub fn also_missing_figures(&self) -> Option<String> {
         let gears = self.gears().iter().any(|gear| !gear.lacks(self.gear_mass()).is_empty());

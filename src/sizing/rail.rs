@@ -13,8 +13,9 @@
 //! | stiffness of the shaft | E A / L, with both ends fixed 4 E A / L | the bar, the bar held at both ends |
 //!
 //! The factors depend on the ends of the shaft. In the order of [`Ends`], η₁ is 1/4, 1, 2, 4, and λ is 1.875, π, 3.927,
-//! 4.730, a root of the uniform beam. F_m is the cubic mean of the force over the way; the source gives the definition
-//! of C. The stiffness is taken with the nut farthest from the supports of the shaft.
+//! 4.730, the lowest root of the frequency equation of a uniform beam with these ends. F_m is the cubic mean of the
+//! force over the way; the source gives the definition of C. The stiffness is taken with the nut farthest from the
+//! supports of the shaft.
 //!
 //! I and A are the second moment and the area of the section at the root of the thread. E = 206 GPa and ρ = 7850 kg/m³
 //! are the values of steel. The mass of the shaft turns with the motor and does not travel.
@@ -47,7 +48,7 @@ pub enum Ends {
 }
 
 impl Ends {
-    /// The words of files, with what they mean.
+    /// The words for the ends of a screw in files, each with its value.
     pub const WORDS: [(&'static str, Self); 4] = [
         ("fixed_free", Self::FixedFree),
         ("supported_supported", Self::Supported),
@@ -65,7 +66,7 @@ impl Ends {
         }
     }
 
-    /// The lowest root λ of the uniform beam with these ends, which determines the critical speed.
+    /// The lowest root λ of the frequency equation of a uniform beam with these ends. It determines the critical speed.
     fn root(self) -> f64 {
         match self {
             Self::FixedFree => 1.875_104,
@@ -79,7 +80,7 @@ impl Ends {
 /// A ball screw with its nut.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Screw {
-    /// Name.
+    /// Name of the screw.
     pub name: String,
     /// Travel of the nut per turn of the screw \[m\].
     pub lead_m: f64,
@@ -171,7 +172,7 @@ impl Screw {
 /// A rack with its pinion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rack {
-    /// Name.
+    /// Name of the rack.
     pub name: String,
     /// Pitch radius of the pinion \[m\].
     pub pinion_radius_m: f64,
@@ -232,7 +233,8 @@ mod tests {
     use super::super::requirement::MotionRequirement;
     use super::*;
 
-    /// A shaft of 12.5 mm at the root, fixed and supported.
+    /// A screw that is `length_m` long between its ends, of which one is fixed and the other supported; the shaft has
+    /// 12.5 mm at the root of the thread.
     fn screw(length_m: f64) -> Screw {
         Screw {
             name: "15 x 5".into(),
@@ -264,7 +266,7 @@ mod tests {
         assert!((screw(0.790).max_speed_rpm() / by_table - 1.0).abs() < 0.005);
         let of = |ends, factor: f64| {
             let by_table = factor * 12.5 / (790.0 * 790.0) * 1e7;
-            // the table has its factors to the tenth: 0.05 of 3.4 is 1.5 %
+            // the table has its factors with one decimal; an error of 0.05 in 3.4 is 1.5 %
             let speed_rpm = Screw { ends, ..screw(0.790) }.max_speed_rpm();
             assert!((speed_rpm / by_table - 1.0).abs() < 0.05 / factor, "{ends:?}");
         };

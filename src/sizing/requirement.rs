@@ -59,8 +59,8 @@ impl MotionRequirement {
     /// The motion of a joint whose axis is at most `reach_m` \[m\] away from the tip.
     ///
     /// The speed ω is `max_speed_rad_s` \[rad/s\] if the study states one, else v / r with r the larger of `reach_m`
-    /// and the smallest lever. The acceleration is α = ω / t_a, which equals a / r (Eq 10, output side). The deceleration
-    /// in an emergency stop is that of the tip over r, where the study states one.
+    /// and the smallest lever. The acceleration is α = ω / t_a, which equals a / r (Eq 10, output side). The
+    /// deceleration in an emergency stop is that of the tip over r, where the study states one.
     ///
     /// ```
     /// use armwright::sizing::MotionRequirement;

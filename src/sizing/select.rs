@@ -26,19 +26,19 @@ pub struct DriveFilter {
     pub stage: Stage,
     /// Whether a gear must have a torsion curve, because the arm's deflection is computed.
     pub needs_torsion: bool,
-    /// Allowed series of gears, such as `CSG`.
+    /// Allowed series of gears, such as `CSG`; `None` allows all.
     pub gear_series: Option<Vec<String>>,
-    /// Allowed reduction ratios.
+    /// Allowed reduction ratios; `None` allows all.
     pub ratios: Option<Vec<f64>>,
-    /// Allowed kinds of gears. For actuators [`Self::actuator_ids`] decides instead.
+    /// Allowed kinds of gears; `None` allows all. For actuators [`Self::actuator_ids`] decides instead.
     pub gear_kinds: Option<Vec<GearKind>>,
-    /// Names of the allowed gears.
+    /// Names of the allowed gears; `None` allows all.
     pub gear_ids: Option<Vec<String>>,
-    /// Models of the allowed actuators.
+    /// Models of the allowed actuators; `None` allows all.
     pub actuator_ids: Option<Vec<String>>,
-    /// Allowed kinds of motors. An actuator brings its own motor, which this list does not exclude.
+    /// Allowed kinds of motors; `None` allows all. An actuator brings its own motor, which this list does not exclude.
     pub motor_kinds: Option<Vec<MotorKind>>,
-    /// Names of the allowed motors.
+    /// Names of the allowed motors; `None` allows all.
     pub motor_ids: Option<Vec<String>>,
 }
 
@@ -127,10 +127,11 @@ pub struct DriveTable<'c> {
     /// lighter one has no stricter limit.
     ladder: Vec<u32>,
     ladder_limits: Vec<DriveLimits>,
-    /// For each step of the ladder, the weakest value of each limit among the drives up to this step. If these limits
-    /// do not meet a demand, no drive up to this step does, so the search for the lightest drive starts after it.
+    /// The weakest value of each limit among the drives up to a step of the ladder, for each step. If these limits do
+    /// not meet a demand, no drive up to this step does, so the search for the lightest drive starts after it.
     ladder_reach: Vec<DriveLimits>,
-    /// For each flight, which is [`STEPS_OF_FLIGHT`] successive steps of the ladder, the weakest value of each limit.
+    /// The weakest value of each limit among the steps of a flight, for each flight. A flight is [`STEPS_OF_FLIGHT`]
+    /// successive steps of the ladder.
     ladder_flights: Vec<DriveLimits>,
 }
 
@@ -209,9 +210,9 @@ impl<'c> DriveTable<'c> {
         table
     }
 
-    /// Fills the table with the pairs of gear and motor that may be chosen, the one with the least mass (extras included)
-    /// first. Their mass is known, their torsion too if it is needed, no rating that a check needs is blank, and speeds,
-    /// emergency stops and sizes are allowed.
+    /// Fills the table with the pairs of gear and motor that may be chosen, the one with the least mass (extras
+    /// included) first. Their mass is known, their torsion too if it is needed, no rating that a check needs is blank,
+    /// and speeds, emergency stops and sizes are allowed.
     fn fill(&mut self) {
         let mut legal = Vec::new();
         for (drive, pair) in self.all_pairs().filter(|(drive, _)| self.knows_torsion(drive.gear)) {
@@ -221,8 +222,8 @@ impl<'c> DriveTable<'c> {
                 legal.push((mass_kg, drive, pair, limits));
             }
         }
-        // places are sorted, because the limits are large; names settle ties, so that the order of the catalog files
-        // does not matter
+        // indices are sorted instead of the drives, because moving the large limits would take time; drives of equal
+        // mass are in the order of their names, so that the order of the catalog files does not matter
         let mut places: Vec<usize> = (0..legal.len()).collect();
         places.sort_by(|&a, &b| {
             let (a, b) = (&legal[a], &legal[b]);
@@ -240,7 +241,7 @@ impl<'c> DriveTable<'c> {
     fn raise_ladder(&mut self) {
         for index in 0..self.limits.len() {
             let limits = self.limits[index];
-            // a lighter drive meets every demand that a covered drive meets
+            // a drive is covered if a lighter one meets every demand that it meets; it is then never the lightest
             if self.is_covered(&limits) {
                 continue;
             }

@@ -22,13 +22,15 @@ pub struct JointSizingRow {
     pub static_torque_nm: f64,
     /// Torque of linear acceleration, Eq 8 \[N m\].
     pub linear_torque_nm: f64,
-    /// Rotary torque as printed in Eq 11, on the motor's side \[N m\].
+    /// Rotary torque as printed in Eq 11, on the motor's side \[N m\]; `None` if an inertia is blank.
     pub rotary_torque_motor_nm: Option<f64>,
-    /// Rotary torque referred to the joint, N times as large \[N m\].
+    /// Rotary torque referred to the joint, N times as large \[N m\]; `None` if an inertia is blank.
     pub rotary_torque_output_nm: Option<f64>,
-    /// Sum of static, linear and rotary torque, all referred to the joint \[N m\] (Eq 12).
+    /// Sum of static, linear and rotary torque, all referred to the joint \[N m\] (Eq 12); `None` if an inertia is
+    /// blank.
     pub total_torque_nm: Option<f64>,
-    /// Torque of the motor while the joint accelerates, with the losses of the gear \[N m\].
+    /// Torque of the motor while the joint accelerates, with the losses of the gear \[N m\]; `None` if a rating that it
+    /// needs is blank.
     pub motor_peak_torque_nm: Option<f64>,
     /// Torque in an emergency stop \[N m\].
     pub stop_torque_nm: f64,
@@ -40,22 +42,23 @@ pub struct JointSizingRow {
     pub motor_continuous_torque_nm: Option<f64>,
     /// Continuous torque divided by root mean square torque of the motor. `None` also if the root mean square is 0.
     pub motor_rms_margin: Option<f64>,
-    /// Efficiency of the gear at the mean speed and torque of the cycle, from representative curves. For information
-    /// only: the checks use the rated efficiency.
+    /// Efficiency of the gear at the mean speed and torque of the cycle, from representative curves. It is for
+    /// information only: the checks use the rated efficiency. `None` if the catalogs have no such curve for the gear.
     pub cycle_efficiency: Option<f64>,
     /// Margin of the motor's heat (continuous torque divided by root mean square torque) if the gear has the efficiency
-    /// `cycle_efficiency`.
+    /// `cycle_efficiency`. `None` also without this efficiency.
     pub motor_rms_margin_at_cycle_efficiency: Option<f64>,
-    /// Largest moment across the axis at the centre of the output bearing while a joint is in its ramp \[N m\]. Like
-    /// all numbers of the bearing, it is `None` if the joint has no bearing.
+    /// Largest moment across the axis at the centre of the output bearing while a joint is in its ramp \[N m\]. `None`
+    /// if the joint has no bearing.
     pub bearing_moment_nm: Option<f64>,
-    /// Moment that the bearing permits while the joint turns \[N m\].
+    /// Moment that the bearing permits while the joint turns \[N m\]; `None` if it is unknown or the joint has no
+    /// bearing.
     pub bearing_moment_permissible_nm: Option<f64>,
-    /// Static safety C₀ / P₀ of the bearing at rest.
+    /// Static safety C₀ / P₀ of the bearing at rest; `None` if a rating is unknown or the joint has no bearing.
     pub bearing_safety_at_rest: Option<f64>,
-    /// Static safety of the bearing in an emergency stop.
+    /// Static safety of the bearing in an emergency stop; `None` if a rating is unknown or the joint has no bearing.
     pub bearing_safety_in_a_stop: Option<f64>,
-    /// L10 life of the bearing \[h\].
+    /// L10 life of the bearing \[h\]; `None` if a rating is unknown or the joint has no bearing.
     pub bearing_life_h: Option<f64>,
     /// The factor by which all loads on the bearing may grow until one of its checks fails. `None` also if nothing
     /// loads the bearing or no check could be made.
@@ -75,17 +78,18 @@ pub struct JointSizingRow {
     pub gear: String,
     /// Name of the chosen motor.
     pub motor: String,
-    /// Label of the check with the smallest torque margin.
+    /// Label of the check with the smallest torque margin; `None` if no check could be made.
     pub binds: Option<&'static str>,
     /// Torque margin of the binding check: allowed over needed torque. For a life it is a root of the ratio of lives,
     /// see [`Check::torque_margin`]. `None` also if nothing is needed.
     pub margin: Option<f64>,
-    /// L10 life of the wave-generator bearing \[h\].
+    /// L10 life of the gear \[h\] (of a strain-wave gear: of its wave-generator bearing); `None` if its life is not
+    /// checked or a rating is blank.
     pub life_h: Option<f64>,
     /// Whether the joint slides. Its torques are then forces \[N\], and `joint_speed_rpm` is its speed in m/s times
     /// 30/π. In JSON they have keys of their own, such as `static_force_n` and `joint_speed_m_s`.
     pub slides: bool,
-    /// Mass of the drive \[kg\].
+    /// Mass of the drive \[kg\]; `None` if a mass is blank.
     pub mass_kg: Option<f64>,
     /// Mass that this joint and everything outboard of it add to the load of the next joint inboard \[kg\]. It includes
     /// the parts of the drive that sit at this joint, and other parts that are fixed to it, such as a half of a belt.
@@ -248,7 +252,8 @@ const CYCLE_HEADERS: [Header; 9] = [
     ("stops", "-", true),
 ];
 
-/// The same headers for joints that slide: forces along the travel in place of torques, and a speed in mm/s.
+/// The headers of a table for joints that slide, made from the `headers` for joints that turn: forces along the travel
+/// take the place of torques, and a speed in mm/s takes the place of the joint's speed.
 fn of_rails<const N: usize>(headers: [Header; N]) -> [Header; N] {
     let at_motor = ["rot.mot", "motor rms", "allowed"];
     headers.map(|(name, unit, right)| match (name, unit) {
@@ -322,7 +327,7 @@ fn digits(x: f64, n: usize) -> String {
     format!("{x:.n$}")
 }
 
-/// A number with `n` decimals, or a question mark if it is unknown because a rating is blank.
+/// A number with `n` decimals, or a question mark if the number is unknown because a rating is blank.
 fn or_open(x: Option<f64>, n: usize) -> String {
     x.map_or("?".to_string(), |x| digits(x, n))
 }

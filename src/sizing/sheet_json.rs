@@ -29,7 +29,7 @@ impl Serialize for JointSizingRow {
     }
 }
 
-/// Converts a key and its value, as a joint that turns has them, to the key and value of a joint that slides.
+/// The entry of the JSON for a joint that slides, made from the entry `(key, value)` that a joint that turns has.
 fn of_slide((key, value): (String, Value)) -> (String, Value) {
     match (OF_SLIDES.iter().find(|(turning, _)| *turning == key), key.as_str()) {
         (Some((_, sliding)), _) => (sliding.to_string(), value),

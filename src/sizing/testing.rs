@@ -55,7 +55,8 @@ pub(crate) fn ample() -> (Gear, Motor) {
     (gear, motor("M", [10.0, 20.0], [2000.0, 3000.0], 0.0003, 4.0))
 }
 
-/// A gear with every rating that a check needs. The arrays are in the order of the columns of `gears.csv`.
+/// A gear with every rating that a check needs. The numbers of each array are in the order of the columns of
+/// `gears.csv`.
 pub(crate) fn gear(
     id: &str,
     torques_nm: [f64; 4],

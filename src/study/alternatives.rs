@@ -12,9 +12,10 @@ use crate::space::design_space::DesignSpace;
 use crate::space::design_space::{LinkChoice, LinkOption, SpaceJoint, SpacePiece};
 use crate::space::problem::ArmProblem;
 
-/// For each element of the chain of `arm`, the parts that may replace its part. Each is given by its name and by the
-/// element that has it. `options` are the options of the design, tip first. `problem` may have an excerpt of the space;
-/// the parts come from the whole space `whole`. `None` if the design is not possible.
+/// For each element of the chain of `arm`, the parts that may stand in the place of its present part. Each item is the
+/// name of a part and the element as it would be with this part. `options` are the options of the design, one for each
+/// level, tip first. `problem` may have an excerpt of the space; the parts come from the whole space `whole`. `None` if
+/// the design is not possible.
 pub(super) fn alternatives(
     problem: &ArmProblem,
     whole: &DesignSpace,
@@ -38,8 +39,8 @@ pub(super) fn alternatives(
     Some(others)
 }
 
-/// The joint `asked` with each of `drives` (drives that meet the demand, lightest first). Each entry is the name of the
-/// gear, and the joint as an element with bearing and extras. A drive is listed only if it is stiffer than every
+/// The element `asked` with each of `drives` (drives that meet the demand, lightest first). Each item is the name of
+/// the gear, and the joint as an element with bearing and extras. A drive is listed only if it is stiffer than every
 /// lighter one, in a segment of its torsion curve or in its bearing.
 fn drives<'c>(asked: &SpaceJoint, drives: impl Iterator<Item = Drive<'c>>) -> Vec<(String, Element)> {
     let mut out: Vec<(String, Element)> = Vec::new();
@@ -61,7 +62,8 @@ fn drives<'c>(asked: &SpaceJoint, drives: impl Iterator<Item = Drive<'c>>) -> Ve
 }
 
 /// The tubes that a link may have and that are no softer than its present tube `now` along either axis of the section,
-/// lightest first. Each is stiffer than all lighter ones, along one axis or along both together.
+/// lightest first. A tube is listed only if a force at its end deflects it less than every lighter one: along z, along
+/// y, or in the sum of both.
 fn tubes(choice: &LinkChoice, limits: &Constraints, now: &Element) -> Vec<(String, Element)> {
     let Element::Link(Link { body: LinkBody::Tube { material, section, .. }, .. }) = now else {
         return Vec::new();

@@ -1,5 +1,5 @@
-//! The payloads that an arm file holds at rest, in each pose: with them no joint exceeds its torque or force limit, and
-//! no output bearing its load limits.
+//! The payloads that the arm of an arm file holds at rest, in each pose: with such a payload no joint exceeds its
+//! torque or force limit, and no output bearing its load limits.
 //!
 //! An arm file says nothing of motion and duty, so only static loads are judged. The payload keeps the centre of
 //! gravity that the case states. Torques and forces are affine in the mass of the payload: |a + b m| <= limit is an
@@ -50,7 +50,7 @@ pub fn capacity_of_arm(
     let zero = r#"[{"name": "every joint at zero", "pose": {}}]"#;
     let cases = cases.map_or_else(|| Document::parse("zero", zero), Ok)?;
     let cases = read_load_cases(cases, &arm.driven_joints())?;
-    // the limits may be the import.json of a robot, which states ranges too
+    // the file of limits may be the `import.json` of an imported robot, which states the ranges of its joints too
     let beyond = limits.as_ref().and_then(|file| beyond_ranges(file.root().value(), arm, &cases));
     let limits = match limits {
         Some(file) => read_limits(file, arm)?,
@@ -204,7 +204,7 @@ fn least_loading(least_kg: f64, most_kg: f64, use_of: &dyn Fn(f64) -> f64) -> f6
         high_kg = (2.0 * high_kg).min(most_kg);
     }
     high_kg = (2.0 * high_kg).min(most_kg);
-    // each step leaves two thirds of the interval, 150 steps 4e-27 of it
+    // each step leaves two thirds of the interval, so after 150 steps 4e-27 of it is left
     for _ in 0..150 {
         if use_of(low_kg) <= 1.0 {
             break;
@@ -227,7 +227,8 @@ mod tests {
     use crate::catalog::Catalogs;
     use crate::input::json::Document;
 
-    /// The payloads that hold an arm with this chain (and further keys) in these cases, with limits of joints.
+    /// The payloads that an arm holds in these cases, with these limits of its joints. `chain` is the chain of the arm
+    /// file, with further keys if need be.
     fn found(chain: &str, cases: &str, limits: &str) -> Capacity {
         let text = format!("{{\"chain\": {chain}}}");
         let arm = read_arm_document(Document::parse("a", &text).expect("JSON"), &Catalogs::default())
@@ -240,8 +241,8 @@ mod tests {
 
     #[test]
     fn a_lever_holds_what_its_torque_allows() {
-        // 2 kg in the middle of 1 m and m at its end, with a limit of 50 N m: m = (50/9.81 - 1)/1; folded up, nothing
-        // limits m
+        // the link weighs 2 kg at the middle of 1 m and the payload m is at its end; the limit of 50 N m gives m =
+        // (50/9.81 - 1)/1; folded up, nothing limits m
         let found = found(
             r#"[{"type": "joint", "name": "j", "axis": [0, 1, 0], "stiffness_nm_per_rad": null},
             {"type": "link", "name": "l", "vector_m": [1, 0, 0], "mass_kg": 2}]"#,
@@ -261,7 +262,7 @@ mod tests {
 
     #[test]
     fn an_arm_that_is_balanced_for_its_payload_has_a_smallest_payload() {
-        // 2 kg in the middle of 1 m against 20 kg at half a metre behind the joint: |9.81 (9 - m)| <= 50
+        // 2 kg at 0.5 m and the payload m at 1 m, against 20 kg at 0.5 m behind the joint: |9.81 (9 - m)| <= 50
         let chain = r#"[{"type": "joint", "name": "j", "axis": [0, 1, 0], "stiffness_nm_per_rad": null},
             {"type": "link", "name": "l", "vector_m": [1, 0, 0], "mass_kg": 2}],
             "counterweights": [{"at": "l", "point_m": [-0.5, 0, 0], "mass_kg": 20}]"#;
@@ -270,7 +271,8 @@ mod tests {
         let Window { least, most } = &out.window;
         assert!((least.payload_kg - (9.0 - 50.0 / 9.81)).abs() < 1e-9 && out.least_pose == "out", "{out:?}");
         assert!((most.payload_kg - (9.0 + 50.0 / 9.81)).abs() < 1e-9, "{out:?}");
-        // a tip force that a further pose adds shifts the window by its force over g: no payload holds in both poses
+        // the pose "pushed" has a force of 150 N at the tip, which shifts its window by 150 N / g; no payload is held
+        // in both poses
         let both = r#"[{"name": "out", "pose_deg": [0]}, {"name": "pushed", "pose_deg": [0], "tip_force_n": [0, 0, 150]}]"#;
         let both = found(chain, both, limits);
         assert!(!both.window.holds() && both.pose == "out" && both.least_pose == "pushed", "{both:?}");
@@ -296,7 +298,8 @@ mod tests {
 
     #[test]
     fn a_bearing_that_a_counterweight_tilts_needs_a_payload() {
-        // a vertical joint under the same lever: the moment across its axis is 9.81 |9 - m|, and 40 N m are permitted
+        // a vertical joint with the same link and counterweight: the moment across its axis is 9.81 |9 - m|, and 40 N m
+        // are permitted
         let found = found(
             r#"[{"type": "joint", "name": "waist", "axis": [0, 0, 1], "stiffness_nm_per_rad": null,
               "bearing": {"tilt_stiffness_nm_per_rad": null, "permissible_moment_nm": 40}},

@@ -8,12 +8,12 @@ use crate::arm::section::LinkMaterial;
 use crate::arm::{Arm, Element, Link, LinkBody};
 use crate::catalog::Catalogs;
 
-/// What an analysis leaves out of every number of an arm with gears.
+/// The remark on what an analysis leaves out of every number of an arm with gears.
 const LEFT_OUT: &str = "Left out of every number, unless the file states it: the compliance of the connections between links and \
     joints, and the cables along the links. Also temperature, and whether the parts fit into each other.";
 
-/// Remarks on the analysis of an arm, in sentences: on links of materials that creep, on links with stated factors, on I
-/// sections, and on what is left out of every number.
+/// Remarks on the analysis of an arm, in sentences: on links of materials that creep, on links with stated factors, on
+/// I sections, and on what is left out of every number.
 pub fn arm_remarks(arm: &Arm, catalogs: &Catalogs) -> Vec<String> {
     let has_gear = |element: &Element| matches!(element, Element::Joint(joint) if joint.gear.is_some());
     let left_out = arm.chain.iter().any(has_gear).then(|| LEFT_OUT.to_string());
@@ -46,7 +46,8 @@ mod tests {
     use crate::arm::file::read_arm_document;
     use crate::input::json::Document;
 
-    /// The remarks on an arm with one link of this material, read with these catalogs; and the arm as it is written.
+    /// The remarks on an arm with one link, and the arm as JSON text. `materials` is the list of materials in its file,
+    /// as JSON; `name` is the material of the link. The file is read with the catalogs `catalogs`.
     fn remarks(materials: &str, name: &str, catalogs: &Catalogs) -> (String, String) {
         let text = format!(
             r#"{{"name": "a", "materials": {materials}, "chain": [

@@ -1,8 +1,8 @@
 //! Choices of springs and counterweights: a study may list several values for a number of a spring or a counterweight.
 //!
 //! Each combination of these values is a study of its own, with one value each. Every design belongs to one of these
-//! studies. The front of the whole study therefore consists of the designs on their fronts that no design on the front
-//! of another one dominates.
+//! studies. The front of the whole study is therefore found from the fronts of these studies: it consists of the
+//! designs on them that no design on another one of these fronts dominates.
 
 use serde_json::{Map, Value};
 
@@ -46,9 +46,9 @@ struct OpenNumber {
     key: &'static str,
     /// Name of the spring or counterweight.
     of: String,
-    /// Name and unit of the number.
+    /// Name of the number in words, and its unit.
     words: [&'static str; 2],
-    /// The values to choose from.
+    /// The values to choose from, in the unit of the key.
     values: Vec<f64>,
 }
 
@@ -112,7 +112,7 @@ fn open_numbers(study: &Map<String, Value>) -> Vec<OpenNumber> {
     out
 }
 
-/// The choice of `values`, one for each of the numbers `open`.
+/// The choice that gives each of the numbers `open` its value in `values`.
 fn choice(study: &Map<String, Value>, open: &[OpenNumber], values: &[f64]) -> BalanceChoice {
     let mut study = study.clone();
     for (number, value) in open.iter().zip(values) {
@@ -130,13 +130,13 @@ fn choice(study: &Map<String, Value>, open: &[OpenNumber], values: &[f64]) -> Ba
 }
 
 impl OpenNumber {
-    /// Name of a column with the chosen value.
+    /// Name of the column, in tables of choices, with the chosen value of this number.
     fn column(&self) -> String {
         let plain = |c: char| if c.is_alphanumeric() { c.to_ascii_lowercase() } else { '_' };
         format!("{}_{}", self.of.chars().map(plain).collect::<String>(), self.key)
     }
 
-    /// The chosen value in words.
+    /// The number with its chosen value, in words.
     fn in_words(&self, value: f64) -> String {
         let [name, unit] = self.words;
         format!("{}: {name} {value} {unit}", self.of)

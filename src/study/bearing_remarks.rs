@@ -72,8 +72,8 @@ fn is_unnamed(joint: &SpaceJoint, catalogs: &Catalogs) -> bool {
     !joint.drive.is_sized() && !is_checked && joint.bearing.stated().is_some()
 }
 
-/// A remark if the bearing of a given drive is overloaded in some design of the front. The checks of a given drive
-/// exclude no design.
+/// A remark if the output bearing of a given drive is overloaded in some design of the front, which is possible because
+/// the checks of a given drive exclude no design. `None` if it is overloaded in none.
 fn overloaded(joint: &SpaceJoint, front: &FrontTable) -> Option<String> {
     let margins = front.numbers(&format!("{}_bearing_margin", joint.name)).into_iter().flatten();
     let margins: Vec<f64> = margins.filter(|margin| *margin < 1.0).collect();

@@ -16,7 +16,8 @@ const MOST_TABULATED: usize = 10_000;
 pub(super) enum MassBounds<'a> {
     /// The bounds are computed from all options of the space, which are tabulated once.
     Tabulated(&'a ArmProblem<'a>, Relaxation<'a>),
-    /// The bound of each pick is computed from the options that a design as good as this pick may have.
+    /// The bound of each pick is computed from the options that a design as good as this pick may have. `reach` finds
+    /// these options; no bound can be computed if it is `None`.
     InReach { space: &'a DesignSpace, catalogs: &'a Catalogs, reach: Option<DomainReduction<'a>> },
 }
 

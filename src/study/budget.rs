@@ -124,8 +124,8 @@ fn budget(
     Some(rows.concat())
 }
 
-/// Among the heavier parts `others` that improve the arm, the one with the best change of deflection per kilogram; of
-/// equal parts the first.
+/// The best of the heavier parts `others` that improve deflection or lowest mode of the arm: the part with the best
+/// change of deflection per kilogram, of equal parts the first. `None` if no part improves the arm.
 ///
 /// The parts are sorted by their change of deflection. Modes, which take most of the time of the full model, are
 /// computed for one part after another until a part improves the arm.

@@ -27,7 +27,7 @@ use crate::space::station::Walk;
 use nalgebra::Vector3;
 use serde_json::{Value, json};
 
-/// The payloads that hold in one pose.
+/// The payloads that the arm holds in one pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AtPose {
     /// Name of the pose.
@@ -35,31 +35,32 @@ pub struct AtPose {
     /// Reach of the tip \[m\]. If gravity points along the z axis of the base, it is the distance of the tip from the
     /// origin measured across gravity; otherwise, as on a wall, it is the whole distance.
     pub reach_m: f64,
-    /// The payloads that hold in this pose.
+    /// The least and the largest payload that the arm holds in this pose.
     pub window: Window,
 }
 
 /// The payloads that an arm holds, in all poses and in each of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Capacity {
-    /// The payloads that hold in all sizing poses together.
+    /// The least and the largest payload that the arm holds in all sizing poses together.
     pub window: Window,
     /// Name of the sizing pose whose largest payload is the smallest of all.
     pub pose: String,
     /// Name of the sizing pose whose smallest payload is the largest of all; empty if every pose holds the empty arm.
     pub least_pose: String,
-    /// The payloads that hold in each sizing pose, sorted by reach, shortest first. Poses that keep a payload of their
-    /// own have no entry.
+    /// The payloads that the arm holds in each sizing pose, sorted by reach, shortest first. Poses that keep a payload
+    /// of their own have no entry.
     pub table: Vec<AtPose>,
     /// The largest speed with the payloads of the study; `None` if even the study's speed is too large for them, if
     /// nothing limits the speed, or for an arm file, which states no motion.
     pub largest_speed: Option<LargestSpeed>,
-    /// What the numbers leave out, as sentences.
+    /// Remarks on what the numbers leave out, as sentences.
     pub remarks: Vec<String>,
 }
 
 impl Capacity {
-    /// The capacity of an arm with the payloads `window` in all poses together, and those of each pose in `table`.
+    /// The capacity of an arm that holds the payloads `window` in all poses together. `table` has the payloads of each
+    /// pose.
     pub(crate) fn new(window: Window, mut table: Vec<AtPose>, remarks: Vec<String>) -> Self {
         let most = table.iter().min_by(|a, b| a.window.most.payload_kg.total_cmp(&b.window.most.payload_kg));
         let least =
@@ -119,8 +120,8 @@ pub fn capacity_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Resu
 
 /// The capacity of the design with these options, tip first. There is one option for each slot (joint or link, in the
 /// order in which the arm is built), and `space` is the space to which the options belong. The cases with the indices
-/// `own` state a payload of their own and keep it. If this is so of all sizing cases, all of them take the same
-/// payload, which varies.
+/// `own` state a payload of their own and keep it. If every sizing case is among them, the payload is varied in all of
+/// them, and is the same in all.
 fn capacity(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], own: &[usize]) -> Capacity {
     let (kept, mut loaded): (Vec<usize>, Vec<usize>) =
         space.sizing_cases.iter().partition(|case| own.contains(case));
@@ -231,8 +232,9 @@ fn limits_remark(space: &DesignSpace, built: &Arm, own: &[usize]) -> Option<Stri
 /// Number of payloads below the stated one that are tried if the stated one is too much.
 const SMALLER_PAYLOADS: u32 = 16;
 
-/// The payloads that hold in the cases with the indices `cases`, by bisection from the payload that the study states.
-/// Only the payload of the cases `vary` changes. The other cases keep their payload, which the arm is known to hold.
+/// The payloads that the arm holds in the cases with the indices `cases`, by bisection from the payload that the study
+/// states. Only the payload of the cases `vary` changes. The other cases keep their payload, which the arm is known to
+/// hold.
 fn held_payloads(
     space: &DesignSpace,
     catalogs: &Catalogs,

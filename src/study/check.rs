@@ -30,8 +30,8 @@ const ROUNDING: f64 = 1e-6;
 /// Largest relative difference that is allowed between an objective that a row states and the same objective by the
 /// full model.
 const AGREEMENT: f64 = 1e-9;
-/// One missing design stands for all that differ from it by less than this fraction of the claimed gap. The search for
-/// missing designs reports only the one.
+/// Of the missing designs that differ from one another by less than this fraction of the claimed gap, the search for
+/// missing designs reports only one.
 const PART_OF_GAP: f64 = 0.45;
 /// Largest number of faults of one kind that are listed one by one.
 const FAULTS_LISTED: usize = 10;
@@ -60,7 +60,7 @@ pub struct Completeness {
     pub by_exact_search: Option<String>,
 }
 
-/// What a finished front claims to be.
+/// A finished front, and the claims about it that are checked.
 #[derive(Debug, Clone, Copy)]
 pub struct Claim<'t> {
     /// The rows of the front.
@@ -70,12 +70,13 @@ pub struct Claim<'t> {
     pub gap: Option<f64>,
     /// Whether every design has a row even if it differs from another only in drives of equal mass and torsion curve.
     pub ties_listed: bool,
-    /// The content of `ties.csv`, which lists such drives if `ties_listed` is false.
+    /// The content of `ties.csv`. If `ties_listed` is false, this file lists the drives of equal mass and torsion curve
+    /// that may replace each other.
     pub ties_csv: &'t [u8],
 }
 
-/// Checks a front against its study. Every row is computed again by the full model and compared with the others. Then
-/// a search that starts from the rows looks for missing designs.
+/// Checks a front against its study. The objectives of every row are computed again by the full model, and a row that
+/// another row dominates is a fault. Then a search that starts from the rows looks for missing designs.
 pub fn check_front(
     study: &Study,
     catalogs: &Catalogs,

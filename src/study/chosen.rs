@@ -63,8 +63,8 @@ pub struct Sizing {
     pub remarks: Vec<String>,
 }
 
-/// The sizing of the design of `problem` with the options `chosen`, one for each level, tip first. `study` is the study to
-/// which the problem belongs.
+/// The sizing of the design of `problem` with the options `chosen`, one for each level, tip first. `study` is the study
+/// to which the problem belongs.
 ///
 /// # Errors
 /// A joint that no drive holds.
@@ -111,8 +111,8 @@ fn no_design(id: &str, study: &Study) -> Refusal {
     Refusal::Unknown(format!("the study \"{}\" has no design \"{id}\"", study.name))
 }
 
-/// The options of a design with links of median mass, tip first: of every open link the option of median mass, of every
-/// joint with `all_fits` the lightest drive that meets the demand.
+/// The options of a design with links of median mass, tip first: for every open link the option of median mass, and for
+/// every joint with `all_fits` the lightest drive that meets the demand.
 fn middle(problem: &ArmProblem) -> Vec<u32> {
     let mut out = Vec::new();
     for (piece, what) in problem.space().pieces.iter().enumerate().rev() {

@@ -42,8 +42,9 @@ pub(super) fn creep_remarks(space: &DesignSpace, catalogs: &Catalogs) -> Vec<Str
     links_of.into_iter().filter_map(sentence).chain(factors).collect()
 }
 
-/// A remark on the links named in `links`, whose material creeps; `None` if the material does not creep. Its class is
-/// that of the link's material, or that of the catalog's material of the same name; `None` too if neither is known.
+/// A sentence on the links named in `links`, whose material is `material`; `None` if the material does not creep. The
+/// class of the material decides. If the material states none, the class of the catalog's material of the same name is
+/// taken; without either, the result is `None`.
 pub(crate) fn creep_sentence(
     catalogs: &Catalogs,
     (name, material): (&str, &LinkMaterial),

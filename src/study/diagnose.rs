@@ -1,5 +1,5 @@
-//! The reason why no design meets a study, and the smallest change of its limits that would help. The searches and
-//! `size` call it.
+//! The reason why no design meets a study, and the smallest change of its limits that would help. A search and the
+//! joining of shards state it if they find no design.
 
 use super::definition::Study;
 use super::joint_obstacle::joint_obstacles;
@@ -46,9 +46,9 @@ pub fn why_infeasible(
     format!("{head}\n  {}", reasons.join("\n  "))
 }
 
-/// The reasons why no design is feasible, in words, for a space that the exact search does not cover. `unknown` names
-/// the property of the study that it does not cover. They are the joints at which no drive meets the demand. The limits
-/// that exclude all designs are not searched for.
+/// The joints at which no drive meets the demand, in words, and a note that the limits were not examined. It stands in
+/// the place of [`reasons`] for a space that the exact search does not cover; `unknown` names the property of the study
+/// that it does not cover.
 fn obstacles_alone(without_limits: &DesignSpace, catalogs: &Catalogs, unknown: &str) -> Vec<String> {
     let mut reasons = joint_obstacles(without_limits, catalogs);
     reasons.push(format!(
@@ -81,7 +81,7 @@ fn limits_in_the_way(limited: &Limited) -> Vec<String> {
     let (relaxations, is_all) = limited.relaxations();
     let mut reasons: Vec<String> = relaxations.iter().map(|r| relaxation_words(r, constraints)).collect();
     if reasons.is_empty() && is_all {
-        // without limits there are designs that reach each limit, but with rounding none meets all of them
+        // no limit excludes all designs by more than rounding, and yet no design meets all limits at once
         reasons
             .push("every limit is within the rounding of what a design reaches; relax one a little".into());
     }
@@ -91,7 +91,7 @@ fn limits_in_the_way(limited: &Limited) -> Vec<String> {
     reasons
 }
 
-/// In words: how much is missing at each limit of a relaxation, and the values of the limits that suffice.
+/// The amount that is missing at each limit of a relaxation, and the values of the limits that suffice, in words.
 fn relaxation_words(relaxation: &Relaxation, constraints: &Constraints) -> String {
     let words = |(quantity, reached): &(Quantity, f64)| {
         let missing = quantity.shortfall_words(constraints, *reached);

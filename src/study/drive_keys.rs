@@ -7,7 +7,7 @@ use crate::input::key::{Key, Kind, Shape, optional, words_of};
 
 const TEXTS: Kind = Kind::List(&Kind::Text);
 
-/// Whether a sized joint has a brake.
+/// The key that says whether a sized joint has a brake.
 pub(super) const BRAKE: Key = optional(
     "brake",
     Kind::Flag,
@@ -16,7 +16,7 @@ pub(super) const BRAKE: Key = optional(
     "Whether a brake holds the joint at rest; then its motor need not.",
 );
 
-/// Which parts may be chosen.
+/// The keys of `drives`, which select the catalog parts that may be chosen.
 pub(super) static DRIVES: Shape = Shape::new(
     "drives",
     "Which catalog parts may be chosen; a part must pass every filter given.",

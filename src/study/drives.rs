@@ -19,8 +19,8 @@ pub(super) struct Drives {
 }
 
 impl Default for Drives {
-    /// All strain-wave gears, and the servo and hydraulic motors of the catalogs. Other kinds are used only if a
-    /// study asks for them.
+    /// The parts from which drives are chosen if the study has no key `drives`: all strain-wave gears, and the servo
+    /// and hydraulic motors of the catalogs. Other kinds are used only if a study asks for them.
     fn default() -> Self {
         let filter = DriveFilter {
             gear_kinds: Some(vec![GearKind::StrainWave]),

@@ -24,7 +24,7 @@ pub struct Correction {
     pub what: String,
     /// Whether the correction applies to the study.
     pub applied: bool,
-    /// What the correction changes, or the reason why it does not apply.
+    /// The change that the correction makes, or the reason why it does not apply.
     pub words: String,
 }
 
@@ -150,12 +150,12 @@ pub fn apply_corrections(
 }
 
 impl CorrectedStudy {
-    /// Notes a correction that is applied. `words` tell what it changes.
+    /// Notes a correction that is applied. `words` says what it changes.
     fn applies(&mut self, what: String, words: impl Into<String>) {
         self.corrections.push(Correction { what, applied: true, words: words.into() });
     }
 
-    /// Notes a correction that is not applied. `words` tell why.
+    /// Notes a correction that is not applied. `words` says why.
     fn leaves_out(&mut self, what: String, words: impl Into<String>) {
         self.corrections.push(Correction { what, applied: false, words: words.into() });
     }

@@ -53,7 +53,8 @@ fn read_motor_place(node: &Node) -> Option<MotorPlace> {
     }
 }
 
-/// Notes at every joint whose motor is in its link how long this link is: the motor is no longer.
+/// Stores in every joint whose motor is mounted in the link that the joint carries the length of this link, as the
+/// largest length of the motor.
 pub(super) fn measure_links(pieces: &mut [SpacePiece]) {
     for place in 0..pieces.len() {
         let length_m = carried_length_m(pieces, place);
@@ -145,8 +146,8 @@ fn by_any(asking: &[&SpaceJoint], holds: &dyn Fn(&FitRequirement, &DriveFilter) 
     asking.iter().any(|joint| joint.drive.filter().is_some_and(|filter| holds(&joint.fit, filter)))
 }
 
-/// In words: how many allowed gears have, in a size that the study limits, a catalog value that was not seen in a document;
-/// `None` if there are none.
+/// Words on how many allowed gears have an uncertain size: a size that the study limits and whose catalog value was not
+/// seen in a document. `None` if there are none.
 fn recalled_sizes(asking: &[&SpaceJoint], catalogs: &Catalogs) -> Option<String> {
     let gears = catalogs.gears.iter().filter(|gear| {
         by_any(asking, &|fit, filter| {
@@ -188,7 +189,7 @@ fn unknown_sizes(asking: &[&SpaceJoint], catalogs: &Catalogs) -> Option<String> 
         let size = &motor.envelope;
         by_any(asking, &|fit, filter| {
             let behind = fit.motor == MotorPlace::Behind;
-            // the size of an actuator is that of its gear
+            // the size of an actuator is counted with its gear
             filter.allows_motor(motor)
                 && motor.kind != MotorKind::OfActuator
                 && (is_blank(fit.motor == MotorPlace::InLink, size.outer_diameter_m)

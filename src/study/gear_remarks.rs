@@ -66,8 +66,8 @@ fn of_row(gear: &Gear, catalogs: &Catalogs) -> Vec<String> {
     let row = catalogs.printed_row(&gear.provenance);
     let is_blank =
         |column: &str| !row.is_empty() && !row.iter().any(|(name, cell)| *name == column && !cell.is_empty());
-    // a blank cell means a strain-wave gear, and a built-in row with a blank cell is one; only a row of the user may be
-    // meant otherwise
+    // a blank cell means a strain-wave gear; every built-in row with a blank cell is one, but a user may have forgotten
+    // to state another kind
     let kind = (gear.kind == GearKind::StrainWave && !gear.provenance.is_built_in() && is_blank("kind"))
         .then(|| "taken as a strain-wave gear (column kind is blank)".to_string());
     let usual_rpm = gear.life.rated_speed_rpm.map_or(String::new(), |rpm| format!(" at {rpm} rpm"));
@@ -99,7 +99,7 @@ pub(crate) fn play_remarks(space: &DesignSpace, catalogs: &Catalogs, front: &Fro
     let of_rail = |piece: &SpacePiece| {
         let SpacePiece::Prismatic(rail) = piece else { return Vec::new() };
         let Some(drive) = &rail.drive else { return Vec::new() };
-        // everything outboard travels with the rail, and so does the tip
+        // the tip travels exactly as far as the rail, so its displacement is 1 m per metre of travel
         said_of(&rail.joint.name, 1.0, &picked, front, |name| drive.gears.iter().find(|gear| gear.id == name))
     };
     let joints = space.joints().zip(reaches_m(space, judged)).filter(|((_, joint), _)| !models_play(joint));
@@ -107,7 +107,7 @@ pub(crate) fn play_remarks(space: &DesignSpace, catalogs: &Catalogs, front: &Fro
 }
 
 /// The remarks on the play of the gears that the picks have at one joint. `reach_m` is the displacement of the tip per
-/// radian of the joint \[m\], or per metre of a rail. `gear` finds a gear by its name.
+/// radian of the joint \[m\], or per metre of a rail \[-\]. `gear` finds a gear by its name.
 fn said_of<'g>(
     joint: &str,
     reach_m: f64,
@@ -137,7 +137,7 @@ fn said_of<'g>(
 /// The play of a gear: the larger of the backlash and the lost motion that its row states.
 #[derive(Debug, PartialEq)]
 struct Play {
-    /// The play as an angle. For a screw or rack it is a travel, converted as if a metre were a radian.
+    /// The play as an angle \[arcmin\]. For a screw or rack it is a travel, converted as if a metre were a radian.
     arcmin: f64,
     word: &'static str,
     slides: bool,
@@ -177,8 +177,8 @@ mod tests {
 
     const GEAR: &str = "TPMF-10-4";
 
-    /// The remarks on the play of a front of one design with [`GEAR`] at a joint 0.5 m away from the tip, whose
-    /// deflection is this \[mm\].
+    /// The remarks on the play of a front of one design, which deflects by `tip_deflection_mm` and has [`GEAR`] at a
+    /// joint 0.5 m away from the tip.
     fn remarks(tip_deflection_mm: f64, effects: Value) -> Vec<String> {
         let study = json!({"name": "s", "effects": effects, "poses": [{"pose_deg": [0]}], "chain": [
             {"type": "joint", "name": "j", "axis": [0, 1, 0], "gear": GEAR, "motor": "ILM70x10", "mass_kg": 3},
@@ -207,7 +207,7 @@ mod tests {
         assert_eq!(remarks(1.0, modelled), [""; 0]);
     }
 
-    /// The remarks on the play of a front of one design on a rail with a rack that has this backlash \[mm\].
+    /// The remarks on the play of a front of one design on a rail with a rack of the backlash `backlash_mm`.
     fn remarks_on_rail(backlash_mm: f64) -> Vec<String> {
         let rack = json!({"name": "R2", "pinion_radius_mm": 20, "stiffness_n_per_m": 2e7, "backlash_mm": backlash_mm});
         let study = json!({"name": "s", "poses": [{"pose": {"rail_mm": 100}}], "chain": [

@@ -76,7 +76,7 @@ impl GivenDrives {
         Self(given.collect())
     }
 
-    /// Examines the sizing rows of one design.
+    /// Adds the checks that the given drives fail in one design. `rows` is the sizing of its joints.
     pub(crate) fn take(&mut self, rows: &[JointSizingRow]) {
         for drive in &mut self.0 {
             if let Some(row) = rows.iter().find(|row| row.joint == drive.joint) {

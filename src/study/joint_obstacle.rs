@@ -214,8 +214,8 @@ fn no_legal_drive(table: &DriveTable, demand: &JointDemand) -> String {
     }
 }
 
-/// In words, what the drive that comes nearest to meeting the demand lacks, followed by the ratings that other parts
-/// lack.
+/// The shortfall of the drive that comes nearest to meeting the demand, in words, followed by the ratings that other
+/// parts lack.
 fn in_words(table: &DriveTable, shortfall: &Shortfall) -> String {
     format!("{shortfall}{}", missing_words(table))
 }
@@ -226,7 +226,7 @@ fn missing_words(table: &DriveTable) -> String {
     missing.map(|missing| format!("; not checked: {missing}{OWN_CATALOG}")).unwrap_or_default()
 }
 
-/// Where to state a rating that the catalogs lack.
+/// The end of a sentence that says where to state a rating that the catalogs lack.
 const OWN_CATALOG: &str = " (state what you know of them in a catalog of your own, --catalogs DIR)";
 
 /// The end of a sentence on cables. It names actuators of the catalogs that leave the passage for cables which the

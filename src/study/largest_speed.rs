@@ -51,7 +51,7 @@ pub(super) fn largest_speed(
 /// that would turn too fast. In the copy each table has at most one drive, so its number does not change.
 fn with_these_drives(problem: &ArmProblem, options: &[u32]) -> (DesignSpace, Vec<u32>) {
     let (mut space, mut pinned) = (problem.space().clone(), options.to_vec());
-    // the slots of effects and bearings have no drive
+    // slots of effects and bearings are left out, because they have no drive
     for (slot, &option) in
         options.iter().enumerate().filter(|(slot, _)| problem.piece_in_slot(*slot).is_some())
     {

@@ -1,4 +1,4 @@
-//! The single limits of a study that a design can violate: which quantity each limits, the limit, and the value of a
+//! The limits of a study one by one: which quantity of a design each limits, the stated limit, and the value of a
 //! design.
 
 use crate::pareto::objectives::{Objective, Objectives};
@@ -102,8 +102,8 @@ impl Quantity {
         }
     }
 
-    /// The keys of a study file that limit this quantity, as far as a design with the value `reached` violates them.
-    /// Each key comes with a value that would admit the design.
+    /// The keys of a study file that limit this quantity and that a design with the value `reached` violates. Each key
+    /// comes with a value that would admit the design, in the unit of the key.
     fn enough(self, constraints: &Constraints, reached: f64) -> Vec<(&'static str, f64)> {
         let round = if self.is_least() { rounded_down } else { rounded_up };
         let key = match self {
@@ -170,7 +170,7 @@ pub(super) fn rounded_down(x: f64) -> f64 {
     (x * scale * (1.0 - 1e-12)).floor() / scale
 }
 
-/// The power of ten by which a number has five digits before the point.
+/// The power of ten by which the number `x` must be multiplied to have five digits before the decimal point.
 fn five_digits(x: f64) -> f64 {
     10f64.powi(4 - libm::log10(x.abs().max(f64::MIN_POSITIVE)).floor() as i32)
 }

@@ -124,8 +124,8 @@ fn read_joints(root: &Node, arm: &Arm) -> Option<Vec<LoadLimit>> {
     limits
 }
 
-/// A node as an object with the keys `known`, or with any keys if it is `of_import`. Returns `None` after recording a
-/// fault.
+/// Reads a node as an object. Its keys must be among `known`, unless `of_import` is true (the file is an `import.json`,
+/// in which other keys are allowed). Returns `None` after recording a fault.
 fn object<'a>(node: &Node<'a>, known: &[&str], of_import: bool) -> Option<Object<'a>> {
     if of_import { any_object(node) } else { node.object(known) }
 }

@@ -141,8 +141,8 @@ fn read_kind(node: &Node, phase: &Object) -> Option<PhaseKind> {
     Some(kind)
 }
 
-/// Reads a fraction of the static torque or of the largest speed. More than the whole would be a peak or a speed that no
-/// check sees.
+/// Reads a fraction of the static torque or of the largest speed. A fraction above 1 is a fault, because no check would
+/// see the larger torque or speed. Returns `None` after recording a fault.
 fn read_fraction(node: &Node) -> Option<f64> {
     match node.non_negative()? {
         part if part <= 1.0 => Some(part),
@@ -192,7 +192,7 @@ mod tests {
         read_study(document, &Catalogs::builtin()).unwrap().remarks.join(" ")
     }
 
-    /// A cycle whose ramps take these times \[s\].
+    /// A cycle of ramps up and down that take these times \[s\], and a rest.
     fn cycle(ramps_s: &[f64]) -> Value {
         let ramp =
             |phase: &str| ramps_s.iter().map(|s| json!({"phase": phase, "time_s": s})).collect::<Vec<_>>();

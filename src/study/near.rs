@@ -54,8 +54,8 @@ pub fn near_front(
     slack: Slack,
     stop: &AtomicBool,
 ) -> Option<NearFront> {
-    // the full model removed some candidates of the sweep from the front; they may be near it, so they do not count as
-    // front
+    // the full model may have removed candidates of the sweep from the front; they may be near designs, so only the
+    // designs that stayed on the front count as the front here
     let numbers: HashSet<u128> = outcome.front.iter().map(|j| j.design.number).collect();
     let on_front: Vec<_> =
         outcome.sweep.front.iter().filter(|c| numbers.contains(&c.number)).copied().collect();
@@ -162,8 +162,8 @@ fn nearest(front: &Front, design: &Objectives) -> (u128, [f64; 3]) {
     .unwrap_or_default()
 }
 
-/// The entry of `other` that differs from the entry of `one` at the same place, if exactly one entry differs. Entries
-/// are the choices of a design in words.
+/// The entry of `other` that differs from the entry of `one` at the same place, if exactly one entry differs; otherwise
+/// `None`. Entries are the choices of a design in words.
 fn only_difference<'w>(one: &[String], other: &'w [String]) -> Option<&'w str> {
     let mut different = one.iter().zip(other).filter(|(a, b)| a != b);
     let (_, word) = different.next()?;

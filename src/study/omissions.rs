@@ -162,8 +162,8 @@ fn has_sized_rail(space: &DesignSpace) -> bool {
     space.pieces.iter().any(|piece| matches!(piece, SpacePiece::Prismatic(rail) if rail.drive.is_some()))
 }
 
-/// By how much a built arm may differ from the computed one because of all omissions together. The numbers are those of
-/// the row "together" of docs/left-out.md.
+/// A sentence that states by how much a built arm may differ from the computed one because of all omissions together.
+/// Its numbers are those of the row "together" of docs/left-out.md.
 const SIZE_OF_ALL_TOGETHER: &str = "How much this may be: on the knees of two named studies, the starred rows of docs/left-out.md \
     together add 77 to 79 % to the deflection and 40 to 47 % to the mass, and take 18 to 22 % from the lowest mode. They \
     are gears and bearings 20 % softer, connections, a compliant floor, drives 1.5 times as heavy (31 to 34 % of the mass), \

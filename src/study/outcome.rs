@@ -36,7 +36,7 @@ pub type Front = Vec<Judged>;
 /// The result of a study: fronts, and facts of the search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StudyOutcome {
-    /// Counts and candidates of the search, by the fast model.
+    /// The result of the search with the fast model: counts of designs, and candidates for the fronts.
     pub sweep: SweepOutcome,
     /// The front of all designs.
     pub front: Front,
@@ -104,7 +104,7 @@ pub fn sweep_shard(
     };
     let outcome =
         watched(keep, || watched(|finished| watch(designs, &|| sweep.visited(), finished), || sweep.run()));
-    // the state is saved even if the result is lost later, so that no design is evaluated twice
+    // the state is saved now, so that no design is evaluated twice even if the result is lost later
     if keeper.is_due() || stop.load(Ordering::Relaxed) {
         keeper.keep(&sweep.state().to_bytes());
     }
@@ -133,7 +133,8 @@ pub fn judge_swept(study: &Study, problem: &ArmProblem, outcome: SweepOutcome) -
     }
 }
 
-/// Does the work while another thread watches. The watcher is told when the work ends, even by a panic.
+/// Runs `work` and returns its result, while `watch` runs on another thread. The flag that `watch` is given is set when
+/// `work` ends, even by a panic.
 pub(super) fn watched<T>(watch: impl FnOnce(&AtomicBool) + Send, work: impl FnOnce() -> T) -> T {
     struct EndOnDrop<'f>(&'f AtomicBool);
     impl Drop for EndOnDrop<'_> {
@@ -181,7 +182,7 @@ pub struct Extent {
     pub near: Option<Slack>,
 }
 
-/// What the searches found; designs are numbered in the whole space.
+/// The results of the searches, one for each front. Their designs are numbered in the whole space.
 pub(super) struct Searched {
     whole: ExactOutcome,
     by_material: Vec<(String, ExactOutcome)>,

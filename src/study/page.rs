@@ -40,8 +40,8 @@ pub fn study_page<'a>(
     }
 }
 
-/// What the page shows of a pick: its arm, its cases and the sizing of its drives. `None` if the pick is no design of
-/// the problem.
+/// The part of the page about a pick: its arm, its cases and the sizing of its drives. `None` if the pick is no design
+/// of the problem.
 fn picked(
     study: &Study,
     problem: &ArmProblem,

@@ -1,4 +1,4 @@
-//! Materials that some open links of a study may not be of.
+//! Materials that only some of the open links of a study offer.
 
 use crate::space::design_space::{DesignSpace, SpacePiece};
 use std::collections::BTreeMap;

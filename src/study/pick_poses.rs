@@ -130,8 +130,8 @@ impl PickPoses {
         ]
     }
 
-    /// Those of the two worst poses (for deflection and for lowest mode) in which the objective is worse than in the
-    /// judged cases by more than [`WORSE_BY`].
+    /// The worst poses for deflection and for the lowest mode, but only those in which the objective is worse than in
+    /// the judged cases by more than [`WORSE_BY`].
     fn worse(&self) -> impl Iterator<Item = WorstFor<'_>> {
         self.both().into_iter().filter(|worst| worst.pose.worse() > WORSE_BY)
     }

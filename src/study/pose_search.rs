@@ -42,8 +42,8 @@ struct Turn {
 }
 
 impl Turn {
-    /// The range of an angle. If it is more than a full turn, it is reduced to the full turn within it that is nearest
-    /// to the range from -180 to 180.
+    /// The range of a joint's angle, from `low_deg` to `high_deg` \[deg\]. A range of more than a full turn is reduced
+    /// to one full turn: of the full turns that it contains, the one nearest to the range from -180 to 180 degrees.
     fn new([low_deg, high_deg]: [f64; 2]) -> Self {
         if high_deg - low_deg < 360.0 {
             return Self { low_deg, high_deg, is_full: false, degree: 1.0 };
@@ -126,9 +126,9 @@ impl PoseRanges {
         Self { free: (0..turns.len()).collect(), turns }
     }
 
-    /// These ranges, searched only over the joints that influence `values`: numbers of the arm at a pose, such as the
-    /// score. A joint is left out if turning it changes no number, such as a vertical first joint under weight alone.
-    /// It then stays as near to zero as its range allows.
+    /// These ranges, in which the search turns only the joints that influence `values`. `values` returns numbers of the
+    /// arm at a pose, such as the score. A joint that changes none of them, such as a vertical first joint under weight
+    /// alone, stays as near to zero as its range allows.
     pub(super) fn that_matter<const N: usize>(mut self, values: impl Fn(&[f64]) -> [f64; N]) -> Self {
         const TURNED_DEG: [f64; 2] = [31.7, 123.4];
         let differs =
@@ -247,8 +247,8 @@ impl PoseRanges {
         here
     }
 
-    /// Turns each joint by `step_deg`, one after the other, in the direction that improves the score. Turns that
-    /// improve it are kept. `None` if no turn does.
+    /// Turns each joint by `step_deg`, one after the other, in the direction that improves the score, and keeps every
+    /// turn that improves it. `None` if no turn improves the score.
     fn turned_once(&self, from: &Scored, step_deg: f64, score: &impl Fn(&[f64]) -> f64) -> Option<Scored> {
         let mut best: Option<Scored> = None;
         for &joint in &self.free {

@@ -4,8 +4,9 @@
 use crate::catalog::gear::{Gear, GearKind};
 use crate::space::design_space::{DesignSpace, SpacePiece};
 
-/// The sentence on lives of screws. Load factor f_w in the life of a ball screw, (C_a / (f_w F))³: THK, general
-/// catalog, ball screws, "Studying the service life" (1.2 to 1.5 for slight shocks and 0.25 to 1 m/s).
+/// The sentence on lives of screws. It states the cubes of the load factor f_w of 1.2 to 1.5, by which the life (C_a /
+/// (f_w F))³ of a ball screw is divided: THK, general catalog, ball screws, "Studying the service life" (for slight
+/// shocks and 0.25 to 1 m/s).
 const SMOOTH: &str = "The lives of screws are those of smooth motion: with the load factor of 1.2 to 1.5 that makers ask for in \
     usual motion they are 1.7 to 3.4 times shorter.";
 

@@ -152,7 +152,7 @@ fn read_rack(node: &Node) -> Option<Gear> {
     Some(with_backlash(rack.gear(), backlash?))
 }
 
-/// A screw or rack with this backlash along the travel.
+/// The screw or rack `gear` with this backlash along the travel; its play stays blank if the backlash is 0.
 fn with_backlash(gear: Gear, backlash_mm: f64) -> Gear {
     // in the data of the gear of a rail, a metre of travel takes the place of a radian
     let backlash_arcmin = 60.0 * (backlash_mm / 1e3).to_degrees();

@@ -23,13 +23,13 @@ struct Held {
     movers: [String; 2],
     /// Unit of the torques: N m, or N of a prismatic joint.
     unit: &'static str,
-    /// Torque at this joint in the ramp and in the stop of another joint.
+    /// Torques at this joint in the ramp and in the emergency stop of another joint, in this order, in the unit `unit`.
     reaction_nm: [f64; 2],
-    /// Largest torque at this joint in its own ramp and in its own stop.
+    /// Largest torques at this joint in its own ramp and in its own emergency stop, in this order, in the unit `unit`.
     own_nm: [f64; 2],
     /// The check with the smallest margin; `None` if no check could be made.
     binding: Option<Check>,
-    /// Whether a rating is blank that every drive needs for these checks.
+    /// Whether a check other than those of buckling and ratcheting could not be made because a rating is blank.
     is_open: bool,
 }
 
@@ -55,7 +55,8 @@ impl Held {
         }
     }
 
-    /// Whether the reaction exceeds the torque of the joint's own motion.
+    /// Whether the reaction exceeds the torque of the joint's own motion by more than [`NAMED_FROM`], in a ramp or in a
+    /// stop.
     fn exceeds(&self) -> bool {
         (0..2).any(|i| self.reaction_nm[i] > (1.0 + NAMED_FROM) * self.own_nm[i])
     }
@@ -69,7 +70,8 @@ impl Held {
         self.binding.as_ref().is_some_and(|check| check.state == CheckState::Fails)
     }
 
-    /// The check with the smallest margin, and the margin: `motor peak of w, 0.699`.
+    /// The check with the smallest margin and the joint, then the margin: `motor peak of w, 0.699`. `None` if no check
+    /// could be made.
     fn margin_words(&self) -> Option<String> {
         let label = self.binding.as_ref()?.kind.label();
         Some(format!("{label} of {}, {}", self.joint, significant(self.margin(), 3)))
@@ -140,7 +142,7 @@ fn sentence(all: Vec<Held>, whose: &str) -> Option<String> {
     Some(format!("Drives are sized for the motion of their own joint. {main}{blank}"))
 }
 
-/// The remark on one design.
+/// The remark on the reactions in one design, whose options are `chosen`; `None` if there is nothing to say.
 pub(super) fn reaction_remark_on(
     problem: &ArmProblem,
     catalogs: &Catalogs,
@@ -149,7 +151,7 @@ pub(super) fn reaction_remark_on(
     sentence(held(problem, catalogs, chosen)?, "in the sizing cases")
 }
 
-/// The remark on the picks of a front.
+/// The remark on the reactions in the picks of a front; `None` if there is nothing to say.
 pub(super) fn reaction_remark(
     problem: &ArmProblem,
     catalogs: &Catalogs,

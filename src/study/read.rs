@@ -190,14 +190,15 @@ fn remarks_on(space: &DesignSpace, harness_kg_per_m: f64, catalogs: &Catalogs) -
     out
 }
 
-/// The required motion `motion` under the gravity of the study. Returns `None` after recording a fault.
+/// The motion `motion` that the study requires, with the gravity of the study written into it. Returns `None` after
+/// recording a fault.
 fn under_gravity(
     root: &Object,
     gravity_m_s2: f64,
     mut motion: MotionRequirement,
 ) -> Option<MotionRequirement> {
     weight_is_needed(root, gravity_m_s2, &motion)?;
-    // without gravity the paper's reading of Eq 8 is refused, so the value is not used
+    // only the paper's reading of Eq 8 uses this value, and it was refused above if there is no gravity
     if gravity_m_s2 > 0.0 {
         motion.gravity_m_s2 = gravity_m_s2;
     }
@@ -222,7 +223,8 @@ fn weight_is_needed(root: &Object, gravity_m_s2: f64, motion: &MotionRequirement
     }
 }
 
-/// Reads a fraction that is written in percent. Returns `None` after recording a fault.
+/// Reads the gap at which a search may end. The file has it in percent; the result is a fraction. Returns `None` after
+/// recording a fault.
 fn read_gap(node: &Node) -> Option<f64> {
     match node.non_negative()? {
         percent if percent < 100.0 => Some(percent / 100.0),
@@ -272,8 +274,8 @@ fn number_materials(pieces: &mut [SpacePiece]) {
     }
 }
 
-/// What the file states for the whole study and not for one piece: the parts from which open pieces are chosen, and
-/// defaults for joints.
+/// The settings of a study that are not about a single piece: the parts from which open pieces are chosen, and defaults
+/// for joints.
 struct Open<'a> {
     catalogs: &'a Catalogs,
     drives: &'a Drives,

@@ -122,7 +122,8 @@ impl Limited<'_> {
     /// The value of `quantity` nearest to its stated limit that some design reaches. It lies between the stated limit,
     /// which no design meets, and `reached`, the value of a known design. The flag is false if time ran out.
     fn bisected(&self, constraints: &Constraints, quantity: Quantity, reached: f64) -> (f64, bool) {
-        // the cost of a limit rises from the stated limit to the value reached; for lower limits it is the reciprocal
+        // the bisection runs over a cost that rises from the stated limit to the value reached: the value itself or,
+        // for lower limits, its reciprocal
         let cost = |value: f64| if quantity.is_least() { value.recip() } else { value };
         let asked = quantity.asked(&self.space.constraints).unwrap_or_default();
         let (mut in_vain, mut enough) = (cost(asked).max(cost(reached) * LEAST_LIMIT), cost(reached));

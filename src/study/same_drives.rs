@@ -95,7 +95,7 @@ impl Beaten {
     }
 }
 
-/// Advice to the user.
+/// Advice at the end of the report: why the lighter arm is no design of the study, and what makes it one.
 const ADVICE: &str = "That arm is not a design of this study, because first fit would give it smaller drives. With `\"drive\": \"all_fits\"` at \
                       these joints the search chooses the drives itself.";
 

@@ -23,12 +23,11 @@ const VISIT_S: f64 = 25e-9;
 const COST_OF_EXCLUDED: f64 = 0.1;
 /// Processor time of an exact search for each box, piece and case \[s\], measured with the built-in studies.
 const BOX_S: f64 = 2.5e-6;
-/// If an exhaustive search takes less than this, it runs without an estimate of the exact search \[s\].
+/// Time of an exhaustive search below which it runs without an estimate of the exact search \[s\].
 const QUICK_S: f64 = 10.0;
-/// If an exhaustive search would take longer than this, it is ruled out without an estimate of the exact search
-/// \[s\].
+/// Time of an exhaustive search above which it is ruled out without an estimate of the exact search \[s\].
 const HOPELESS_S: f64 = 1e6;
-/// Largest numbers of designs of the two thinned spaces.
+/// Largest number of designs of each of the two thinned spaces.
 const THINNED_DESIGNS: [f64; 2] = [1e4, 1e5];
 /// Factor by which an exact search must be cheaper to be chosen. An exhaustive search relies on no bounds, and it
 /// counts the designs that each limit excludes.
@@ -121,7 +120,8 @@ impl Trial {
 fn grown(small: &Trial, large: &Trial, designs: f64) -> f64 {
     let growth = libm::log(large.boxes.max(1.0) / small.boxes.max(1.0));
     let of_designs = libm::log(large.designs / small.designs);
-    // two spaces of nearly the same size show no exponent; then boxes are taken as proportional to designs
+    // two spaces of nearly the same size show no exponent; the number of boxes is then taken as proportional to the
+    // number of designs
     let power = if of_designs > 0.1 { (growth / of_designs).clamp(0.0, 1.0) } else { 1.0 };
     large.boxes.max(1.0) * libm::pow((designs / large.designs).max(1.0), power)
 }
@@ -133,7 +133,7 @@ fn thinned(space: &DesignSpace, catalogs: &Catalogs, most: f64) -> DesignSpace {
     while space.designs(catalogs).is_none_or(|designs| designs as f64 > most)
         && drop_half(&mut space, catalogs)
     {}
-    // a material of which no section is left would be a group without designs
+    // a material of which no section is left must not stay as a group without designs
     space.renumber_materials();
     space
 }

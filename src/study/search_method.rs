@@ -18,10 +18,10 @@ pub enum SearchMethod {
     Exact,
 }
 
-/// What the user asked of a search.
+/// The wishes of the user for a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct SearchWish {
-    /// The method, if the user asked for one.
+    /// The method that the user asked for; `None` if the user asked for none.
     pub method: Option<SearchMethod>,
     /// Whether the user asked for a gap at which the search may end.
     pub has_gap: bool,

@@ -32,7 +32,7 @@ pub(super) struct Sections {
 pub(super) struct Aside {
     /// Messages on options that were left out because a rating that a check needs is blank.
     pub not_checked: Vec<String>,
-    /// Remarks for the reader of the result.
+    /// Remarks on the options, as sentences for the reader of the result.
     pub remarks: Vec<String>,
     /// Number of options of all links read so far.
     pub options: usize,
@@ -96,7 +96,7 @@ pub(super) fn read_sections(node: &Node, catalogs: &Catalogs) -> Option<Sections
     Some(Sections { sections })
 }
 
-/// What identifies a section, to find duplicates: shape, sizes, profile.
+/// The values that identify a section, by which duplicates are found: shape, sizes, profile.
 fn identity((section, profile): &Named) -> (&'static str, [u64; 3], Option<ProfileName>) {
     let (width_m, height_m) = section.outer_m();
     (section.shape(), [width_m, height_m, section.wall_m()].map(f64::to_bits), profile.clone())
@@ -284,7 +284,7 @@ fn sold_in_words(family: &str) -> &str {
 /// A remark on the materials that `link` offers and of which it has no section: all its sections are profiles, and none
 /// of them is sold in these materials. `None` if every material has a section.
 fn without_section(materials: &[&Material], sections: &Sections, link: &str) -> Option<String> {
-    // a section that is no profile is made of any material
+    // a section that is no catalog profile can be made of any material
     let families: Option<BTreeSet<&str>> =
         sections.sections.iter().map(|(_, profile)| Some(profile.as_ref()?.family.as_str())).collect();
     let families = families.filter(|families| !families.is_empty())?;

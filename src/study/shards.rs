@@ -71,8 +71,9 @@ fn candidate(cells: &[&str]) -> Option<Candidate> {
 /// Name of the front of all designs. The name of a material's front is the index of the material.
 const ALL: &str = "all";
 
-/// What a shard of an exact search found, front by front, as CSV. The columns are those of [`candidates_csv`] and the
-/// column `decided`, which is `no` if rounding leaves open whether some part of the design passes its checks.
+/// The designs that a shard of an exact search found, front by front, as CSV. The columns are those of
+/// [`candidates_csv`] and the column `decided`, which is `no` if rounding leaves open whether some part of the design
+/// passes its checks.
 pub fn found_csv(fronts: &[FoundInShard]) -> String {
     let mut out = String::from(FOUND_HEADER);
     for (at, found) in fronts.iter().enumerate() {
@@ -115,7 +116,7 @@ pub fn read_found(text: &str, fronts: usize) -> Result<Vec<FoundInShard>, usize>
     Ok(out)
 }
 
-/// What one shard of an exhaustive search found.
+/// The result of one shard of an exhaustive search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Swept {
     /// Number of designs that no drive, link or limit excludes, so that their objectives were computed.

@@ -112,7 +112,7 @@ pub(super) fn link_words(option: &LinkOption) -> String {
     format!("{} {material}", tube_size(&shape, [&width, &height, &wall]))
 }
 
-/// The shortest decimal that reads back to the same number.
+/// The number as the shortest decimal text from which the same number is read back.
 fn number(x: f64) -> String {
     format!("{x}")
 }
@@ -121,15 +121,15 @@ fn number(x: f64) -> String {
 pub(super) struct DrivenJoint<'c> {
     /// Piece of the joint, counted from the base.
     pub piece: usize,
-    /// The drive.
+    /// The drive of the joint.
     pub drive: Drive<'c>,
     /// The motion that the study asks of the joint.
     pub motion: JointMotion,
     /// The demand at the output of the gear.
     pub demand: JointDemand,
-    /// Torque at the joint for each newton metre at the output of the gear; 1 unless stages are behind the gear.
+    /// Torque at the joint divided by torque at the output of the gear; 1 unless stages are behind the gear.
     pub gain_after_gear: f64,
-    /// Mass of the arm outboard of the joint and of its drive \[kg\].
+    /// Mass of the arm outboard of the joint plus mass of the joint's drive \[kg\].
     inward_kg: f64,
 }
 

@@ -15,7 +15,7 @@ use crate::space::problem::ArmProblem;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// For every design of a front, the drives of equal mass and torsion curve that may replace its own.
+/// The ties of a front: for every design, the drives of equal mass and torsion curve that may replace its own.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ties {
     rows: Vec<Vec<String>>,

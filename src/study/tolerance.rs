@@ -138,7 +138,8 @@ impl Stream {
     }
 }
 
-/// The result of one sample.
+/// The result of one sample: which designs of the front meet the limits, which are still on the front, and which are
+/// then its picks.
 struct Sample {
     keeps_limits: Vec<bool>,
     on_front: Vec<usize>,
@@ -203,7 +204,7 @@ pub fn scatter_front(
     sampling: &Sampling,
     stop: &AtomicBool,
 ) -> Option<Scattered> {
-    // tables that every sample computes again are made for the options of these designs only
+    // every sample computes the tables of the parts anew; to save time they have only the options of these designs
     let numbers: Vec<u128> = designs.iter().map(|d| front[d.row].design.number).collect();
     let place = |(row, design): (usize, &Design)| Design { row, ..design.clone() };
     let designs: &[Design] = &designs.iter().enumerate().map(place).collect::<Vec<_>>();
@@ -336,7 +337,7 @@ mod tests {
         let share = |within: &dyn Fn(f64) -> bool| {
             factors.iter().filter(|f| within(**f)).count() as f64 / factors.len() as f64
         };
-        // tolerances: three standard errors of a fraction that is estimated from 40,000 samples
+        // the tolerances are three standard errors of a fraction that is estimated from 40,000 samples
         assert!((share(&|f| (1.0 / 1.2..=1.2).contains(&f)) - 0.95).abs() < 0.0033);
         assert!((share(&|f| f > 1.2) - 0.025).abs() < 0.0024);
         assert!((share(&|f| f < 1.0) - 0.5).abs() < 0.0075);

@@ -76,9 +76,9 @@ fn behind_one_ratio(
     Some(())
 }
 
-/// If the drive of the joint number `number` is sized and its motor does not stand at the joint, stores in the joint
-/// where the motor stands. The mass of the motor is known only when a drive is chosen. Returns `None` after recording a
-/// fault: such a motor must not sit along a tube.
+/// Stores in the joint number `number` where its motor sits, if its drive is sized and the motor does not sit at the
+/// joint. The mass of the motor is known only when a drive is chosen. Such a motor must not sit along a tube; if it
+/// does, a fault is recorded. Returns `None` after recording a fault.
 fn of_sized(driven: &[Driven], number: usize, placed: &Placed, pieces: &mut [SpacePiece]) -> Option<()> {
     let of = driven.iter().find(|of| of.joint == number)?;
     let MotorAt { element: piece, on, point_m } = placed.motor;
@@ -107,8 +107,8 @@ fn of_sized(driven: &[Driven], number: usize, placed: &Placed, pieces: &mut [Spa
     Some(())
 }
 
-/// What the placing of motors needs to know of the joint number `number` of the chain: its transmission, and the joints
-/// with which it turns.
+/// The properties of the joint number `number` of the chain that the placing of motors needs: its transmission, and the
+/// joints with which it turns.
 pub(super) fn of_joint<'n>(
     node: &Node<'n>,
     joint: &SpaceJoint,

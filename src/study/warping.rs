@@ -1,23 +1,23 @@
 //! Remarks on links whose restrained warping is left out: I sections.
 //!
 //! The mechanics takes the ends of every link as free to warp, so a torque M twists a link of length L by M L/(G J). If
-//! one end is clamped against warping and the other is free, Vlasov's theory gives M L/(G J) (1 - tanh(kL)/(kL)) with k =
-//! √(G J/(E Cw)); if both ends are clamped, the argument is kL/2, and the twist is less. For a steel IPE 200 of 0.6 m the
-//! factor is 0.15: the part of a deflection that comes from its torsion is more than six times too large. A link that carries no
-//! torsion is not affected.
+//! one end is clamped against warping and the other is free, Vlasov's theory gives M L/(G J) (1 - tanh(kL)/(kL)) with k
+//! = √(G J/(E Cw)); if both ends are clamped, the argument is kL/2, and the twist is less. For a steel IPE 200 of 0.6 m
+//! the factor is 0.15: the part of a deflection that comes from its torsion is more than six times too large. A link
+//! that carries no torsion is not affected.
 
 use crate::arm::section::{LinkMaterial, Section};
 use crate::arm::{Arm, Element, Link, LinkBody};
 use crate::report::number::significant;
 use crate::space::design_space::{DesignSpace, SpacePiece};
 
-/// A factor above this is not worth a remark.
+/// Factor on the twist above which no remark is made, because the ends are then practically free to warp.
 const NEARLY_FREE: f64 = 0.95;
 
 /// Links that follow each other without a joint and have sections that warp, as one beam.
 struct Run<'a> {
     name: &'a str,
-    /// Sum of k L over the links.
+    /// Sum of k L over the links, with the length L and the decay constant k of each link.
     k_length: f64,
     length_m: f64,
 }
@@ -38,7 +38,7 @@ pub(super) fn of_space(space: &DesignSpace) -> Vec<String> {
     }))
 }
 
-/// One sentence for each beam among the pieces of a chain, of which `None` is no link.
+/// One sentence for each beam among the pieces of a chain. An item is `None` if the piece is no link.
 fn sentences<'a>(pieces: impl Iterator<Item = Option<&'a Link>>) -> Vec<String> {
     let mut runs: Vec<Run> = Vec::new();
     let mut goes_on = false;

@@ -1,7 +1,7 @@
 //! The payloads that an arm holds: a window from a smallest to a largest one, and what fails beyond its ends.
 //!
 //! Every load on a drive, a bearing or a link is a convex function of the payload's mass, because it is a norm or a
-//! mean of quantities that are affine in this mass. The payloads that hold are therefore one interval.
+//! mean of quantities that are affine in this mass. The payloads that an arm holds are therefore one interval.
 
 use super::overload::Overload;
 use serde_json::{Value, json};
@@ -28,9 +28,10 @@ pub struct Limit {
 /// The payloads that an arm holds, in one pose or in several.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Window {
-    /// The smallest payload that holds; 0 if the empty arm holds. It exceeds `most` if no payload holds.
+    /// The smallest payload that the arm holds; 0 if it holds even without a payload. It exceeds `most` if the arm
+    /// holds no payload at all.
     pub least: Limit,
-    /// The largest payload that holds.
+    /// The largest payload that the arm holds.
     pub most: Limit,
 }
 
@@ -41,18 +42,18 @@ impl Limit {
 }
 
 impl Window {
-    /// Every payload holds.
+    /// The window of an arm that holds every payload.
     pub(crate) fn unlimited() -> Self {
         let end = |payload_kg| Limit::new(payload_kg, Overload::default());
         Self { least: end(0.0), most: end(f64::INFINITY) }
     }
 
-    /// No payload holds; `fails` is what the empty arm overloads.
+    /// The window of an arm that holds no payload at all; `fails` is what the arm overloads without a payload.
     pub(crate) fn empty(fails: Overload) -> Self {
         Self { least: Limit::new(f64::INFINITY, fails.clone()), most: Limit::new(0.0, fails) }
     }
 
-    /// Whether any payload holds.
+    /// Whether the arm holds any payload.
     pub fn holds(&self) -> bool {
         self.least.payload_kg <= self.most.payload_kg
     }
@@ -78,8 +79,8 @@ impl Window {
     }
 }
 
-/// The payloads around `held_kg` that hold. `overload` says what a payload \[kg\] overloads; it must be `None` for
-/// `held_kg`.
+/// The payloads around `held_kg` that the arm holds. `overload` returns what a payload \[kg\] overloads, or `None` if
+/// the arm holds it; it must be `None` for `held_kg`.
 pub(crate) fn window_around(held_kg: f64, overload: &dyn Fn(f64) -> Option<Overload>) -> Window {
     let least = overload(0.0).map(|fails| end_between(held_kg, 0.0, fails, overload));
     let open = Window::unlimited();
@@ -90,8 +91,9 @@ pub(crate) fn window_around(held_kg: f64, overload: &dyn Fn(f64) -> Option<Overl
     }
 }
 
-/// The largest amount that holds, and what a larger one overloads; `None` if amounts beyond [`MOST_KG`] hold.
-/// `overload` says what an amount overloads; it must be `None` for `held`.
+/// The largest amount that the arm holds, such as a payload or a speed, and what a larger one overloads; `None` if it
+/// holds amounts beyond [`MOST_KG`]. `overload` returns what an amount overloads, or `None` if the arm holds it; it
+/// must be `None` for `held`.
 pub(crate) fn largest_held(
     mut held: f64,
     overload: &dyn Fn(f64) -> Option<Overload>,

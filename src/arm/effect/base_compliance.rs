@@ -8,7 +8,7 @@ use super::subject::Subject;
 const PARAMETERS: &[Parameter] =
     &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 5e5, Scale::Stiffness).expected(0.0, 6.0)];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "base_compliance",
     summary: "the base tilts about world x and y",

@@ -10,7 +10,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter::number("preload_nm", 0.1, 1e6, 100.0, Scale::Log).expected(1.0, 1e4).within_torque(0.05, 0.95),
 ];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "base_lift",
     summary: "the feet of the base lift off beyond a preload",

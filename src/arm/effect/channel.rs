@@ -3,12 +3,12 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-/// A kind of reading.
+/// A measuring channel: one kind of reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Channel {
     /// Displacement of the tip under load \[mm\].
     Static,
-    /// Natural frequencies \[Hz\].
+    /// Natural frequencies of the arm \[Hz\].
     Modal,
     /// Torsion of one joint under torque on a bench \[arcmin\].
     Windup,
@@ -44,24 +44,26 @@ impl Channel {
     }
 }
 
-/// How a channel turns an actual value into a reading: `bent(factor x gain x value) + bias + drift x (row - 1)`, in
-/// the unit of the channel's file. In a displacement the value is the component of `d + mix d`, where d is the actual
-/// displacement. The nonlinearity is `bent(d) = d + bend[0] d |d| / s + bend[1] d³ / s²`, where s
+/// How a channel turns an actual value into a reading: `bent(factor x gain x value) + bias + drift x (row - 1)`, in the
+/// unit of the channel's file. Rows are counted from 1. In a displacement the value is the component of `d + mix d`,
+/// where d is the actual displacement. The nonlinearity is `bent(d) = d + bend[0] d |d| / s + bend[1] d³ / s²`, where s
 /// is `bend_scale`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
-    /// Factor on the actual value.
+    /// Factor on the actual value of every component.
     pub factor: f64,
-    /// Constant that is added to each component; channels with one component use the first number only.
+    /// Constant that is added to each component, in the unit of the channel's file. Channels with one component use the
+    /// first number only.
     pub bias: [f64; 3],
-    /// Change of the added constant from each row of the file to the next.
+    /// Change of the added constant from each row of the file to the next, in the unit of the channel's file.
     pub drift_per_row: [f64; 3],
     /// Numbers of the rows that are gross errors, counted from 1.
     pub outlier_rows: Vec<usize>,
-    /// Further factor on each component; channels with one component use the first number only.
+    /// Further factor on the actual value of each component. Channels with one component use the first number only.
     pub gain: [f64; 3],
-    /// What each direction also shows of the others, for axes that are turned or not square: row x has the parts of the
-    /// actual y and z that the reading in x shows. Zero on the diagonal, and for channels with one component.
+    /// Crosstalk between the directions, if the axes of the instrument are turned or not square. Row x has the
+    /// fractions of the actual y and z displacement that the reading in x shows as well. Zero on the diagonal, and for
+    /// channels with one component.
     pub mix: Matrix3<f64>,
     /// Coefficients of the nonlinearity. At a reading of `bend_scale`, each is the deviation from a straight line as a
     /// fraction of this reading.
@@ -86,14 +88,14 @@ impl Default for Reading {
 }
 
 impl Reading {
-    /// The displacement along the axes of the instrument, of which each component is then read by [`Reading::of`]. `actual` is
-    /// the actual displacement along the axes that the campaign states, in any unit.
+    /// The displacement along the axes of the instrument. [`Reading::of`] then reads each of its components. `actual`
+    /// is the actual displacement along the axes that the campaign states; the result is in the same unit.
     pub fn along_own_axes(&self, actual: &Vector3<f64>) -> Vector3<f64> {
         actual + self.mix * actual
     }
 
-    /// The reading that the instrument shows for the value `truth` along its own axis. `component` (0 to 2) is the direction of a
-    /// displacement, `row` is the row of the file, counted from 0.
+    /// The reading that the instrument shows for the value `truth` along its own axis. `component` (0 to 2) is the
+    /// direction of a displacement, `row` is the row of the file, counted from 0.
     pub fn of(&self, truth: f64, component: usize, row: usize) -> f64 {
         let straight = self.factor * self.gain[component] * truth;
         let part = straight / self.bend_scale;

@@ -7,7 +7,7 @@ use super::subject::Subject;
 const PARAMETERS: &[Parameter] =
     &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 1e6, Scale::Stiffness).expected(0.0, 4.0)];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "connection_compliance",
     summary: "flange, shaft or bolts twisting in series with the gear",

@@ -9,7 +9,7 @@ const PARAMETERS: &[Parameter] = &[Parameter::vector("rate_mm_per_row", -0.1, 0.
     .expected(-0.01, 0.01)
     .growing_with(Measure::DisplacementPerRow, 1.0 / 4.0)];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "drift",
     summary: "the zero of a channel creeps from row to row",

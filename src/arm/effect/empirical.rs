@@ -1,7 +1,10 @@
-//! `empirical`: a law without a name, as it was found in readings. At a joint it is a further twist, which is a
-//! polynomial of the torque, a housing that tilts about two axes unequally, or a compliance that changes in the course
-//! of the tests. At the base it is a tilt that differs about x and y. At a channel it is a nonlinearity, a gain for
-//! each direction, a rotation of the base between two rows, or axes that each show a part of the others.
+//! `empirical`: a law without a name, as it was found in readings.
+//!
+//! - At a joint it is one of three laws: a further twist that is a polynomial of the torque; a tilt of the housing that
+//!   differs about two axes; a compliance that changes in the course of the tests.
+//! - At the base it is a tilt that differs about x and y.
+//! - At a channel it is one of four laws: a nonlinearity; a gain for each direction; a rotation of the base between two
+//!   rows; axes that each show a part of the other directions.
 
 use super::channel::Channel;
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
@@ -76,13 +79,14 @@ const OF_STATIC: &[Parameter] = &[
     optional(MIX, 6, -2.0, 2.0, 0.0),
 ];
 
-/// A parameter that changes nothing where it is left out.
+/// A parameter of `count` numbers that a file may leave out. Each number is then `default`, with which the effect
+/// changes nothing.
 const fn optional(name: &'static str, count: usize, low: f64, high: f64, default: f64) -> Parameter {
     let number = Parameter::number(name, low, high, default, Scale::Linear);
     Parameter { count, default: Some(default), ..number }
 }
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "empirical",
     summary: "a law without a name, as found in readings: a further twist of a joint, or a reading that bends",
@@ -126,8 +130,8 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
         soften(softening, at, subject);
     } else if let Some(reading) = subject.channel_mut(at) {
         let [a, b, bend_scale, x, y, z, ref of_static @ ..] = numbers[..] else { return };
-        // a channel may have two laws, one with a nonlinearity and one with gains, and both act; so a law without a
-        // nonlinearity must not erase the nonlinearity of the other law
+        // a channel may have two laws that both act, one with a nonlinearity and one with gains; the law without a
+        // nonlinearity must not erase the nonlinearity of the other
         if [a, b] != [0.0; 2] {
             (reading.bend, reading.bend_scale) = ([a, b], bend_scale);
         }
@@ -212,16 +216,17 @@ mod tests {
             apply(&[0.0, 0.0, 0.0, 0.0, 1.0, lean[0], lean[1]], "j2", &mut subject);
             subject.structure.gravity_m_s2 = 0.0;
             let chain = crate::mechanics::chain::Chain::new(&subject.structure, LinkModel::Rigid);
-            // j1 has turned the upper arm along world y, j2 hangs the forearm from it
+            // j1 has turned the upper arm into the direction of world y; the forearm hangs down from j2
             let force_n = Vector3::new(10.0, 0.0, 0.0);
             let posed = chain.pose_rad(&[FRAC_PI_2, FRAC_PI_2], &Payload::default(), force_n);
             posed.statics().shares_m.iter().find(|(name, _)| name == "j2.bearing").expect("share").1
         };
-        // the axes of j2, which turns about y, are -z and -x of the upper arm; x is along the upper arm, which is world
-        // y now: 10 N at the end of 0.5 m put 5 N m about it and move the tip by a lever of 0.5 m
+        // j2 turns about y. The two axes perpendicular to it are -z and -x of the upper arm. The x axis of the upper
+        // arm points along world y now. The force of 10 N at the end of the 0.5 m long forearm is a moment of 5 N m
+        // about it, and the tilt moves the tip by the angle times 0.5 m.
         let along = share_of([0.0, 1e-5]);
         assert!((along - Vector3::new(2.5e-5, 0.0, 0.0)).norm() < 1e-15, "{along}");
-        // the forearm hangs along the other axis
+        // a tilt about the other axis, along which the forearm hangs, does not move the tip
         assert!(share_of([1e-5, 0.0]).norm() < 1e-15);
     }
 

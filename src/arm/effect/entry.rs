@@ -25,7 +25,8 @@ pub struct Effect {
     pub at: String,
     /// Parameters by name. A vector parameter has several numbers.
     pub parameters: Vec<(String, Vec<f64>)>,
-    /// Where the values of the parameters come from: the key `source`, exactly as the file has it.
+    /// Where the values of the parameters come from: the key `source`, exactly as the file has it; `None` if the file
+    /// states no source.
     pub source: Option<Value>,
 }
 

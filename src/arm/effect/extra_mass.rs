@@ -8,7 +8,7 @@ const PARAMETERS: &[Parameter] = &[Parameter::number("delta_kg", -10.0, 50.0, 1.
     .expected(-3.0, 12.0)
     .growing_with(Measure::ArmMass, 1.0 / 8.0)];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "extra_mass",
     summary: "a point mass at a joint beyond tolerance",

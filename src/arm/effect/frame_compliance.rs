@@ -12,7 +12,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter::vector("coupling_rad_per_nm", -1.0, 1.0, 0.0),
 ];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "frame_compliance",
     summary: "the base or the structure behind a joint turns per moment about three axes, coupled",

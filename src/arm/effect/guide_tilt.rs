@@ -7,7 +7,7 @@ use super::subject::Subject;
 const PARAMETERS: &[Parameter] =
     &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness).expected(0.0, 6.0)];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "guide_tilt",
     summary: "the guide of a prismatic joint tilts beyond its stated stiffnesses",

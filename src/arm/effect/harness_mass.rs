@@ -7,7 +7,7 @@ const PARAMETERS: &[Parameter] = &[Parameter::number("kg_per_m", 0.0, 100.0, 2.0
     .expected(0.0, 15.0)
     .growing_with(Measure::ArmMassPerLength, 1.0 / 4.0)];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "harness_mass",
     summary: "cables and hoses along a link: mass without stiffness",

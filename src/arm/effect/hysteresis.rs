@@ -9,7 +9,7 @@ const PARAMETERS: &[Parameter] = &[Parameter::number("half_width_rad", 0.0, 0.1,
     .sought_up_to(5e-3)
     .growing_with(Measure::Angle, 1.0)];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "hysteresis",
     summary: "friction play: the twist lags a reversal of torque",
@@ -58,7 +58,8 @@ mod tests {
         let mut subject = subject();
         apply(&[1e-4], "j1", &mut subject);
         let law = subject.structure.joint_mut("j1").expect("j1").law;
-        // the play follows at a distance of k h = 10 N m; the torque goes up to 100, back to 50 and to 45 N m
+        // the half width h of the play corresponds to a torque k h = 10 N m; the torque rises to 100, falls to 50 and
+        // then to 45 N m
         let mut state = 10.0;
         let twist: Vec<f64> = [100.0, 50.0, 45.0].map(|t| law.play_angle_rad(t, &mut state)).to_vec();
         assert!((twist[0] - (1e-3 - 1e-4)).abs() < 1e-15);

@@ -19,7 +19,7 @@ const PARAMETERS: &[Parameter] = &[
     },
 ];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "immersion",
     summary: "the arm is in water: buoyancy and added mass",

@@ -12,7 +12,7 @@ const fn torque(name: &'static str) -> Parameter {
 
 const PARAMETERS: &[Parameter] = &[torque("offset_nm"), torque("sin_nm"), torque("cos_nm")];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "joint_torque",
     summary: "a torque that nobody told of acts on the joint",

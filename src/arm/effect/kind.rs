@@ -102,21 +102,22 @@ pub struct Parameter {
     pub scale: Scale,
     /// The value at which the effect changes nothing.
     pub absent: Absent,
-    /// The value if the parameter is left out. A parameter with a default is stated and not fitted, unless a variant
-    /// names it.
+    /// The value that the parameter has if a file leaves it out; `None` if a file must give it. A parameter with a
+    /// default is stated and not fitted, unless a variant names it.
     pub default: Option<f64>,
     /// Whether the value is a channel. Files write the word of the channel; here it is the index of the channel.
     pub is_channel: bool,
     /// Name of another parameter that is a lower limit of this parameter; `None` if there is none.
     pub not_below: Option<&'static str>,
     /// A property of the arm or its readings to which the expected size of this parameter is proportional, and the
-    /// factor of proportionality.
+    /// factor of proportionality. `None` if the expected size depends on neither.
     pub grows_with: Option<(Measure, f64)>,
     /// The largest value for which a search looks in an arm and a campaign of usual size. `None`: the largest value
     /// that a file may give.
     pub sought_up_to: Option<f64>,
-    /// For a torque: the limits between which a search looks for it, as fractions of the largest torque on the joint in
-    /// the campaign. A change of the joint law beyond the torques that occur could not be recognized.
+    /// If the parameter is a torque: the limits between which a search looks for its value, as fractions of the largest
+    /// torque on the joint in the campaign. A change of the joint law beyond the torques that occur could not be
+    /// recognized. `None` for parameters that are no torque.
     pub torque_parts: Option<(f64, f64)>,
 }
 
@@ -126,8 +127,8 @@ impl Parameter {
         (self.low..=self.high).contains(&value)
     }
 
-    /// A parameter with a single value that a file must give, between `low` and `high`. `typical` is a usual value,
-    /// `scale` says how a fit varies it.
+    /// A parameter with a single value that a file must give, between `low` and `high`. `typical` is a usual value, and
+    /// `scale` says how a fit varies the parameter.
     pub const fn number(name: &'static str, low: f64, high: f64, typical: f64, scale: Scale) -> Self {
         let absent = match scale {
             Scale::Linear | Scale::Stiffness | Scale::Torque => Absent::AtZero,
@@ -157,7 +158,8 @@ impl Parameter {
         Self { count: 3, ..Self::number(name, low, high, typical, Scale::Linear) }
     }
 
-    /// This parameter, expected by a fit between `low` and `high` instead of in its whole range.
+    /// This parameter, with `low` to `high` as the range in which a fit expects its value, in place of the whole range
+    /// of allowed values.
     pub const fn expected(self, low: f64, high: f64) -> Self {
         Self { prior: (low, high), ..self }
     }
@@ -173,7 +175,7 @@ impl Parameter {
         Self { absent, ..self }
     }
 
-    /// This parameter, with an expected size of `part` times `measure`, a property of the arm or of its readings.
+    /// This parameter, with an expected size of `part` times the property `measure` of the arm or of its readings.
     pub const fn growing_with(self, measure: Measure, part: f64) -> Self {
         Self { grows_with: Some((measure, part)), ..self }
     }
@@ -191,7 +193,7 @@ impl Parameter {
     }
 }
 
-/// What the nominal model must be like at a place so that an effect is possible at this place.
+/// The property that the nominal model must have at a place so that an effect is possible at this place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Needs {
     /// Nothing: the effect is possible at every place of its kind.
@@ -257,7 +259,7 @@ pub struct Setting<'a> {
     pub twist_rad: f64,
     /// Number of rows of the longest file of readings of the whole arm (not of a bench).
     pub rows: f64,
-    /// The value of each fitted number at `u = 1`, see [`Scale`].
+    /// The value of each fitted number at which the variable `u` of the fit is 1, see [`Scale`].
     pub values_at_one: &'a [f64],
 }
 
@@ -266,14 +268,14 @@ pub struct Setting<'a> {
 pub struct Traits {
     /// Whether a search for effects tries this effect at every place.
     pub is_sought: bool,
-    /// For an effect that belongs to one channel: the channels in which the search tries it. Empty means all.
+    /// The channels in which the search tries an effect that belongs to one channel. Empty means all channels.
     pub sought_in: &'static [Channel],
     /// The sets of parameters that the search fits. Each set is a candidate of its own. Empty means a single set: every
     /// parameter without a default.
     pub variants: &'static [&'static [Freed]],
     /// Prior probability of the effect, relative to a usual effect at one place, before any reading is considered.
     pub odds: f64,
-    /// What the nominal model must be like at a place so that the search tries the effect at this place.
+    /// The property that the nominal model must have at a place so that the search tries the effect at this place.
     pub needs: Needs,
     /// Starting points of fits. Each is a list of values of the fit's variable `u` ([`Scale`]), one for each fitted
     /// number.
@@ -305,8 +307,8 @@ pub struct Traits {
     /// Finds a contradiction between the values of all parameters, each of which is within its limits. Returns the
     /// problem and the advice; `None` if there is no contradiction.
     pub contradiction: fn(&[f64]) -> Option<(&'static str, &'static str)>,
-    /// Changes fitted numbers that no arm can have, such as amplitudes whose sum is too large. The result is the
-    /// nearest numbers that an arm can have.
+    /// Replaces, in place, fitted numbers that no arm can have, such as amplitudes whose sum is too large, by numbers
+    /// near them that an arm can have.
     pub bounded: fn(&mut [f64]),
 }
 

@@ -7,7 +7,7 @@ use super::subject::Subject;
 const PARAMETERS: &[Parameter] =
     &[Parameter::number("factor", 0.0, 20.0, 1.0, Scale::Linear).expected(0.0, 5.0)];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "link_flexibility",
     summary: "a link that the model holds rigid bends; 1 = as its section says",

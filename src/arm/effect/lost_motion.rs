@@ -14,7 +14,7 @@ const PARAMETERS: &[Parameter] = &[
         .within_torque(0.003, 1.0),
 ];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "lost_motion",
     summary: "play that closes smoothly as the torque grows",

@@ -7,7 +7,7 @@ use super::subject::Subject;
 const PARAMETERS: &[Parameter] =
     &[Parameter::number("factor", 0.05, 5.0, 0.85, Scale::Reciprocal).expected(0.5, 3.0)];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "modulus_error",
     summary: "one link has another modulus of elasticity than its material",

@@ -8,7 +8,7 @@ use super::subject::Subject;
 const ROWS: &[Parameter] =
     &[Parameter { count: 0, ..Parameter::number("rows", 1.0, 1e9, 1.0, Scale::Linear) }];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "outlier",
     summary: "single rows are gross errors",

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 const PARAMETERS: &[Parameter] = &[Parameter::vector("offset_m", -0.5, 0.5, 0.01).expected(-0.1, 0.1)];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "payload_cg_error",
     summary: "the centre of gravity of the payload is not where it is stated",

@@ -7,7 +7,7 @@ const PARAMETERS: &[Parameter] = &[Parameter::number("delta_kg", -20.0, 20.0, 0.
     .expected(-3.0, 3.0)
     .growing_with(Measure::PayloadMass, 1.0 / 4.0)];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "payload_mass_error",
     summary: "the payload weighs more or less than stated",

@@ -18,7 +18,7 @@ fn parameters(place: Place) -> &'static [Parameter] {
     }
 }
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "sensor_bias",
     summary: "the sensor of a channel reads the truth plus a constant",

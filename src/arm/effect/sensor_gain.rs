@@ -6,7 +6,7 @@ use super::subject::Subject;
 const PARAMETERS: &[Parameter] =
     &[Parameter::number("gain", 0.2, 5.0, 1.03, Scale::Linear).expected(0.6, 1.6).absent(Absent::AtOne)];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "sensor_gain",
     summary: "the sensor of a channel reads a factor times the truth",

@@ -13,7 +13,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter { is_channel: true, default: None, ..Parameter::number(CHANNEL, 0.0, 3.0, 1.0, Scale::Linear) },
 ];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "servo_compliance",
     summary: "the joint is softer in one kind of test: a servo holds it there and not a brake",

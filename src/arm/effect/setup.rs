@@ -16,14 +16,14 @@ pub struct Turned {
 }
 
 impl Turned {
-    /// Displacement of the point `at_m` by this rotation \[m\], in a row of the file that is counted from 0. It is zero
-    /// in the rows before the rotation.
+    /// Displacement \[m\] of the point `at_m` by this rotation. `row` is the row of the file, counted from 0; in the
+    /// rows before the rotation the displacement is zero.
     pub fn moved_m(&self, at_m: &Vector3<f64>, row: usize) -> Vector3<f64> {
         if row < self.from_row { Vector3::zeros() } else { self.turn_rad.cross(at_m) }
     }
 }
 
-/// What is special about the tests of one channel.
+/// The differences between the arm in the tests of one channel and the arm by itself.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Setup {
     /// Additional mass at the tip \[kg\].

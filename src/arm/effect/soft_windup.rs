@@ -39,7 +39,7 @@ const BREAKS: [(f64, f64); 8] = [
     (0.5, 0.85),
 ];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "soft_windup",
     summary: "the three-segment torsion curve replaces the single stiffness",

@@ -21,7 +21,7 @@ const PARAMETERS: &[Parameter] = &[
     },
 ];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "stiffness_waves",
     summary: "the stiffness of the joint varies once and twice a turn",
@@ -59,7 +59,8 @@ fn starts(setting: &Setting) -> Vec<Vec<f64>> {
 /// Largest sum of both amplitudes in a fit. It is a little below the sum that an arm file may state.
 const MOST_IN_A_FIT: f64 = 0.949;
 
-/// The numbers with amplitudes whose sum leaves the compliance positive at every angle.
+/// Scales both amplitudes down, in place, if their sum is so large that the compliance would become zero or negative at
+/// some angle. The phases are unchanged.
 fn bounded(numbers: &mut [f64]) {
     let sum = numbers[0] + numbers[1];
     if sum > MOST_IN_A_FIT {

@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 /// An arm under test: the product, and the deviations of the test from its description.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Subject {
-    /// The arm itself.
+    /// The arm as the mechanics needs it, with the effects of the product applied.
     pub structure: Structure,
     /// Actual mass minus stated mass of the payload, in every load case with a payload \[kg\].
     pub payload_delta_kg: f64,

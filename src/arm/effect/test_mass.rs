@@ -12,7 +12,7 @@ const PARAMETERS: &[Parameter] = &[
     Parameter { default: Some(0.0), ..Parameter::vector("cg_m", -0.5, 0.5, 0.05) }.expected(-0.2, 0.2),
 ];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "test_mass",
     summary: "something hangs at the tip in one kind of test",
@@ -25,7 +25,8 @@ pub(crate) const KIND: Kind = Kind {
     parameters: |_| PARAMETERS,
     apply,
     traits: Traits {
-        // static readings are differences to the unloaded arm, which has this mass too, so they cannot show it
+        // static readings are differences from a reference state in which the arm has this mass as well, so they cannot
+        // show it
         sought_in: &[Channel::Modal],
         variants: &[&[("mass_kg", None)], &[("mass_kg", None), ("cg_m", None)]],
         odds: RARE_PRIOR,

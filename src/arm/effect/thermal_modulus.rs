@@ -25,7 +25,7 @@ const PARAMETERS: &[Parameter] = &[
     },
 ];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "thermal_modulus",
     summary: "the moduli of all links follow the temperature or the order of the tests",

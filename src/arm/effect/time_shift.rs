@@ -5,7 +5,7 @@ use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] = &[Parameter::number("seconds", -3600.0, 3600.0, 0.01, Scale::Linear)];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "time_shift",
     summary: "the clock of a channel runs ahead or behind (time records)",

@@ -9,7 +9,7 @@ const PARAMETERS: &[Parameter] = &[Parameter {
     ..Parameter::vector("sin_cos_sin2_cos2_rad", -0.02, 0.02, 3e-4).expected(-0.003, 0.003)
 }];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "transmission_error",
     summary: "a joint turns unevenly, once and twice a turn; only absolute positions show it",

@@ -7,7 +7,7 @@ use super::subject::Subject;
 const PARAMETERS: &[Parameter] =
     &[Parameter::number("stiffness_n_per_m", 1.0, 1e12, 2e7, Scale::Stiffness).expected(0.0, 6.0)];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "travel_compliance",
     summary: "the drive of a prismatic joint is more compliant along its travel than stated",

@@ -13,9 +13,9 @@ use crate::input::json::closest;
 pub struct EffectFault {
     /// The key at fault, relative to the effect: `effect`, `at` or `parameters.NAME`.
     pub field: String,
-    /// What is wrong, in words.
+    /// Description of the fault, in words.
     pub problem: String,
-    /// What is allowed, in words.
+    /// The allowed values, in words.
     pub hint: String,
 }
 

@@ -6,7 +6,7 @@
 pub struct Moment {
     /// Row of the reading in its file, counted from 0.
     pub row: usize,
-    /// Temperature of the arm \[°C\], if it was measured.
+    /// Temperature of the arm \[°C\]; `None` if it was not measured.
     pub temperature_c: Option<f64>,
 }
 

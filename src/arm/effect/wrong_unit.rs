@@ -1,5 +1,5 @@
-//! `wrong_unit`: a channel is written in another unit than its column states, such as inches, metres or degrees, or the
-//! loads in its file are, such as forces in kgf.
+//! `wrong_unit`: the readings of a channel are written in another unit than their column states, such as inches, metres
+//! or degrees. Or the loads in the file of a channel are, such as forces in kgf.
 
 use super::channel::Channel;
 use super::kind::{EVERY_CHANNEL, Kind, Parameter, Scale, Scope, Traits};
@@ -7,7 +7,7 @@ use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] = &[Parameter::number("factor", 1e-7, 1e7, 25.4, Scale::Log)];
 
-/// Description of the effect, for the list of all effects.
+/// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "wrong_unit",
     summary: "a channel is written in another unit than its column says",
@@ -29,7 +29,8 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
 pub enum UnitColumn {
     /// The column of the readings.
     Reading,
-    /// The columns of forces or torques. The readings are then those of another load, so they seem to have a factor.
+    /// The columns of forces or torques. The actual load then differs from the stated one by a factor, and so do the
+    /// readings from the values that the stated load would cause.
     Force,
     /// The column of payloads.
     Payload,
@@ -38,11 +39,12 @@ pub enum UnitColumn {
 /// A unit that is mistaken for another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UnitSlip {
-    /// Factor by which the readings then differ from what the columns say.
+    /// Factor by which the readings differ from the readings that the model predicts, if the column is in this other
+    /// unit.
     pub factor: f64,
     /// The column that is written in another unit.
     pub column: UnitColumn,
-    /// The cause in words.
+    /// The mistake in words, for messages, such as "inches in a column of mm".
     pub cause: &'static str,
     /// The channels whose quantity has these units; all if the list is empty.
     pub channels: &'static [Channel],

@@ -69,7 +69,7 @@ pub(crate) fn motor(row: &Row) -> Option<Motor> {
         mass_kg: Some(0.0),
         curve: Vec::new(),
         rated_power_w: None,
-        // the size of the actuator is given to its gear: the motor adds no length, and the passage is the same
+        // the gear of the actuator has the size of the whole; its motor adds no length and has the same passage
         envelope: Envelope {
             outer_diameter_m: None,
             length_m: Some(0.0),

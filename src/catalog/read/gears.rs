@@ -47,7 +47,7 @@ pub(crate) fn gear(row: &Row) -> Option<Gear> {
     })
 }
 
-/// The ratings of a gear that another rating of its row may stand for.
+/// Those ratings of a gear that, for a belt, are filled in from another rating of the row if they are blank.
 struct Ratings {
     average_nm: Option<f64>,
     repeated_peak_nm: Option<f64>,
@@ -66,9 +66,9 @@ impl Ratings {
         }
     }
 
-    /// The ratings of a toothed belt. Its makers rate one torque, which holds at a speed and for any duration, and a
-    /// largest speed; peaks are divided by a service factor, and not rated. So a blank rating is the next lower one of
-    /// the row, with which every check is made and none is too mild.
+    /// The ratings of a toothed belt. Makers of belts rate one torque, which holds at a speed and for any duration, and
+    /// a largest speed. They do not rate peaks, but divide them by a service factor. A blank rating therefore gets the
+    /// value of the next lower rating in the row, so that every check can be made and none is too mild.
     fn of_belt(row: &Row) -> Self {
         let stated = Self::of_gear(row);
         let average_nm = stated.average_nm.or(row.number("rated_torque_nm"));
@@ -213,7 +213,7 @@ mod tests {
         bearing_offset_m,bearing_static_load_rating_n,bearing_dynamic_load_rating_n,buckling_torque_nm,\
         ratcheting_torque_nm,outer_diameter_mm,length_mm,hollow_bore_mm";
 
-    /// The gear of a row with these numbers after the confidence, and the columns that have faults.
+    /// The gear of a row whose cells after the confidence are `figures`, and the columns that have faults.
     fn read(figures: &str) -> (Option<Gear>, Vec<String>) {
         let log = Log::default();
         let text = format!("{HEADER}\nA,25,100,a test,verified,{figures}\n");

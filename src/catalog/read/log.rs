@@ -3,7 +3,7 @@
 use crate::input::json::Fault;
 use std::cell::RefCell;
 
-/// Everything that was found to be wrong or odd so far.
+/// The faults and warnings that were found so far.
 #[derive(Debug, Default)]
 pub(crate) struct Log {
     /// Faults, for which the file is refused.

@@ -91,7 +91,7 @@ fn shear_modulus(row: &Row) {
         let refuse = match class {
             MaterialClass::Metal => 0.06,
             MaterialClass::MetalMatrix => 0.25,
-            // wood is orthotropic like a laminate, and so is a printed polymer
+            // wood and printed polymers are orthotropic like a laminate, so their G does not follow from E and nu
             _ => f64::INFINITY,
         };
         row.agrees("g_pa", g_pa, e_pa / (2.0 * (1.0 + nu)), "G = E/2(1+nu)", 0.06, refuse);

@@ -85,7 +85,7 @@ mod tests {
     use crate::catalog::CatalogFile;
     use crate::catalog::read::table::rows;
 
-    /// The figures of an actuator hold at its output, in its curve as in its row.
+    /// The torques and speeds in the curve of an actuator hold at its output, as the ratings in its row do.
     #[test]
     fn the_curve_of_an_actuator_is_that_of_its_output() {
         let (log, mut catalogs) = (Log::default(), Catalogs::builtin());

@@ -8,7 +8,7 @@ use crate::input::json::closest;
 use crate::input::magnitude::{beyond_calculation, not_positive};
 use crate::input::names::{unfit_cell, unfit_name};
 
-/// How numbers must follow each other.
+/// The order in which numbers must follow each other.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Order {
     /// Each number is larger than the one before.
@@ -280,8 +280,8 @@ fn did_you_mean(word: &str, known: &[&str]) -> String {
     closest(word, known).map(|near| format!("did you mean \"{near}\"? ")).unwrap_or_default()
 }
 
-/// What a list of columns in a cell says: whether it begins with `all`, and the columns that it names (after
-/// `all except`, if it begins so).
+/// The content of a list of columns in a cell: whether it begins with `all`, and the columns that it names (after `all
+/// except`, if it begins so).
 fn column_list(text: &str) -> (bool, Vec<&str>) {
     let mut words = text.split([' ', ',', ';']).filter(|w| !w.is_empty()).peekable();
     let all = words.next_if_eq(&"all").is_some();

@@ -63,8 +63,8 @@ fn required(file: CatalogFile) -> String {
     names.join(",")
 }
 
-/// For each known column, its place in the header; `None` for a column that the header does not have. The whole result
-/// is `None` if the text is not separated by commas.
+/// The place of each known column in the header; `None` for a column that the header does not have. The whole result is
+/// `None` if the text is not separated by commas.
 fn header_places(
     file: CatalogFile,
     name: &str,
@@ -88,7 +88,7 @@ fn header_places(
     let columns = file.columns();
     let places: Vec<_> = columns.iter().map(|c| header.iter().position(|h| h == c.name)).collect();
     for (column, _) in columns.iter().zip(&places).filter(|(c, place)| c.required && place.is_none()) {
-        // An unknown column with a similar name has been reported already.
+        // a missing column is not reported again if an unknown column with a similar name has been reported
         if !unknown.contains(&Some(column.name)) {
             let hint = format!("required columns: {}", required(file));
             log.fault(name, Some(line), column.name, "this column is missing".into(), hint);

@@ -1,11 +1,15 @@
 //! Warnings of numbers that no gear or actuator has, because they are in another unit than their column states.
 //!
-//! The sizes of gears differ by orders of magnitude, so each number is compared with another of the same row. The angle
-//! T / k by which a gear twists under its rated torque T is between 1 and 13 arcmin in every row of the built-in
-//! catalogs, the tilt of its output bearing under the permissible moment between 0.6 and 3.2 arcmin, under the rated
-//! torque between 0.15 and 1.5 arcmin, and the radius of gyration sqrt(J/m) between 1 and 23 mm. The usual ranges here
-//! are several times wider, yet narrower than the factors between units (1 N m/arcmin = 3438 N m/rad, 1 N m/deg =
-//! 57 N m/rad, 1 kg cm2 = 1e-4 kg m2).
+//! The sizes of gears differ by orders of magnitude, so each number is compared with another number of the same row.
+//! The comparisons, with the values in all rows of the built-in catalogs, are:
+//!
+//! - the twist T / k of a gear under its rated torque T: 1 to 13 arcmin;
+//! - the tilt of its output bearing under the permissible moment: 0.6 to 3.2 arcmin;
+//! - the tilt of its output bearing under the rated torque: 0.15 to 1.5 arcmin;
+//! - the radius of gyration sqrt(J/m) of its turning parts: 1 to 23 mm.
+//!
+//! The usual ranges in this file are several times wider, yet narrower than the factors between units (1 N m/arcmin =
+//! 3438 N m/rad, 1 N m/deg = 57 N m/rad, 1 kg cm2 = 1e-4 kg m2).
 
 use super::row::Row;
 use crate::catalog::gear::GearKind;
@@ -16,12 +20,13 @@ const ARCMIN_PER_RAD: f64 = 10_800.0 / PI;
 const TWIST_ARCMIN: [f64; 2] = [0.1, 50.0];
 /// Usual tilt of an output bearing under its permissible moment \[arcmin\].
 const TILT_ARCMIN: [f64; 2] = [0.05, 20.0];
-/// Usual tilt of an output bearing under a moment as large as the rated torque \[arcmin\]. A small gear may have a large
-/// bearing, so the lower limit is further away.
+/// Usual tilt of an output bearing under a moment as large as the rated torque \[arcmin\]. A small gear may have a
+/// large bearing, so the lower limit is much lower than that of [`TILT_ARCMIN`].
 const TILT_BY_TORQUE_ARCMIN: [f64; 2] = [0.002, 30.0];
 /// Largest angle by which a gear twists, or its bearing tilts, under its own rating \[arcmin\]: 1 rad.
 const POSSIBLE_ARCMIN: f64 = ARCMIN_PER_RAD;
-/// Usual radius of gyration of the turning parts, from the whole mass \[m\].
+/// Usual radius of gyration of the turning parts \[m\]. It is computed with the mass of the whole gear, because the
+/// mass of its turning parts is not known.
 const GYRATION_M: [f64; 2] = [3e-4, 0.06];
 /// Usual pitch diameters of output bearings \[m\].
 const PITCH_M: [f64; 2] = [0.005, 1.0];
@@ -33,9 +38,10 @@ const STIFFNESS_UNITS: &str =
 pub(super) const TORQUES: [&str; 4] =
     ["rated_torque_nm", "average_torque_limit_nm", "repeated_peak_torque_nm", "momentary_peak_torque_nm"];
 
-/// Warns of stiffnesses, a pitch diameter or an inertia of a gear that are far from those of all gears.
-/// A stiffness by which the gear turns more than 1 rad under its own rating is a fault. A direct drive may be as stiff as
-/// it likes. Diameter and inertia of strain-wave gears are compared with their size instead, which is narrower.
+/// Warns of stiffnesses, a pitch diameter or an inertia of a gear that are far from those of all known gears. A
+/// stiffness by which the gear twists more than 1 rad under its own rating is a fault. The stiffness of a direct drive
+/// has no upper limit. The pitch diameter and the inertia of strain-wave gears are compared with their size instead,
+/// for which the usual ranges are narrower.
 pub(super) fn of_gear(row: &Row, kind: GearKind) {
     angles(row, rating(row, &TORQUES), kind == GearKind::Direct);
     if kind == GearKind::StrainWave {
@@ -48,8 +54,8 @@ pub(super) fn of_gear(row: &Row, kind: GearKind) {
     }
 }
 
-/// Warns of numbers of an actuator as [`of_gear`] does of a gear's. The inertia at the output is compared if the row
-/// states the ratio, by which that of the rotor follows.
+/// Warns of numbers of an actuator as [`of_gear`] does of a gear. The inertia at the output is compared only if the row
+/// states the ratio, from which the inertia of the rotor follows.
 pub(super) fn of_actuator(row: &Row) {
     angles(row, rating(row, &["rated_torque_nm", "peak_torque_nm"]), false);
     pitch(row);
@@ -58,7 +64,7 @@ pub(super) fn of_actuator(row: &Row) {
     }
 }
 
-/// The first of the columns that the row fills, with its number.
+/// The first of the columns that the row fills, with its number; `None` if the row fills none of them.
 fn rating(row: &Row, columns: &[&'static str]) -> Option<(&'static str, f64)> {
     columns.iter().find_map(|column| Some((*column, row.number(column)?)))
 }
@@ -87,7 +93,8 @@ fn pitch(row: &Row) {
     }
 }
 
-/// Compares the angle `moment` over the stiffness in `column` with the `usual` range \[arcmin\].
+/// Compares an angle with the range `usual` \[arcmin\]. The angle is the load `load_nm` \[N m\], whose column is
+/// `load`, divided by the stiffness in the column `column`.
 fn angle(row: &Row, column: &str, (load, load_nm): (&str, f64), usual: [f64; 2]) {
     let Some(stiffness_nm_per_rad) = row.number(column) else { return };
     let arcmin = ARCMIN_PER_RAD * load_nm / stiffness_nm_per_rad;
@@ -130,7 +137,7 @@ mod tests {
     const ACTUATOR: &str = "model,ratio,rated_torque_nm,peak_torque_nm,inertia_output_kgm2,mass_kg,k1_nm_per_rad,\
         tilting_stiffness_nm_per_rad,bearing_pitch_diameter_m,source,confidence";
 
-    /// The columns with faults and those with warnings of one row.
+    /// The columns of one row that have faults, and those that have warnings.
     fn found(file: CatalogFile, header: &str, figures: &str) -> [Vec<String>; 2] {
         let log = Log::default();
         let text = format!("{header}\n{figures},a test,verified\n");

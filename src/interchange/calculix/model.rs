@@ -3,10 +3,11 @@
 //! Everything that moves as one rigid body is a *region*. The end faces of a link are rigid: the root face belongs to
 //! the region before the link, and the end face begins a new region. The motion of a new region is described by a
 //! reference node (displacement) and a rotation node. A hinge has a node of its own, and displacement 1 of this node is
-//! freedom, which an `*EQUATION` expresses: `u(p) = u_ref + θ × (p - p_ref) + Σ q_k t_k(p)`. Here `q_k` is the angle of
-//! hinge `k`, and `t_k(p)` is the displacement of `p` per unit of this angle. Neither the rigid bodies of CalculiX are
-//! needed nor constraints that depend on other constraints. The tilts of bearings and frames are hinges too, and a
-//! passive joint is a hinge that follows others.
+//! the angle of the hinge. The displacement of a point `p` of a region is expressed by an `*EQUATION`: `u(p) = u_ref +
+//! θ × (p - p_ref) + Σ q_k t_k(p)`. Here `u_ref` and `θ` are the displacements of the reference node and of the
+//! rotation node, `q_k` is the angle of hinge `k`, and `t_k(p)` is the displacement of `p` per unit of this angle. So
+//! neither rigid bodies of CalculiX nor constraints that depend on other constraints are needed. The tilts of bearings
+//! and frames are hinges too, and a passive joint is a hinge that follows others.
 
 use super::mesh::{Mesh, has_shape, mesh};
 use crate::arm::RigidBody;
@@ -113,7 +114,7 @@ pub(crate) fn model(snapshot: &Snapshot) -> Model {
     for item in &posed.items {
         match item {
             Item::Body(body) => builder.body(body),
-            // springs were removed before (see `Remainder`)
+            // balance springs were removed before, see `Remainder`
             Item::Load(_) => {}
             Item::Elastic(element) => {
                 let workings = workings.next().unwrap_or_default();
@@ -333,7 +334,8 @@ impl Builder<'_> {
         for d in 0..3 {
             let mut terms = vec![(node, d, -1.0)];
             for (n, p) in &places {
-                // best rotation θ = S⁻¹ Σ r × u; it moves the node by θ × a
+                // The rotation that fits best is θ = S⁻¹ Σ r × u, with the positions r of the nodes from their centre
+                // and their displacements u. It moves the node, which is at a from the centre, by θ × a.
                 let moved = Matrix3::identity() / count
                     - arm_m.cross_matrix() * inverse * (p - centre_m).cross_matrix();
                 terms.extend((0..3).map(|e| (*n, e, moved[(d, e)])));

@@ -103,7 +103,7 @@ fn range(points: &[BeamPoint]) -> String {
     format!("{} to {}", mm(points.first()), mm(points.last()))
 }
 
-/// For each outer size, the largest and the smallest deflection that any of the metals has \[m\].
+/// The largest and the smallest deflection that any of the metals has \[m\], for each outer size.
 fn extremes(curves: &[Curve]) -> Vec<(f64, f64)> {
     let at = |i: usize| curves.iter().filter_map(move |c| c.points.get(i)).map(|p| p.deflection_m);
     let count = curves.first().map_or(0, |c| c.points.len());

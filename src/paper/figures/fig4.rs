@@ -84,8 +84,8 @@ pub fn curves(catalogs: &Catalogs) -> Result<Vec<Curve>, PaperError> {
         .collect()
 }
 
-/// The square tube of this material that deflects by [`REFERENCE_M`]. `deflection_m` returns the deflection of a tube,
-/// and the outer size is found by bisection between 21 mm and 1 m.
+/// The square tube of this material that deflects by [`REFERENCE_M`]; `None` if its deflection is unknown.
+/// `deflection_m` returns the deflection of a tube \[m\]. The outer size is found by bisection between 21 mm and 1 m.
 fn section_for(material: &Material, deflection_m: impl Fn(&BeamPoint) -> Option<f64>) -> Option<BeamPoint> {
     let (mut small, mut large) = (2.1 * WALL_M, 1.0);
     for _ in 0..60 {

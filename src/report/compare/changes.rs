@@ -24,9 +24,9 @@ pub(crate) struct Values {
 /// One of the two models of the arm.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Model {
-    /// The model without corrections.
+    /// The arm as its file describes it, without corrections.
     Nominal,
-    /// The model with corrections.
+    /// The arm with the corrections of a measured arm.
     Corrected,
 }
 
@@ -56,14 +56,16 @@ pub(crate) struct PickChange {
     pub changes: bool,
     /// Name of the design that the nominal model picks.
     pub nominal_design_id: String,
-    /// Objectives of the design that the nominal model picks, under the nominal model.
+    /// Objectives of the design that the nominal model picks, under the nominal model; `None` if it is not feasible
+    /// under this model.
     pub nominal: Option<Values>,
     /// Objectives of the design that the nominal model picks, under the corrected model; `None` if it is no longer
     /// feasible.
     pub nominal_under_corrected: Option<Values>,
     /// Name of the design that the corrected model picks.
     pub corrected_design_id: String,
-    /// Objectives of the design that the corrected model picks, under the corrected model.
+    /// Objectives of the design that the corrected model picks, under the corrected model; `None` if it is not feasible
+    /// under this model.
     pub corrected: Option<Values>,
 }
 

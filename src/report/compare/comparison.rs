@@ -166,8 +166,8 @@ fn sentence(question: Question, limit: f64, answers: &[Answer]) -> String {
     capital(&(out + "."))
 }
 
-/// Words that state the value that the reference front reaches in the question. Empty if this value is no better than
-/// that of `winner`. The reference front itself cannot win.
+/// Words on the reference front, which cannot win: the best value that it reaches in this question. Empty if this value
+/// is no better than that of `winner`.
 fn mixed(question: Question, winner: &Design, answers: &[Answer]) -> String {
     let sought = question.sought();
     let better = |a: &&Answer| {
@@ -200,7 +200,8 @@ fn out_of_reach(question: Question, answers: &[Answer]) -> String {
     }
 }
 
-/// By how much `better` is better than `other` in the objective `sought`, in percent of the value of `other`: `12.3 %`.
+/// The advantage of the design `better` over the design `other` in the objective `sought`, in percent of the value of
+/// `other`: `12.3 %`.
 fn advantage(sought: Objective, better: &Design, other: &Design) -> String {
     let (a, b) = (sought.of(better), sought.of(other));
     let percent = 100.0 * ((a - b) / b).abs();

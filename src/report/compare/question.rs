@@ -8,13 +8,13 @@ use serde::Serialize;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Question {
-    /// The smallest mass, the tip deflection being at most the limit.
+    /// The smallest mass among the designs whose tip deflection is at most the limit.
     LightestAtDeflection,
-    /// The smallest tip deflection, the mass being at most the limit.
+    /// The smallest tip deflection among the designs whose mass is at most the limit.
     StiffestAtMass,
-    /// The highest lowest mode, the mass being at most the limit.
+    /// The highest lowest mode among the designs whose mass is at most the limit.
     HighestModeAtMass,
-    /// The smallest mass, the lowest mode being at least the limit.
+    /// The smallest mass among the designs whose lowest mode is at least the limit.
     LightestAtMode,
 }
 

@@ -22,7 +22,7 @@ impl Comparison {
         table(&rows, &self.labels())
     }
 
-    /// What a star before a number means. `None` for a single front, whose numbers have no star.
+    /// The explanation of the star before a number. `None` for a single front, whose numbers have no star.
     pub(crate) fn star_words(&self) -> Option<&'static str> {
         (self.reach.len() > 1)
             .then_some("A star (*) marks the best value of its column among the compared fronts.")

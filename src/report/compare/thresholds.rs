@@ -115,8 +115,8 @@ fn stops_between(low: f64, high: f64, stops: &[u32]) -> Vec<f64> {
         .collect()
 }
 
-/// From `found`, numbers in ascending order, those nearest to `count` points that are evenly spread from `low` to
-/// `high` on a logarithmic scale.
+/// The numbers among `found`, which are in ascending order, that are nearest to `count` points spread evenly from `low`
+/// to `high` on a logarithmic scale.
 fn spread(found: &[f64], low: f64, high: f64, count: usize) -> Vec<f64> {
     let place = |i: usize| low * libm::pow(high / low, (i as f64 + 0.5) / count as f64);
     let mut out: Vec<f64> = (0..count)

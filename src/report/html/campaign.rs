@@ -47,9 +47,9 @@ pub struct Ranged {
     pub name: String,
     /// Best value of the quantity.
     pub value: f64,
-    /// Lower end of the 95 % interval.
+    /// Lower end of the 95 % interval; `None` if the readings do not bound it.
     pub low: Option<f64>,
-    /// Upper end of the 95 % interval.
+    /// Upper end of the 95 % interval; `None` if the readings do not bound it.
     pub high: Option<f64>,
 }
 
@@ -69,7 +69,7 @@ pub struct Found {
 pub struct Weighed {
     /// Names of the model's effects, or `calibration only`.
     pub model: String,
-    /// Logarithm of the model's evidence, less the logarithm of the evidence of the best model.
+    /// Score of the model: logarithm of its evidence, less the logarithm of the evidence of the best model.
     pub score: f64,
     /// Sum of the squared residuals \[standard deviations squared\].
     pub chi_squared: f64,
@@ -118,7 +118,7 @@ pub struct CampaignPage {
     /// Calibrated factors on nominal values.
     pub calibrated: Vec<Ranged>,
     /// Held-out readings: their number, and the root mean square of their residuals before and after the effects were
-    /// added \[standard deviations\].
+    /// added \[standard deviations\]. `None` if no readings were held out.
     pub kept_out: Option<(usize, f64, f64)>,
     /// Gross errors and wrongly declared standard deviations, in words.
     pub quality: Vec<String>,
@@ -126,9 +126,9 @@ pub struct CampaignPage {
     pub tests: Vec<Test>,
     /// Results of the records against time, one section per joint.
     pub records: Vec<PageSection>,
-    /// The models that the corrected arm could have, if no effect explains the difference.
+    /// The models that the corrected arm could have, if no effect explains the difference; `None` if there are none.
     pub corrected_models: Option<PageSection>,
-    /// How the optimum of the study changes with the corrected arm.
+    /// How the optimum of the study changes with the corrected arm; `None` if no study was run again.
     pub optimum: Option<PageSection>,
     /// Further facts: pairs of name and value.
     pub facts: Vec<(String, String)>,

@@ -424,7 +424,6 @@ fn test(test: &Test) -> Value {
     })
 }
 
-/// One end of an interval as text with `digits` significant digits; "open" if the readings do not bound it.
 #[cfg(test)]
 mod tests {
     use super::*;

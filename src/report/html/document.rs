@@ -20,7 +20,7 @@ pub(crate) struct DocumentPage {
     pub tables: Vec<(String, Table)>,
     /// Facts of the run: pairs of name and value.
     pub facts: Vec<(String, String)>,
-    /// Those facts that differ from run to run, such as how long it took.
+    /// The facts that differ from run to run, such as how long the run took.
     pub timing: Vec<(String, String)>,
 }
 

@@ -298,7 +298,7 @@ fn number_axis(empty: Axis, numbers: &[Option<f64>]) -> Axis {
 
 /// Order of words in which numbers count by value: `CSG-14-100` comes before `CSG-100-50`.
 fn natural(a: &str, b: &str) -> Ordering {
-    // pieces of text, each with the number that follows it
+    // the word as pieces of text, each with the number that follows it
     let pieces = |word: &str| -> Vec<(String, u64)> {
         let (mut out, mut rest) = (Vec::new(), word);
         while !rest.is_empty() {

@@ -212,7 +212,7 @@ impl PickedArm {
                 slides: false,
             })
         });
-        // a joint that slides is where its travel ends
+        // a joint that slides is drawn at the end of its travel
         let slides = self.arm.prismatics().filter_map(|joint| {
             let at = own(&joint.name).last().copied()?;
             Some(Pivot { name: joint.name.clone(), at, axis: None, slides: true })

@@ -23,13 +23,13 @@ const NAMES: [&str; 3] = ["before", "after", "after, pose held out"];
 pub struct Step {
     /// Words that name what the stage adds to the model.
     pub added: String,
-    /// Median error over the poses to which the model was fitted.
+    /// Median error over the poses to which the model was fitted \[mm\].
     pub fitted_median: f64,
-    /// Median error over held-out poses.
+    /// Median error over held-out poses \[mm\].
     pub median: f64,
-    /// Mean error over held-out poses.
+    /// Mean error over held-out poses \[mm\].
     pub mean: f64,
-    /// Largest error over held-out poses.
+    /// Largest error over held-out poses \[mm\].
     pub max: f64,
 }
 

@@ -46,9 +46,10 @@ pub(crate) struct ArmSketch {
     pub tubes: Vec<Tube>,
     /// Joints from base to tip.
     pub pivots: Vec<Pivot>,
-    /// Position of the tip, and its displacement \[m\]. A line joins it with the payload.
+    /// Position of the tip, and its displacement \[m\]. A line joins the tip with the payload. `None` draws no such
+    /// line.
     pub tip: Option<(Place, Place)>,
-    /// Position of the payload's centre, and its displacement \[m\].
+    /// Position of the payload's centre, and its displacement \[m\]; `None` draws no payload.
     pub payload: Option<(Place, Place)>,
     /// The two end points of each spring \[m\].
     pub springs: Vec<(Place, Place)>,
@@ -352,7 +353,8 @@ mod tests {
         let mut arm = sketch();
         let pivot = |name: &str| Pivot { name: name.into(), ..arm.pivots[0].clone() };
         arm.pivots = ["roll", "quill"].map(pivot).to_vec();
-        // the last tube of the drawing ends at x = 1 m, the tip is a quill below it
+        // the last tube of the drawing ends at x = 1 m; the tip is 0.2 m below this end, at the lower end of a vertical
+        // slide
         arm.tip = Some(((1.0, -0.2), (0.0, 0.0)));
         arm.payload = Some(((1.0, -0.4), (0.0, 0.0)));
         let svg = arm.to_svg();
@@ -363,7 +365,7 @@ mod tests {
             .split(['M', 'L', ' ', '"'])
             .filter_map(|w| w.parse().ok())
             .collect();
-        // the line goes down by 0.2 m and not aside
+        // the line to the payload goes down by 0.2 m and not sideways
         assert!(
             numbers.len() >= 4 && (numbers[0] - numbers[2]).abs() < 0.01 && numbers[3] > numbers[1],
             "{numbers:?}"

@@ -122,7 +122,8 @@ impl StackedBars {
         if high > low { (low, high) } else { (0.0, 1.0) }
     }
 
-    /// Draws one bar. Returns the position of its right end.
+    /// Draws one bar at the height `y` \[px\]. `x` converts values to horizontal positions \[px\]. Returns the position
+    /// of the bar's right end \[px\].
     fn bar(&self, out: &mut String, bar: &Bar, y: f64, x: &impl Fn(f64) -> f64) -> f64 {
         let (mut below, mut above) = (0.0, 0.0);
         let whole: f64 = bar.values.iter().sum();
@@ -174,7 +175,7 @@ impl StackedBars {
         text(out, (x + 22.0, y), "start", "", &self.parts[part].name);
     }
 
-    /// The legend in rows that fit the width: index of each part, and horizontal position of its entry.
+    /// The legend in rows that fit the width: index of each part, and horizontal position of its entry \[px\].
     fn legend_rows(&self) -> Vec<Vec<(usize, f64)>> {
         let mut rows: Vec<Vec<(usize, f64)>> = vec![Vec::new()];
         let mut x = 24.0;

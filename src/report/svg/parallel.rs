@@ -45,7 +45,7 @@ pub(crate) struct Parallel {
     pub axes: Vec<ParallelAxis>,
     /// The lines. Those with a name are drawn last and are highlighted.
     pub lines: Vec<ParallelLine>,
-    /// What the colours mean: the style index and the name of each.
+    /// Entries of the legend: the style index of each colour, and what the colour means.
     pub legend: Vec<(usize, String)>,
 }
 
@@ -67,7 +67,7 @@ impl Parallel {
             let ink = ParallelLine { style: 6, ..line.clone() };
             self.draw(&mut out, &ink, &format!("stroke-width=\"2.2\" stroke-dasharray=\"{dashes}\""));
         }
-        // the axes are on top, so that no line strikes through the names of parts
+        // the axes are drawn on top, so that no line strikes through the names of parts
         for (i, axis) in self.axes.iter().enumerate() {
             self.axis(&mut out, axis, x(i));
         }

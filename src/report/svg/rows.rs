@@ -18,7 +18,8 @@ const TOP_PX: f64 = 88.0;
 pub(crate) struct Mark {
     /// Value at which the mark is drawn, in the unit of the axis.
     pub value: f64,
-    /// Ends of the interval around the value. An unknown end is drawn as an arrow at the frame.
+    /// Ends of the interval around the value; `None` for a mark without an interval. An end that is itself `None` is
+    /// unknown and is drawn as an arrow at the frame.
     pub interval: Option<(Option<f64>, Option<f64>)>,
     /// Index of the mark's entry in the legend.
     pub kind: usize,
