@@ -184,12 +184,9 @@ fn publish(
     log: Log,
 ) -> Result<Answer, Failure> {
     let with_designs: Vec<&ChoiceFront> = fronts.iter().filter(|of| !of.front.rows.is_empty()).collect();
+    let is_partial = fronts.iter().any(|of| of.status == Status::Partial.word());
     if with_designs.is_empty() {
-        return Err(Failure::Infeasible(format!(
-            "no choice of springs and counterweights has a design that meets the limits; `armwright run` with one value in \
-             place of each list of {} says which limit ends each",
-            asked.study.name
-        )));
+        return Err(nothing_found(is_partial, &asked.study.name));
     }
     let joint = joint_front(fronts);
     let (comparison, contenders) = compared(dir, &with_designs)?;
@@ -202,6 +199,8 @@ fn publish(
     files.extend(pictures(&comparison, &contenders));
     let left_out = folder.publish(&files)?;
     say_taken(&left_out, log);
+    let written: Vec<&str> =
+        FILES.into_iter().filter(|name| left_out.iter().all(|other| other != name)).collect();
     let sentences = words_of(dir, fronts, &joint);
     let lines = |words: &[String]| words.iter().map(|w| wrap(w, TERMINAL, "")).collect::<String>();
     let text = format!(
@@ -211,10 +210,24 @@ fn publish(
         lines(&comparison.remarks),
         corrections::to_text(&asked.corrections),
         dir.display(),
-        FILES.join(", ")
+        written.join(", ")
     );
-    let is_partial = fronts.iter().any(|of| of.status == Status::Partial.word());
     Ok(Answer { text, exit: if is_partial { Exit::Partial } else { Exit::Done } })
+}
+
+/// The failure of a study named `study` if no choice gave a design: proved, or unproved if the time ended in some choice
+/// (`is_partial`).
+fn nothing_found(is_partial: bool, study: &str) -> Failure {
+    match is_partial {
+        true => Failure::Partial(format!(
+            "no choice of springs and counterweights of {study} gave a design in its share of the time; give more with \
+             --time-limit"
+        )),
+        false => Failure::Infeasible(format!(
+            "no choice of springs and counterweights has a design that meets the limits; `armwright run` with one value in \
+             place of each list of {study} says which limit ends each"
+        )),
+    }
 }
 
 /// The fronts of the choices `fronts` side by side, with the remarks of their results.

@@ -116,9 +116,9 @@ fn everything_that_is_no_fit_is_explained() {
 /// smaller torques, passes.
 #[test]
 fn a_smaller_torque_is_smaller_in_the_duty_that_heats_the_motor_too() {
-    let (gears, motors) = ([hfuc_58_100()], [f11_10()]);
+    let (gears, motors) = ([hfuc_58_100()], [small_motor()]);
     let duty = |factor: f64| StatedDuty {
-        phases: [(900.0, 4.0, 10.0), (700.0, 20.0, 8.0), (0.0, 1.0, 0.0)]
+        phases: [(300.0, 4.0, 10.0), (250.0, 20.0, 8.0), (0.0, 1.0, 0.0)]
             .map(|(nm, time_s, speed_rpm)| StatedPhase { torque_nm: nm * factor, time_s, speed_rpm })
             .to_vec(),
     };

@@ -166,6 +166,15 @@ fn choices_without_a_design_are_said_and_a_study_without_any_is_infeasible() {
 }
 
 #[test]
+fn choices_in_which_the_time_ended_before_a_design_was_found_are_not_said_to_have_none() {
+    let here = tempfile::tempdir().expect("a folder");
+    std::fs::write(here.path().join("study.json"), study(&json!(FORCES_N), &json!(2))).expect("written");
+    let words = ["run", "study.json", "--time-limit", "0.000000001", "--out", "out"];
+    let (code, said) = armwright(here.path(), &words);
+    assert!(code == 10 && said.contains("in its share of the time"), "{code} {said}");
+}
+
+#[test]
 fn verbs_that_take_one_arm_refuse_open_choices_and_faulty_lists_are_named() {
     let here = tempfile::tempdir().expect("a folder");
     let here = here.path();
@@ -175,6 +184,8 @@ fn verbs_that_take_one_arm_refuse_open_choices_and_faulty_lists_are_named() {
     std::fs::write(here.join("out/plots/fronts.svg"), "mine").expect("written");
     let said = run(here, &text, &["--out", "out"]);
     assert!(said.contains("not written: plots/fronts.svg"), "{said}");
+    let (code, said) = armwright(here, &["check", "out"]);
+    assert!(code == 9 && said.contains("not written: plots/fronts.svg"), "{code} {said}");
     let refused = |words: &[&str], part: &str| {
         let (code, said) = armwright(here, words);
         assert!(code != 0 && said.contains(part), "{words:?}: {code} {said}");
