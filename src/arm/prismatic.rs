@@ -130,6 +130,11 @@ impl GuideLimits {
         parts.reduce(|sum, part| sum + part)
     }
 
+    /// Whether any limit is known.
+    pub(crate) fn is_stated(&self) -> bool {
+        self.unknown().len() < LIMIT_KEYS.len()
+    }
+
     /// The keys of the kinds of load for which no limit is known.
     pub(crate) fn unknown(&self) -> Vec<&'static str> {
         let known = [self.force_n, self.moment_nm[0], self.moment_nm[1], self.moment_nm[2]];

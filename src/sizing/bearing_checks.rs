@@ -10,7 +10,7 @@ use crate::catalog::gear::{Gear, GearMass};
 
 /// The four checks of an output bearing: moment while running, static safety at rest, static safety in an emergency
 /// stop, life.
-pub(super) fn bearing_checks(bearing: &Bearing, motion: &JointMotion, demand: &BearingDemand) -> [Check; 4] {
+pub(crate) fn bearing_checks(bearing: &Bearing, motion: &JointMotion, demand: &BearingDemand) -> [Check; 4] {
     let speed_rad_s = motion.mean_speed_rad_s();
     let limits = BearingLimits::of(Some(bearing), speed_rad_s, motion.life_h);
     let ratings = &bearing.ratings;

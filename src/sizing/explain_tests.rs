@@ -1,3 +1,5 @@
+//! Tests of the explanations why no drive, or no lighter drive, holds.
+
 use super::super::testing::{char_lynn_j_8_2, f11_10, hfuc_40_100, hfuc_58_100, motor};
 use super::*;
 use crate::catalog::gear::GearMass;

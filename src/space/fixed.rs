@@ -3,7 +3,7 @@
 //! These checks are for information and exclude no design. A given part may have blank ratings. A check that needs a
 //! blank rating is reported as not checked.
 
-use super::design_space::{DriveChoice, SpacePiece};
+use super::design_space::{DriveChoice, SpaceJoint, SpacePiece};
 use super::problem::{ArmProblem, Partial};
 use super::station::reaches_m;
 use crate::arm::bearing::BearingSource;
@@ -45,10 +45,6 @@ impl ArmProblem<'_> {
         let SpacePiece::Joint(joint) = &space.pieces[piece] else { return None };
         let DriveChoice::Given { mass_kg, .. } = &joint.drive else { return None };
         let (gear, motor) = joint.drive.named_parts(catalogs)?;
-        let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
-        let joints_before =
-            space.pieces[..piece].iter().filter(|p| matches!(p, SpacePiece::Joint(_))).count();
-        let reach_m = reaches_m(space, sizing)[joints_before];
         // The study states a single mass for the drive. This mass shows whether the gear is counted with the mass of a
         // component set or of a housed unit.
         let set_mass_kg = gear.mass_component_set_kg.zip(motor.mass_kg).map(|(g, m)| g + m);
@@ -56,7 +52,7 @@ impl ArmProblem<'_> {
             true => GearMass::ComponentSet,
             false => GearMass::HousedUnit,
         };
-        let (joint_motion, after) = (joint.motion(&space.motion, reach_m), joint.stages.after);
+        let (joint_motion, after) = (self.motion_of(piece, joint), joint.stages.after);
         // With a stage behind the gear, the bearing of the gear is not the bearing of the joint.
         let bearing = if after == Stage::NONE { joint.bearing } else { BearingSource::Stated(None) };
         Some(FixedDrive {
@@ -73,6 +69,15 @@ impl ArmProblem<'_> {
             joint_motion,
             after,
         })
+    }
+
+    /// The motion that the study asks of `joint`, which is piece number `piece` (base to tip).
+    pub(super) fn motion_of(&self, piece: usize, joint: &SpaceJoint) -> JointMotion {
+        let space = self.space();
+        let sizing = space.sizing_cases.iter().map(|&i| &space.cases[i]);
+        let joints_before =
+            space.pieces[..piece].iter().filter(|p| matches!(p, SpacePiece::Joint(_))).count();
+        joint.motion(&space.motion, reaches_m(space, sizing)[joints_before])
     }
 
     /// Demand on the given drive of the joint in `slot` (the number of its place in the arm), at the output of its

@@ -22,6 +22,7 @@ pub(crate) mod fit;
 pub(crate) mod fixed;
 pub(crate) mod full_model;
 pub(crate) mod group;
+pub(crate) mod guide;
 pub(crate) mod joints;
 pub(crate) mod levels;
 pub(crate) mod overload;
@@ -32,6 +33,7 @@ pub(crate) mod problem;
 pub(crate) mod reaction;
 pub(crate) mod slot;
 pub(crate) mod state;
+pub(crate) mod stated_bearing;
 pub(crate) mod station;
 
 pub use design::{Evaluated, evaluate};

@@ -2,7 +2,6 @@
 //! front.
 
 use crate::arm::bearing::BearingSource;
-use crate::arm::transmission::Stage;
 use crate::catalog::Catalogs;
 use crate::report::front_table::FrontTable;
 use crate::report::words::capital;
@@ -36,9 +35,9 @@ impl<L: PartialEq> ByLack<L> {
     }
 }
 
-/// Remarks on the output bearings of the designs of a front, in sentences. They name four kinds of bearings: those that
-/// count as rigid because no stiffness is known; those that lack ratings; those of given drives that cannot be checked
-/// (`is_unnamed`); and those of given drives that are overloaded.
+/// Remarks on the output bearings of the designs of a front, in sentences. They name three kinds of bearings: those that
+/// count as rigid because no stiffness is known; those that lack ratings; and those of drives that are given by the
+/// names of gear and motor and overload them.
 pub(crate) fn bearing_remarks(space: &DesignSpace, catalogs: &Catalogs, front: &FrontTable) -> Vec<String> {
     let joints = || {
         space.pieces.iter().filter_map(|piece| match piece {
@@ -46,30 +45,10 @@ pub(crate) fn bearing_remarks(space: &DesignSpace, catalogs: &Catalogs, front: &
             _ => None,
         })
     };
-    let unnamed: Vec<&str> =
-        joints().filter(|j| is_unnamed(j, catalogs)).map(|joint| joint.name.as_str()).collect();
-    let of_unnamed = (!unnamed.is_empty()).then(|| {
-        format!(
-            "Output bearing not checked in {}: the drive is given without the names of gear and motor, or its gear sits at the motor.",
-            unnamed.join(", ")
-        )
-    });
     let rigid = rigid(joints(), catalogs, front).sentences(|rigid, whose| capital(&rigid.words(whose)));
     let blank = unchecked(joints(), catalogs, front)
         .sentences(|blank, whose| format!("Output {}", blank.words(whose)));
-    rigid
-        .into_iter()
-        .chain(blank)
-        .chain(of_unnamed)
-        .chain(joints().filter_map(|joint| overloaded(joint, front)))
-        .collect()
-}
-
-/// Whether the bearing of a joint with a given drive cannot be checked. That is so if the drive has no names of gear
-/// and motor, or if its gear sits at the motor.
-fn is_unnamed(joint: &SpaceJoint, catalogs: &Catalogs) -> bool {
-    let is_checked = joint.drive.named_parts(catalogs).is_some() && joint.stages.after == Stage::NONE;
-    !joint.drive.is_sized() && !is_checked && joint.bearing.stated().is_some()
+    rigid.into_iter().chain(blank).chain(joints().filter_map(|joint| overloaded(joint, front))).collect()
 }
 
 /// A remark if the output bearing of a given drive is overloaded in some design of the front, which is possible because
@@ -105,7 +84,6 @@ fn unchecked<'s>(
                     }
                 }
             }
-            DriveChoice::Given { .. } if is_unnamed(joint, catalogs) => {}
             DriveChoice::Given { .. } => {
                 let blank = joint.bearing.stated().and_then(BlankRatings::of_stated);
                 blank.into_iter().for_each(|blank| unchecked.add(blank, bearing_of(joint)));

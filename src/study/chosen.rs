@@ -3,10 +3,12 @@
 
 use super::definition::Study;
 use super::gear_remarks::life_remarks;
+use super::guide_remarks::guide_remarks_on;
 use super::joint_obstacle::{first_fit_at, obstacle_at};
 use super::load::{refuse_choices, refuse_empty};
 use super::reaction_remarks::reaction_remark_on;
 use super::refusal::Refusal;
+use super::stated_bearing_remarks::stated_bearing_remarks_on;
 use super::table::sizing_rows;
 use crate::arm::Arm;
 use crate::arm::load::LoadCase;
@@ -59,7 +61,8 @@ pub fn sizing_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Result
 pub struct Sizing {
     /// The joints with a drive from the catalogs, tip first.
     pub rows: Vec<JointSizingRow>,
-    /// Remarks in sentences: on the question, on the lives of the gears, and on what joints hold while others move.
+    /// Remarks in sentences: on the question, on the lives of the gears, on bearings and guides that the study states,
+    /// and on what joints hold while others move.
     pub remarks: Vec<String>,
 }
 
@@ -77,7 +80,10 @@ pub(crate) fn sizing_in(
     let rows = sizing_rows(problem, catalogs, chosen).map_err(|slot| why_not_held(problem, chosen, slot))?;
     let of_lives = life_remarks(rows.iter().map(|row| row.gear.as_str()), catalogs);
     let of_reactions = reaction_remark_on(problem, catalogs, chosen);
-    let remarks = study.remarks.iter().cloned().chain(of_lives).chain(of_reactions).collect();
+    let of_bearings = stated_bearing_remarks_on(problem, catalogs, chosen);
+    let of_guides = guide_remarks_on(problem, chosen);
+    let of_study = study.remarks.iter().cloned();
+    let remarks = of_study.chain(of_lives).chain(of_bearings).chain(of_guides).chain(of_reactions).collect();
     Ok(Sizing { rows, remarks })
 }
 

@@ -8,6 +8,7 @@ use super::given_remarks::GivenDrives;
 use super::guide_remarks::guide_remarks;
 use super::outcome::Front;
 use super::reaction_remarks::reaction_remark;
+use super::stated_bearing_remarks::stated_bearing_remarks;
 use super::table::front_table_with;
 use crate::arm::effect::entry::Effect;
 use crate::catalog::Catalogs;
@@ -29,13 +30,14 @@ pub fn table_and_remarks(
     let table = front_table_with(problem, catalogs, front, |rows| given.take(rows));
     let of_study = study.remarks.iter().cloned();
     let of_bearings = bearing_remarks(&study.space, catalogs, &table);
+    let of_stated = stated_bearing_remarks(problem, catalogs, &table);
     let of_lives = life_remarks_on(&study.space, catalogs, &table);
     let of_play = play_remarks(&study.space, catalogs, &table);
     let of_given = given.remarks(front.len());
     let of_guides = guide_remarks(problem, &table);
     let of_reactions = reaction_remark(problem, catalogs, &table);
     let of_drives = of_lives.into_iter().chain(of_play).chain(of_given).chain(of_reactions);
-    let of_parts = of_bearings.into_iter().chain(of_drives).chain(of_guides);
+    let of_parts = of_bearings.into_iter().chain(of_stated).chain(of_drives).chain(of_guides);
     let remarks = of_study.chain(of_parts).collect();
     (table, remarks)
 }

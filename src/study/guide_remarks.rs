@@ -5,12 +5,12 @@ use crate::arm::Arm;
 use crate::arm::load::LoadCase;
 use crate::arm::prismatic::{GuideLimits, Prismatic};
 use crate::mechanics::GuideLoad;
-use crate::mechanics::chain::Chain;
 use crate::report::front_table::FrontTable;
 use crate::report::number::{percent, significant};
 use crate::report::picks::{designs, picks};
 use crate::space::design::number_of;
 use crate::space::design_space::SpacePiece;
+use crate::space::guide::guide_load;
 use crate::space::problem::ArmProblem;
 
 /// The largest load on one guide.
@@ -56,8 +56,22 @@ struct OnGuide<'s> {
 /// Sentences on the force across the travel and the moment on every guide: the largest of the picks of `front` in the
 /// judged cases.
 pub(super) fn guide_remarks(problem: &ArmProblem, front: &FrontTable) -> Vec<String> {
+    let picks = picks(&designs(front));
+    let picked: Option<Vec<Vec<u32>>> =
+        picks.iter().map(|pick| problem.options_of_whole(number_of(&pick.design.design_id)?)).collect();
+    picked.map_or_else(Vec::new, |picked| sentences(problem, &picked, " of the picks"))
+}
+
+/// Sentences on the loads on every guide in the design with the options `chosen`, one for each level, tip first.
+pub(super) fn guide_remarks_on(problem: &ArmProblem, chosen: &[u32]) -> Vec<String> {
+    sentences(problem, &[chosen.to_vec()], "")
+}
+
+/// Sentences on the largest loads on every guide in these `designs`, given by their options, in the judged cases.
+/// `whose` are words that say which designs they are.
+fn sentences(problem: &ArmProblem, designs: &[Vec<u32>], whose: &str) -> Vec<String> {
     let mut guides = guides(problem);
-    if guides.is_empty() || load_by_picks(&mut guides, problem, front).is_none() {
+    if guides.is_empty() || load_by(&mut guides, problem, designs).is_none() {
         return Vec::new();
     }
     let words = guides.iter().map(|guide| {
@@ -68,7 +82,7 @@ pub(super) fn guide_remarks(problem: &ArmProblem, front: &FrontTable) -> Vec<Str
             guide.in_stop.words()
         )
     });
-    let bear = "Guides bear across their travel, at most in the judged cases of the picks";
+    let bear = format!("Guides bear across their travel, at most in the judged cases{whose}");
     let mut out = vec![format!("{bear}: {}.", words.collect::<Vec<_>>().join("; "))];
     let lacking: Vec<String> = guides.iter().filter_map(OnGuide::unknown).collect();
     if !lacking.is_empty() {
@@ -96,12 +110,12 @@ fn guides<'s>(problem: &'s ArmProblem) -> Vec<OnGuide<'s>> {
     problem.space().pieces.iter().filter_map(guide).collect()
 }
 
-/// Adds the loads of the picks of `front` in the judged cases. `None` if a pick is no design of the problem.
-fn load_by_picks(guides: &mut [OnGuide], problem: &ArmProblem, front: &FrontTable) -> Option<()> {
+/// Adds the loads of the designs with these options in the judged cases. `None` if one of them is no design of the
+/// problem.
+fn load_by(guides: &mut [OnGuide], problem: &ArmProblem, designs: &[Vec<u32>]) -> Option<()> {
     let cases = problem.load_cases();
-    for pick in picks(&designs(front)) {
-        let options = problem.options_of_whole(number_of(&pick.design.design_id)?)?;
-        let arm = problem.arm(&options)?;
+    for options in designs {
+        let arm = problem.arm(options)?;
         for case in &cases {
             guides.iter_mut().try_for_each(|guide| guide.add(&arm, case))?;
         }
@@ -114,38 +128,12 @@ impl OnGuide<'_> {
     /// like an additional gravity in the opposite direction. `None` if the arm has no such guide.
     fn add(&mut self, arm: &Arm, case: &LoadCase) -> Option<()> {
         let limits = &self.joint.guide.limits;
-        self.at_rest = self.at_rest.with(&self.load(arm, case, 0.0)?, limits);
+        self.at_rest = self.at_rest.with(&guide_load(arm, case, &self.joint.name, 0.0)?, limits);
         for acceleration_m_s2 in [-self.deceleration_m_s2, self.deceleration_m_s2] {
-            self.in_stop = self.in_stop.with(&self.load(arm, case, acceleration_m_s2)?, limits);
+            self.in_stop =
+                self.in_stop.with(&guide_load(arm, case, &self.joint.name, acceleration_m_s2)?, limits);
         }
         Some(())
-    }
-
-    /// The load on the guide while everything outboard has this acceleration along the travel; `None` if the arm has no
-    /// such guide.
-    fn load(&self, arm: &Arm, case: &LoadCase, acceleration_m_s2: f64) -> Option<GuideLoad> {
-        let mut structure = arm.structure_in(case);
-        let of_guide = |structure: &_| {
-            let statics = Chain::new(structure, case.links).pose(case).statics();
-            statics.guide_loads.into_iter().find(|load| load.name == self.joint.name)
-        };
-        let at_rest = of_guide(&structure)?;
-        if acceleration_m_s2 == 0.0 {
-            return Some(at_rest);
-        }
-        // The inertia load is the difference between two computations without water. Buoyancy must not change with the
-        // acceleration, and added mass is left out.
-        structure.water = None;
-        let dry = of_guide(&structure)?;
-        let gravity = structure.down * structure.gravity_m_s2 - at_rest.travel * acceleration_m_s2;
-        structure.gravity_m_s2 = gravity.norm();
-        structure.down = gravity.try_normalize(0.0).unwrap_or(structure.down);
-        let stopped = of_guide(&structure)?;
-        Some(GuideLoad {
-            force_n: at_rest.force_n + stopped.force_n - dry.force_n,
-            moment_nm: at_rest.moment_nm + stopped.moment_nm - dry.moment_nm,
-            ..at_rest
-        })
     }
 
     /// The keys that would state what the guide holds, in words; `None` if all are stated.

@@ -65,6 +65,7 @@ pub(crate) mod search_cost;
 pub(crate) mod search_method;
 pub(crate) mod sections;
 pub(crate) mod shards;
+mod stated_bearing_remarks;
 pub(crate) mod table;
 pub(crate) mod ties;
 pub(crate) mod tolerance;

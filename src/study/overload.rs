@@ -22,9 +22,8 @@ pub(super) fn overload(
     cases: &[usize],
 ) -> Option<Overload> {
     let problem = ArmProblem::new(space, catalogs);
-    problem.overload(options, cases, catalogs).map(|(piece, check)| {
+    problem.overload(options, cases, catalogs).map(|(piece, fails)| {
         let piece = space.pieces.get(piece).map_or("", SpacePiece::name).to_string();
-        let check = check.map_or("link stress", |check| check.kind.label()).to_string();
-        Overload { piece, check }
+        Overload { piece, check: fails.label().to_string() }
     })
 }
