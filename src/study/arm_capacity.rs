@@ -1,10 +1,10 @@
 //! The payloads that the arm of an arm file holds at rest, in each pose: with such a payload no joint exceeds its
-//! torque or force limit, and no output bearing its load limits.
+//! torque or force limit, and no output bearing or guide its load limits.
 //!
 //! An arm file says nothing of motion and duty, so only static loads are judged. The payload keeps the centre of
 //! gravity that the case states. Torques and forces are affine in the mass of the payload: |a + b m| <= limit is an
-//! interval of masses. An output bearing is limited by its permissible moment and by its static safety at rest, if it
-//! has these ratings.
+//! interval of masses. An output bearing is limited by its permissible moment and by its static safety at rest, a guide
+//! by the force and the moments that it holds, as far as the file states them.
 
 use super::capacity::{AtPose, Capacity, reach_m};
 use super::import_ranges::beyond_ranges;
@@ -13,16 +13,17 @@ use super::overload::Overload;
 use super::refusal::Refusal;
 use super::window::{Limit, MOST_KG, Window, window_around};
 use crate::arm::load::{LoadCase, read_load_cases};
-use crate::arm::{Arm, Bearing};
+use crate::arm::prismatic::GuideLimits;
+use crate::arm::{Arm, Bearing, Element};
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::mechanics::chain::Chain;
-use crate::mechanics::statics::JointLoad;
+use crate::mechanics::statics::{JointLoad, Statics};
 use crate::sizing::bearing::BearingLimits;
 use crate::space::bearing_loads::{at_centre, bearings_of};
 
 /// The remark that says what is checked and what is not.
-const AT_REST: &str = "Torques, forces and output bearings are judged at rest, as far as their limits are known. Motion, heat and strength are not checked.";
+const AT_REST: &str = "Torques, forces, output bearings and guides are judged at rest, as far as their limits are known. Motion, heat and strength are not checked.";
 
 /// The remark on an arm for which no cases are given.
 const ONE_POSE: &str = "Only one pose was judged: every joint at zero, the payload at the tip. Give your poses with --cases FILE.";
@@ -56,7 +57,7 @@ pub fn capacity_of_arm(
         Some(file) => read_limits(file, arm)?,
         None => limits_of_parts(arm, catalogs),
     };
-    if limits.is_empty() && !has_rated_bearings(arm) {
+    if limits.is_empty() && !has_rated_bearings(arm) && guides_of(arm).next().is_none() {
         return Err(Refusal::Unknown(format!(
             "nothing is known of the torques and forces that the joints of {} may bear: give --limits FILE with {}, or name gears and \
              motors of the catalogs in the arm file",
@@ -72,7 +73,7 @@ pub fn capacity_of_arm(
 }
 
 /// The payloads that an arm holds at rest, in each of its cases and in all of them, with which no joint exceeds its
-/// limit in `limits` and no output bearing exceeds its ratings.
+/// limit in `limits`, and no output bearing and no guide exceeds its ratings.
 fn arm_capacity(arm: &Arm, cases: &[LoadCase], limits: &[LoadLimit]) -> Capacity {
     let table: Vec<AtPose> = cases
         .iter()
@@ -93,12 +94,15 @@ fn arm_capacity(arm: &Arm, cases: &[LoadCase], limits: &[LoadLimit]) -> Capacity
         .filter(|name| limits.iter().all(|limit| limit.joint != *name))
         .collect();
     let remark = (!unjudged.is_empty()).then(|| {
-        format!("No limit is known of these joints, which are not judged: {}.", unjudged.join(", "))
+        format!(
+            "No largest torque or force is known of these joints, whose drives are not judged: {}.",
+            unjudged.join(", ")
+        )
     });
     Capacity::new(all, table, remark.into_iter().collect())
 }
 
-/// The payloads that an arm holds at rest in one case, limited by its joints and by its output bearings.
+/// The payloads that an arm holds at rest in one case, limited by its joints, its output bearings and its guides.
 fn held_payloads(arm: &Arm, case: &LoadCase, limits: &[LoadLimit]) -> Window {
     let chain = Chain::new(&arm.structure_in(case), case.links);
     let loads = |payload_kg: f64| {
@@ -115,8 +119,8 @@ fn held_payloads(arm: &Arm, case: &LoadCase, limits: &[LoadLimit]) -> Window {
     if !of_joints.holds() {
         return of_joints;
     }
-    let of_bearings = held_by_bearings(arm, case, of_joints.least.payload_kg, of_joints.most.payload_kg);
-    of_joints.and(of_bearings)
+    let of_supports = held_by_supports(arm, case, of_joints.least.payload_kg, of_joints.most.payload_kg);
+    of_joints.and(of_supports)
 }
 
 /// The payloads m \[kg\] with |`empty` + `per_kg` m| <= the limit of a joint. `empty` is the load on the joint without
@@ -165,23 +169,41 @@ fn has_rated_bearings(arm: &Arm) -> bool {
     })
 }
 
-/// The payloads from `least_kg` to `most_kg` with which all output bearings pass their checks at rest in a case. The
-/// loads on bearings are norms of forces and moments, which are affine in the payload's mass. So the loads are convex
-/// functions of this mass, and their smallest values are found by narrowing an interval.
-fn held_by_bearings(arm: &Arm, case: &LoadCase, least_kg: f64, most_kg: f64) -> Window {
+/// The guides of an arm of which the file states what they hold, by the names of their prismatic joints.
+fn guides_of(arm: &Arm) -> impl Iterator<Item = (&str, &GuideLimits)> {
+    arm.chain.iter().filter_map(|element| match element {
+        Element::Prismatic(rail) if rail.guide.limits.is_stated() => {
+            Some((rail.name.as_str(), &rail.guide.limits))
+        }
+        _ => None,
+    })
+}
+
+/// The largest part of what an output bearing or a guide of `arm` holds that the loads of `statics` use up, with the
+/// name of its joint and of the check; 1 if all of it is used. `None` if no bearing and no guide is rated.
+fn most_used<'a>(arm: &'a Arm, statics: &Statics) -> Option<(f64, &'a str, &'static str)> {
+    let loads = statics.joint_torques_nm.iter().zip(&statics.bearing_loads);
+    let of_bearings = bearings_of(arm).flat_map(|(joint, bearing)| {
+        let load = loads.clone().find(|((name, _), _)| name == joint).map(|(_, load)| uses(&bearing, load));
+        load.into_iter().flatten().map(move |(part, check)| (part, joint, check))
+    });
+    let of_guides = guides_of(arm).filter_map(|(joint, limits)| {
+        let load = statics.guide_loads.iter().find(|load| load.name == joint)?;
+        Some((limits.part_used(&load.force_n, &load.moment_nm)?, joint, "guide at rest"))
+    });
+    of_bearings.chain(of_guides).max_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// The payloads from `least_kg` to `most_kg` with which all output bearings and guides hold at rest in a case. The loads
+/// on bearings are norms of forces and moments, and those on guides are sums of magnitudes, of numbers that are affine in
+/// the payload's mass. So the loads are convex functions of this mass, and their smallest values are found by narrowing
+/// an interval.
+fn held_by_supports(arm: &Arm, case: &LoadCase, least_kg: f64, most_kg: f64) -> Window {
     let chain = Chain::new(&arm.structure_in(case), case.links);
-    let bearings: Vec<(&str, Bearing)> = bearings_of(arm).collect();
     let worst = |payload_kg: f64| {
         let mut loaded = case.clone();
         loaded.payload.mass_kg = payload_kg;
-        let statics = chain.pose(&loaded).statics();
-        let loads = statics.joint_torques_nm.iter().zip(&statics.bearing_loads);
-        loads
-            .filter_map(|((name, _), load)| Some((bearings.iter().find(|(joint, _)| joint == name)?, load)))
-            .flat_map(|((joint, bearing), load)| {
-                uses(bearing, load).map(|(part, check)| (part, *joint, check))
-            })
-            .max_by(|a, b| a.0.total_cmp(&b.0))
+        most_used(arm, &chain.pose(&loaded).statics())
     };
     let overload = |payload_kg: f64| {
         let failing = worst(payload_kg).filter(|(part, ..)| *part > 1.0);
@@ -312,5 +334,20 @@ mod tests {
         assert!((least.payload_kg - (9.0 - 40.0 / 9.81)).abs() < 1e-9, "{found:?}");
         assert!((most.payload_kg - (9.0 + 40.0 / 9.81)).abs() < 1e-9, "{found:?}");
         assert_eq!(least.check, "bearing moment");
+    }
+
+    #[test]
+    fn a_guide_ends_what_a_column_holds() {
+        // the overhang of 0.7 m tilts the carriage by 9.81 (0.7 m + 4 * 0.35) about the pitch axis, and 40 N m are held
+        let found = found(
+            r#"[{"type": "prismatic", "name": "z", "axis": [0, 0, 1], "stiffness_n_per_m": null,
+              "guide": {"max_roll_nm": 40, "max_pitch_nm": 40, "max_yaw_nm": 40}},
+            {"type": "link", "name": "boom", "vector_m": [0.7, 0, 0], "mass_kg": 4}]"#,
+            r#"[{"name": "low", "pose": {"z_mm": 0}}]"#,
+            r#"{"joints": [{"name": "z", "max_force_n": 2000}]}"#,
+        );
+        let most = &found.window.most;
+        assert!((most.payload_kg - (40.0 / 9.81 - 4.0 * 0.35) / 0.7).abs() < 1e-9, "{found:?}");
+        assert_eq!((most.piece.as_str(), most.check.as_str()), ("z", "guide at rest"));
     }
 }
