@@ -9,7 +9,7 @@ use crate::report::whole_file::folder_of;
 use crate::report::words::{TERMINAL, wrap};
 use crate::study::arm_capacity::{capacity_of_arm, is_arm_file};
 use crate::study::capacity::{AtPose, Capacity, capacity_of};
-use crate::study::largest_speed::LargestSpeed;
+use crate::study::largest_speed::{LargestSpeed, OwnSpeed};
 use crate::study::load::load_study;
 use crate::study::window::{Limit, Window};
 use clap::Args;
@@ -24,12 +24,12 @@ use std::path::{Path, PathBuf};
     after_help = "Example: armwright capacity light-arm\n         armwright capacity my-study.json --design 2f --json\n         \
                         armwright capacity ur5e/arm.json --cases poses.json\n\n\
                         The drives are those of the design at the study's own payload; the payload keeps its centre and moments. Poses that \
-                        state a payload of their own keep it. The largest speed is that of the tip with the study's payload; joints are faster by \
+                        state a payload of their own keep it. The largest speed is that of the tip with the study's payload, if the speed of some joint follows from it; joints are faster by \
                         the same factor, and the times of the cycle are those of the study. \
                         An arm with springs or counterweights may need a smallest payload, which is then named too.\n\n\
                         An arm file states no motion. Therefore only static torques are checked, and forces of prismatic joints. \
                         The limits come from --limits, else from import.json in its folder, else from the catalog's gears and motors. \
-                        Output bearings are judged at rest by their ratings.\n\n\
+                        Output bearings and guides are judged at rest by their ratings.\n\n\
                         The reach is the distance of the tip from the base: across gravity for an arm that stands or hangs (gravity along \
                         its z axis), the whole distance for any other, such as an arm on a wall."
 )]
@@ -191,13 +191,27 @@ fn to_text(name: &str, found: &Capacity) -> String {
 
 /// The sentence on the largest speed with the payload of the study.
 fn fastest(speed: &LargestSpeed) -> String {
+    let own = |own: &OwnSpeed| {
+        let unit = if own.slides { "m/s" } else { "rad/s" };
+        format!("{} at {} {unit}", own.joint, significant(own.speed, 4))
+    };
+    let own: Vec<String> = speed.own_speeds.iter().map(own).collect();
+    let own = own.join(", ");
+    let factor = significant(speed.factor, 4);
+    let how_fast = match speed.tip_speed_m_s {
+        Some(tip_m_s) => {
+            let own =
+                if own.is_empty() { own } else { format!(" (and joints with a speed of their own: {own})") };
+            format!(
+                "the tip may move at {} m/s{own}, {factor} times what the study asks",
+                significant(tip_m_s, 4)
+            )
+        }
+        None => format!("joints may move {factor} times as fast as the study asks ({own})"),
+    };
     let words = format!(
-        "With the payload of the study the tip may move at {} m/s, {} times what the study asks, in ramps of the same duration; \
-         more is too fast for {} (check: {}).",
-        significant(speed.tip_speed_m_s, 4),
-        significant(speed.factor, 4),
-        speed.joint,
-        speed.check
+        "With the payload of the study {how_fast}, in ramps of the same duration; more is too fast for {} (check: {}).",
+        speed.joint, speed.check
     );
     format!("\n{}", wrap(&words, TERMINAL, ""))
 }

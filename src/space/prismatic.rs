@@ -16,20 +16,8 @@ pub struct RailDrive {
     pub gears: Vec<Gear>,
     /// The motors to choose from.
     pub motors: DriveFilter,
-    /// Largest speed that the study asks of the joint \[m/s\]; `None` if it is the speed of the tip.
-    pub max_speed_m_s: Option<f64>,
     /// Whether a brake holds the joint at rest, so that the motor does not need a holding force.
     pub has_brake: bool,
-}
-
-impl RailDrive {
-    /// The motion of the joint, with metres in the place of radians. All masses that the joint moves have the same
-    /// acceleration, so Eq 8 of docs/model.md (the force of linear acceleration) gives exactly mass times acceleration.
-    pub(crate) fn motion(&self, asked: &MotionRequirement) -> JointMotion {
-        let speed_m_s = self.max_speed_m_s.unwrap_or(asked.tip_speed_m_s);
-        let motion = along_its_way(asked, speed_m_s).with_linear_reading(LinearReading::Exact);
-        motion.of_joint(Some(speed_m_s), self.has_brake, None)
-    }
 }
 
 /// The motion of a joint that slides, with metres in the place of radians. The tip moves as far as the joint does, so
@@ -45,6 +33,8 @@ pub struct SpacePrismatic {
     pub joint: Prismatic,
     /// Smallest and largest travel \[mm\]; `None` if the study does not state them.
     pub range_mm: Option<[f64; 2]>,
+    /// Largest speed that the study asks of the joint \[m/s\]; `None` if it is the speed of the tip.
+    pub max_speed_m_s: Option<f64>,
     /// How the drive is sized; `None` if the drive is given, with its stiffness in `joint`.
     pub drive: Option<RailDrive>,
     /// All masses that stay where the joint begins.
@@ -56,16 +46,19 @@ pub struct SpacePrismatic {
 impl SpacePrismatic {
     /// A prismatic joint. `range_mm` is its smallest and largest travel \[mm\].
     pub fn new(joint: Prismatic, range_mm: Option<[f64; 2]>) -> Self {
-        let mut out = Self { joint, range_mm, drive: None, staying: Vec::new(), travelling: Vec::new() };
+        let (staying, travelling) = (Vec::new(), Vec::new());
+        let mut out = Self { joint, range_mm, max_speed_m_s: None, drive: None, staying, travelling };
         out.collect_bodies();
         out
     }
 
-    /// The motion of the joint, with metres in the place of radians: that of its sized drive, or that of the tip if the
-    /// drive is given.
+    /// The motion of the joint, with metres in the place of radians. All masses that the joint moves have the same
+    /// acceleration, so Eq 8 of docs/model.md (the force of linear acceleration) gives exactly mass times acceleration.
     pub(crate) fn motion(&self, asked: &MotionRequirement) -> JointMotion {
-        let sized = self.drive.as_ref().map(|drive| drive.motion(asked));
-        sized.unwrap_or_else(|| along_its_way(asked, asked.tip_speed_m_s))
+        let speed_m_s = self.max_speed_m_s.unwrap_or(asked.tip_speed_m_s);
+        let has_brake = self.drive.as_ref().is_some_and(|drive| drive.has_brake);
+        let motion = along_its_way(asked, speed_m_s).with_linear_reading(LinearReading::Exact);
+        motion.of_joint(Some(speed_m_s), has_brake, None)
     }
 
     /// Deceleration of the joint in an emergency stop \[m/s²\], at least its acceleration in the ramps.

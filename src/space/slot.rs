@@ -232,7 +232,7 @@ pub(crate) fn rail_slot<'c>(
         ratios: None,
         ..drive.motors.clone()
     };
-    let motion = drive.motion(&space.motion);
+    let motion = slide.motion(&space.motion);
     let table = DriveTable::build(&slide.joint.name, motion, &filter, &drive.gears, &catalogs.motors);
     let law = |i: usize| {
         let joint = slide.driven_by(table.drive(i).gear);

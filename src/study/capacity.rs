@@ -14,6 +14,7 @@ use super::chosen::{chosen_design, why_not_held};
 use super::definition::Study;
 use super::largest_speed::{LargestSpeed, largest_speed};
 use super::overload::{Overload, overload};
+use super::reaction_remarks::reaction_remark_on;
 use super::refusal::Refusal;
 use super::window::{Window, window_around};
 use crate::arm::Arm;
@@ -113,6 +114,12 @@ pub fn capacity_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Resu
     found.largest_speed = largest_speed(&problem, arm.slot_options(), catalogs);
     found.remarks.extend(duty_remark(&space));
     found.remarks.extend(unjudged_remark(&problem, catalogs));
+    let loaded = loaded(&space, &study.own_payloads, found.window.most.payload_kg);
+    found.remarks.extend(loaded.and_then(|loaded| {
+        let problem = ArmProblem::new(&loaded, catalogs);
+        let whose = "in the sizing cases with the largest payload";
+        reaction_remark_on(&problem, catalogs, &chosen, whose)
+    }));
     let built = problem.arm_of(&arm);
     found.remarks.extend(built.and_then(|built| limits_remark(&space, &built, &study.own_payloads)));
     Ok(found)
@@ -143,6 +150,16 @@ fn capacity(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], own: &[us
     };
     let table = loaded.iter().map(at_pose).collect();
     Capacity::new(window(&space.sizing_cases, &loaded), table, remarks)
+}
+
+/// The space with this payload \[kg\] in all cases but those with the indices `own`, which state a payload of their own;
+/// in all cases if every one does. `None` if no payload is the largest.
+fn loaded(space: &DesignSpace, own: &[usize], payload_kg: f64) -> Option<DesignSpace> {
+    let mut loaded = space.clone();
+    let all_own = own.len() == loaded.cases.len();
+    let varied = loaded.cases.iter_mut().enumerate().filter(|(case, _)| all_own || !own.contains(case));
+    varied.for_each(|(_, case)| case.payload.mass_kg = payload_kg);
+    payload_kg.is_finite().then_some(loaded)
 }
 
 /// A sentence that names the drives that are not judged; `None` if there are none. A given drive is not judged if the

@@ -79,7 +79,7 @@ pub(crate) fn sizing_in(
 ) -> Result<Sizing, Refusal> {
     let rows = sizing_rows(problem, catalogs, chosen).map_err(|slot| why_not_held(problem, chosen, slot))?;
     let of_lives = life_remarks(rows.iter().map(|row| row.gear.as_str()), catalogs);
-    let of_reactions = reaction_remark_on(problem, catalogs, chosen);
+    let of_reactions = reaction_remark_on(problem, catalogs, chosen, "in the sizing cases");
     let of_bearings = stated_bearing_remarks_on(problem, catalogs, chosen);
     let of_guides = guide_remarks_on(problem, chosen);
     let of_study = study.remarks.iter().cloned();

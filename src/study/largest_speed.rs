@@ -16,34 +16,87 @@ use serde_json::{Value, json};
 pub struct LargestSpeed {
     /// Ratio of the largest speed to the speed that the study asks for, the same for the tip and for every joint.
     pub factor: f64,
-    /// The study's speed of the tip times this ratio \[m/s\].
-    pub tip_speed_m_s: f64,
+    /// The study's speed of the tip times this ratio \[m/s\]. `None` if every joint has a speed of its own, so that none
+    /// follows from the speed of the tip.
+    pub tip_speed_m_s: Option<f64>,
+    /// The joints for which the study states a speed, base to tip, with this speed times the ratio.
+    pub own_speeds: Vec<OwnSpeed>,
     /// Name of the joint that fails beyond this speed.
     pub joint: String,
     /// Label of the check that fails beyond this speed.
     pub check: String,
 }
 
+/// The speed of a joint for which the study states a speed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OwnSpeed {
+    /// Name of the joint.
+    pub joint: String,
+    /// Speed \[rad/s\], or \[m/s\] of a rail.
+    pub speed: f64,
+    /// Whether the joint is a rail.
+    pub slides: bool,
+}
+
 impl LargestSpeed {
     pub(super) fn to_json(&self) -> Value {
-        json!({"factor": self.factor, "tip_speed_m_s": self.tip_speed_m_s, "joint": self.joint, "check": self.check})
+        let own = |own: &OwnSpeed| {
+            let key = if own.slides { "max_speed_m_s" } else { "max_speed_rad_s" };
+            json!({"joint": own.joint, key: own.speed})
+        };
+        let own_speeds: Vec<Value> = self.own_speeds.iter().map(own).collect();
+        json!({"factor": self.factor, "tip_speed_m_s": self.tip_speed_m_s, "own_speeds": own_speeds,
+            "joint": self.joint, "check": self.check})
     }
 }
 
 /// The largest speed at which the design with these options holds the study's payloads in all sizing cases; `None` if
-/// it does not hold them even at the study's speed, or if no speed is too large.
+/// it does not hold them even at the study's speed, if no speed is too large, or if duties in numbers state all speeds.
 pub(super) fn largest_speed(
     problem: &ArmProblem,
     options: &[u32],
     catalogs: &Catalogs,
 ) -> Option<LargestSpeed> {
     let (space, options) = with_these_drives(problem, options);
+    let own_speeds: Vec<OwnSpeed> = space.pieces.iter().filter_map(own_speed).collect();
+    let follows_the_tip = space.pieces.iter().any(follows_the_tip);
+    if own_speeds.is_empty() && !follows_the_tip {
+        return None;
+    }
     let too_fast = |factor: f64| overload(&hastened(&space, factor), catalogs, &options, &space.sizing_cases);
     if too_fast(1.0).is_some() {
         return None;
     }
     let (factor, Overload { piece, check }) = largest_held(1.0, &too_fast)?;
-    Some(LargestSpeed { factor, tip_speed_m_s: factor * space.motion.tip_speed_m_s, joint: piece, check })
+    Some(LargestSpeed {
+        factor,
+        tip_speed_m_s: follows_the_tip.then(|| factor * space.motion.tip_speed_m_s),
+        own_speeds: own_speeds.into_iter().map(|own| OwnSpeed { speed: factor * own.speed, ..own }).collect(),
+        joint: piece,
+        check,
+    })
+}
+
+/// The speed that the study states for a joint or a rail; `None` if it states none, or for any other piece.
+fn own_speed(piece: &SpacePiece) -> Option<OwnSpeed> {
+    let (speed, slides) = match piece {
+        SpacePiece::Joint(joint) => (joint.max_speed_rad_s?, false),
+        SpacePiece::Prismatic(rail) => (rail.max_speed_m_s?, true),
+        SpacePiece::Link(_) | SpacePiece::Choice(_) => return None,
+    };
+    Some(OwnSpeed { joint: piece.name().to_string(), speed, slides })
+}
+
+/// Whether the speed of a joint follows from the study's speed of the tip. It does not where the joint turns with
+/// another one, or where the study states its speed or its duty.
+fn follows_the_tip(piece: &SpacePiece) -> bool {
+    match piece {
+        SpacePiece::Joint(joint) => {
+            joint.coupled.is_none() && joint.duty.is_none() && joint.max_speed_rad_s.is_none()
+        }
+        SpacePiece::Prismatic(rail) => rail.max_speed_m_s.is_none(),
+        SpacePiece::Link(_) | SpacePiece::Choice(_) => false,
+    }
 }
 
 /// A copy of the problem's space in which each joint may have only its drive in `options`, and the options of the same
@@ -83,9 +136,7 @@ fn hastened(space: &DesignSpace, factor: f64) -> DesignSpace {
     for piece in &mut out.pieces {
         let own = match piece {
             SpacePiece::Joint(joint) => joint.max_speed_rad_s.as_mut(),
-            SpacePiece::Prismatic(joint) => {
-                joint.drive.as_mut().and_then(|drive| drive.max_speed_m_s.as_mut())
-            }
+            SpacePiece::Prismatic(rail) => rail.max_speed_m_s.as_mut(),
             SpacePiece::Link(_) | SpacePiece::Choice(_) => None,
         };
         own.into_iter().for_each(|speed| *speed *= factor);

@@ -89,7 +89,7 @@ pub use effects::{CorrectedStudy, Correction, apply_corrections, corrections_jso
 pub use exact_shards::{exact_shard, fronts_of, joined_exactly};
 pub use front_remarks::{caveats_on, effects_json, judged_cases, table_and_remarks};
 pub use keys::STUDY_FILE;
-pub use largest_speed::LargestSpeed;
+pub use largest_speed::{LargestSpeed, OwnSpeed};
 pub use load::{load_study, refuse_empty};
 pub use named::{NAMED, list, named, names};
 pub use near::{NO_NEAR, NearFront, near_front};

@@ -19,7 +19,7 @@ use crate::space::problem::ArmProblem;
 use crate::verify::judge::Pick;
 use crate::verify::question::{
     AllowedParts, AskedDrive, AskedDutyPhase, AskedFit, AskedJoint, AskedLink, AskedMotion, AskedPhase,
-    AskedPhaseKind, AskedPiece, AskedStage, AskedTube, Limits, LinearTorque, Question,
+    AskedPhaseKind, AskedPiece, AskedRail, AskedStage, AskedTube, Limits, LinearTorque, Question,
 };
 
 /// The question of a study for the verifier, without anything that a search computed.
@@ -42,7 +42,10 @@ pub fn question(space: &DesignSpace) -> Question {
 fn piece(piece: &SpacePiece) -> AskedPiece {
     match piece {
         SpacePiece::Joint(joint) => AskedPiece::Joint(asked_joint(joint)),
-        SpacePiece::Prismatic(slide) => AskedPiece::Prismatic(slide.joint.clone()),
+        SpacePiece::Prismatic(slide) => AskedPiece::Prismatic(AskedRail {
+            joint: slide.joint.clone(),
+            max_speed_m_s: slide.max_speed_m_s,
+        }),
         SpacePiece::Link(link) => AskedPiece::Link(link.clone()),
         SpacePiece::Choice(choice) => AskedPiece::Choice(asked_link(choice)),
     }

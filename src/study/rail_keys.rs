@@ -29,7 +29,6 @@ pub(super) static PRISMATIC: Shape = Shape::new(
         Rule::Needs("drives", &["drive"]),
         Rule::Needs("screws", &["drive"]),
         Rule::Needs("racks", &["drive"]),
-        Rule::Needs("max_speed_m_s", &["drive"]),
         Rule::Needs("brake", &["drive"]),
     ],
 );

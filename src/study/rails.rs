@@ -10,7 +10,7 @@ use crate::sizing::rail::{Ends, Rack, Screw};
 use crate::space::prismatic::RailDrive;
 
 /// Keys of a prismatic joint that need a drive which is sized.
-const OF_SIZED: [&str; 5] = ["drives", "screws", "racks", "max_speed_m_s", "brake"];
+const OF_SIZED: [&str; 4] = ["drives", "screws", "racks", "brake"];
 
 /// Reads how the drive of a prismatic joint is sized. The inner `None` means that the study gives the drive, the outer
 /// `None` that a fault was recorded.
@@ -47,7 +47,6 @@ pub(super) fn read_rail_drive(
     let screws = object.or("screws", Vec::new(), |n| all(n, read_screw));
     let racks = object.or("racks", Vec::new(), |n| all(n, read_rack));
     let drives = object.or("drives", usual.clone(), |n| read_drives(n, catalogs));
-    let max_speed_m_s = object.or("max_speed_m_s", None, |n| n.positive().map(Some));
     let has_brake = object.or("brake", false, Node::boolean);
     is_first_fit?;
     let gears: Vec<Gear> = screws?.into_iter().chain(racks?).collect();
@@ -63,12 +62,7 @@ pub(super) fn read_rail_drive(
             "give every screw and rack a name of its own",
         );
     }
-    Some(Some(RailDrive {
-        gears,
-        motors: drives?.filter,
-        max_speed_m_s: max_speed_m_s?,
-        has_brake: has_brake?,
-    }))
+    Some(Some(RailDrive { gears, motors: drives?.filter, has_brake: has_brake? }))
 }
 
 fn all(node: &Node, read: impl Fn(&Node) -> Option<Gear>) -> Option<Vec<Gear>> {

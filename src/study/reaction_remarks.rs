@@ -142,13 +142,15 @@ fn sentence(all: Vec<Held>, whose: &str) -> Option<String> {
     Some(format!("Drives are sized for the motion of their own joint. {main}{blank}"))
 }
 
-/// The remark on the reactions in one design, whose options are `chosen`; `None` if there is nothing to say.
+/// The remark on the reactions in one design, whose options are `chosen`; `None` if there is nothing to say. `whose` are
+/// words that say which cases were examined.
 pub(super) fn reaction_remark_on(
     problem: &ArmProblem,
     catalogs: &Catalogs,
     chosen: &[u32],
+    whose: &str,
 ) -> Option<String> {
-    sentence(held(problem, catalogs, chosen)?, "in the sizing cases")
+    sentence(held(problem, catalogs, chosen)?, whose)
 }
 
 /// The remark on the reactions in the picks of a front; `None` if there is nothing to say.

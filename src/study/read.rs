@@ -457,12 +457,14 @@ fn read_space_prismatic(node: &Node, open: &Open) -> Option<SpacePrismatic> {
     }
     let object = node.shaped(&PRISMATIC)?;
     let range_mm = object.or("range_mm", None, |n| read_range(n).map(Some));
+    let max_speed_m_s = object.or("max_speed_m_s", None, |n| n.positive().map(Some));
     let drive = read_rail_drive(&object, open.drives, open.catalogs);
     let joint = match object.has("drive") {
         true => Prismatic::read_undriven(&object),
         false => Prismatic::read(&object),
     };
-    Some(SpacePrismatic { drive: drive?, ..SpacePrismatic::new(joint?, range_mm?) })
+    let rail = SpacePrismatic::new(joint?, range_mm?);
+    Some(SpacePrismatic { max_speed_m_s: max_speed_m_s?, drive: drive?, ..rail })
 }
 
 /// Whether the bearing of a joint is the stated one or the one of its gear. A component set has no bearing, so a joint

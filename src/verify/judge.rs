@@ -182,7 +182,7 @@ impl<'q> Judge<'q> {
         let mut joints = self.offers.iter();
         let element = |(piece, pick): (&AskedPiece, &Pick)| match piece {
             AskedPiece::Joint(joint) => self.joint(joint, joints.next()?, pick),
-            AskedPiece::Prismatic(joint) => Some(Element::Prismatic(joint.clone())),
+            AskedPiece::Prismatic(rail) => Some(Element::Prismatic(rail.joint.clone())),
             AskedPiece::Link(link) => Some(Element::Link(link.clone())),
             AskedPiece::Choice(choice) => Some(Element::Link(choice.with_tube(tube_of(choice, pick)?))),
         };

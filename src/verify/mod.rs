@@ -70,6 +70,6 @@ pub use missing::{Looked, conditions};
 pub use parts_box::PartsBox;
 pub use question::{
     AllowedParts, AskedDrive, AskedDutyPhase, AskedJoint, AskedLink, AskedMotion, AskedPhase, AskedPhaseKind,
-    AskedPiece, AskedTube, Limits, LinearTorque, Question,
+    AskedPiece, AskedRail, AskedTube, Limits, LinearTorque, Question,
 };
 pub use settings::Settings;

@@ -45,13 +45,22 @@ pub struct Question {
     pub effects: Vec<Effect>,
 }
 
+/// A prismatic joint (rail) whose numbers the study gives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AskedRail {
+    /// Stiffness, guide, masses and axis of the joint.
+    pub joint: Prismatic,
+    /// Largest speed \[m/s\]; `None` if it is the speed of the tip.
+    pub max_speed_m_s: Option<f64>,
+}
+
 /// One piece of the chain.
 #[derive(Debug, Clone, PartialEq)]
 pub enum AskedPiece {
     /// A joint that turns.
     Joint(AskedJoint),
-    /// A prismatic joint. The study gives all of its numbers.
-    Prismatic(Prismatic),
+    /// A prismatic joint (rail). The study gives all of its numbers.
+    Prismatic(AskedRail),
     /// A link or offset that the study gives.
     Link(Link),
     /// A link whose tube the search chooses.
@@ -429,7 +438,7 @@ impl Question {
             AskedPiece::Joint(joint) => {
                 joint.with_drive(Curve::Rigid, 0.0, joint.bearing.stated(), Extras::default())
             }
-            AskedPiece::Prismatic(joint) => Element::Prismatic(joint.clone()),
+            AskedPiece::Prismatic(rail) => Element::Prismatic(rail.joint.clone()),
             AskedPiece::Link(link) => Element::Link(link.clone()),
             AskedPiece::Choice(choice) => Element::Link(match choice.tubes.first() {
                 Some(tube) => choice.with_tube(tube),

@@ -8,7 +8,7 @@ use super::layout::{Coordinate, Layout, coordinates};
 use super::offers::JointOffers;
 use super::parts_box::Place;
 use super::pose::{Builder, Pose, water_of};
-use super::question::{AskedJoint, AskedMotion, AskedPiece, Limits, Question};
+use super::question::{AskedJoint, AskedMotion, AskedPiece, AskedRail, Limits, Question};
 use super::tubes::TubeOptions;
 use crate::arm::LinkBody;
 use crate::arm::body::total_kg;
@@ -189,15 +189,18 @@ fn movers(question: &Question) -> Vec<Mover> {
             stop_factor: duty.stop_factor,
         }
     });
-    let rails = question.pieces.iter().filter(|piece| matches!(piece, AskedPiece::Prismatic(_)));
-    let sliding = rails.enumerate().map(|(number, _)| sliding(number, &question.motion));
+    let rails = question.pieces.iter().filter_map(|piece| match piece {
+        AskedPiece::Prismatic(rail) => Some(rail),
+        _ => None,
+    });
+    let sliding = rails.enumerate().map(|(number, rail)| sliding(number, rail, &question.motion));
     turning.chain(sliding).collect()
 }
 
-/// How the rail with this number moves. Its drive is given, so it travels as fast as the tip, with the tip's ramp and
-/// the tip's emergency stop.
-fn sliding(number: usize, motion: &AskedMotion) -> Mover {
-    let acceleration_m_s2 = motion.tip_acceleration_m_s2();
+/// How `rail`, which has this number, moves: as fast as the study asks of it or else as fast as the tip, with the tip's
+/// ramp time and the tip's emergency stop.
+fn sliding(number: usize, rail: &AskedRail, motion: &AskedMotion) -> Mover {
+    let acceleration_m_s2 = rail.max_speed_m_s.unwrap_or(motion.tip_speed_m_s) / motion.ramp_time_s;
     let stop_m_s2 = motion.emergency_deceleration_m_s2.unwrap_or(2.0 * acceleration_m_s2);
     Mover {
         coordinate: Coordinate::Rail(number),
@@ -243,7 +246,7 @@ fn offsets_kg(question: &Question) -> f64 {
         AskedPiece::Joint(joint) => {
             joint.bearing.stated().map_or(0.0, |bearing| bearing.mass_kg) + joint.bodies.mass_kg()
         }
-        AskedPiece::Prismatic(joint) => joint.total_mass_kg(),
+        AskedPiece::Prismatic(rail) => rail.joint.total_mass_kg(),
         AskedPiece::Choice(choice) => total_kg(&choice.bodies),
     });
     masses.sum()
