@@ -59,8 +59,8 @@ pub(crate) fn driven_joints(catalogs: &Catalogs, arm: Source) -> PyResult<Vec<St
     Ok(arm.driven_joint_names().into_iter().map(String::from).collect())
 }
 
-/// Sizes the drives of a study, or of the design with the identifier `design` of its front. Returns the rows of the
-/// sizing as JSON text, and remarks on them.
+/// Sizes the drives of a study: for the design with the identifier `design`, or with links of median mass if it is
+/// `None`. Returns the rows of the sizing as JSON text, and remarks on them.
 #[pyfunction]
 pub(crate) fn size(
     py: Python<'_>,
@@ -74,9 +74,9 @@ pub(crate) fn size(
     Ok((serde_json::to_string(&sizing.rows).map_err(errors::usage)?, sizing.remarks))
 }
 
-/// Finds the largest payload and speed. `asked` is a study or an arm. `design` is the identifier of a design of the
-/// study. `cases` and `limits` are for an arm only. If an arm file has an `import.json` in its folder and `limits` is
-/// `None`, the limits are read from there. Returns JSON text.
+/// Finds the largest payload. `asked` is a study or an arm. `design` is the identifier of a design of the study; with
+/// `None`, links have median mass and drives are the lightest. `cases` and `limits` are for an arm only. If an arm file
+/// has an `import.json` in its folder and `limits` is `None`, the limits are read from there. Returns JSON text.
 #[pyfunction]
 pub(crate) fn capacity(
     py: Python<'_>,
