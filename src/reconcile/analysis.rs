@@ -200,7 +200,7 @@ impl Analysis<'_> {
             reasons.extend(self.at_a_limit());
         }
         reasons.extend(self.remarks.iter().cloned());
-        // effects with weak evidence are only suspected if calibration alone is as good
+        // the findings are named with the verdict `Explained`, and are suspects with `NoGap` and `InsufficientData`
         let findings = match verdict {
             Verdict::Unexplained => Vec::new(),
             _ => self.findings(),

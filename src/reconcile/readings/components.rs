@@ -2,7 +2,7 @@
 //!
 //! An instrument may read fewer than three components: a dial gauge or a level reads one, and a theodolite reads two. A
 //! component is not measured if its cell is blank or its column is absent. Some programs write zeros instead, which
-//! [`leave_out_idle`] recognizes in two cases:
+//! `leave_out_idle` recognizes in two cases:
 //!
 //! - A column has the same value in all rows. An instrument with noise does not read that.
 //! - Every row has one component at most that is not zero. Such zeros come from a gauge that is moved from one
@@ -120,7 +120,7 @@ impl<'a> VectorColumns<'a> {
         let sigma_mm = match (own, self.purpose) {
             (Some(column), Purpose::Fit) => sigma(self.table, row, column),
             (None, Purpose::Fit) => None,
-            // a prediction needs no standard deviation
+            // a prediction does not use the standard deviation, so any positive value will do
             (_, Purpose::Predict) => Some(1.0),
         };
         Some(Some(Component { value_mm: value_mm?, sigma_mm: sigma_mm? }))

@@ -6,7 +6,7 @@ use super::rows::PositionRow;
 use crate::arm::BASE;
 use crate::input::json::Node;
 
-/// A session that `campaign.json` declares.
+/// A session (a run of readings between two changes of the set-up) that `campaign.json` declares.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DeclaredSession {
     /// Number of the first row of the session. The first row of the file below the column names has the number 1.

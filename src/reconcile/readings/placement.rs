@@ -101,7 +101,7 @@ impl Placement {
         }
     }
 
-    /// The entry `placement` in the provenance of a corrected arm.
+    /// The placement as JSON: the entry `placement` in the provenance of a corrected arm.
     pub fn to_json(&self) -> Value {
         let mut out = self.usual.to_json();
         if !self.sessions.is_empty() {
@@ -185,7 +185,7 @@ pub fn pose_mark(pose_deg: &[f64]) -> String {
     blake3::hash(angles.as_bytes()).to_hex()[..8].to_string()
 }
 
-/// An arm and its placement.
+/// An arm and its placement in the frame of an instrument.
 #[derive(Debug, Clone)]
 pub struct Placed {
     /// The arm.

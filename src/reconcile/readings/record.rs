@@ -10,7 +10,7 @@ use crate::input::json::{Fault, InputError, closest};
 use csv::{ReaderBuilder, Trim};
 use std::path::Path;
 
-/// Number of faults of one file that are listed. Further faults are only counted.
+/// Largest number of faults of one file that are listed. Further faults are only counted.
 const MOST_FAULTS: usize = 10;
 /// Smallest number of rows of a record. A shorter record is a fault.
 pub(crate) const FEWEST_ROWS: usize = 200;

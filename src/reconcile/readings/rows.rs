@@ -25,7 +25,7 @@ pub struct StaticRow {
     pub pose_deg: Vec<f64>,
     /// Payload as stated in the file.
     pub payload: Payload,
-    /// Temperature of the arm \[°C\], if the file has the column `temperature_c`.
+    /// Temperature of the arm \[°C\]; `None` if the file has no column `temperature_c`.
     pub temperature_c: Option<f64>,
     /// Force at the tip, in the directions of the world \[N\].
     pub force_n: Vector3<f64>,
@@ -45,7 +45,7 @@ pub struct ModalRow {
     pub pose_deg: Vec<f64>,
     /// Payload as stated in the file.
     pub payload: Payload,
-    /// Temperature of the arm \[°C\], if the file has the column `temperature_c`.
+    /// Temperature of the arm \[°C\]; `None` if the file has no column `temperature_c`.
     pub temperature_c: Option<f64>,
     /// Number of the mode among the modes of one pose and payload, from 1 in the order of rising frequency.
     pub mode: usize,
@@ -83,7 +83,7 @@ pub struct PositionRow {
     pub pose_deg: Vec<f64>,
     /// Payload as stated in the file.
     pub payload: Payload,
-    /// Temperature of the arm \[°C\], if the file has the column `temperature_c`.
+    /// Temperature of the arm \[°C\]; `None` if the file has no column `temperature_c`.
     pub temperature_c: Option<f64>,
     /// Index of the arm to which the point belongs, in the order of
     /// [`Campaign::arms`](super::campaign::Campaign::arms).

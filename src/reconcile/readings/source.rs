@@ -79,7 +79,7 @@ const OWN_SIGMAS: [&str; 6] =
 /// Where the readings of a channel are: file, sheet and names of columns.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Source {
-    /// Name of the file, in the folder of `campaign.json`; `None` for the name in [`DEFAULT_FILES`].
+    /// Name of the file, in the folder of `campaign.json`; `None` for the usual name (`DEFAULT_FILES`).
     pub file: Option<String>,
     /// Name of the sheet of a spreadsheet; `None` for a spreadsheet with one sheet, or for a CSV file.
     pub sheet: Option<String>,

@@ -26,13 +26,13 @@ use std::ops::Range;
 const BREAKS: [f64; 11] = [0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 /// Closing torques T_c of lost motion that are tried, as fractions of the largest spring torque.
 const CLOSING: [f64; 6] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.4];
-/// Half widths of the hysteresis, as torques, that are tried, as fractions of the largest spring torque.
+/// Half widths of a hysteresis (torques) that are tried, as fractions of the largest spring torque.
 const PLAYS: [f64; 8] = [0.005, 0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.3];
-/// A law is accepted only if it predicts held-out blocks better by this many standard errors. More is asked than for
-/// a single given column, because the law is the best of a whole grid.
+/// A law is accepted only if it predicts held-out blocks better by this many standard errors. The number is larger than
+/// for a single column, because the law is the best one of a whole grid.
 const CLEARLY_OF_GRID: f64 = 3.0;
-/// A law is accepted only if it changes the twist by more than this fraction of the twist's root mean square. A
-/// smaller change may come from the simplicity of the model of friction.
+/// A law is accepted only if it changes the twist by more than this fraction of the twist's root mean square. A smaller
+/// change may be an error of the model of friction, which is simple.
 pub(super) const LEAST_TWIST_CHANGE: f64 = 0.02;
 /// A law whose improvement is not clear, because a few blocks have most of the error, may still be in the record. It is
 /// reported as hidden if it lowers the root mean square error on held-out blocks to less than this fraction.
@@ -127,7 +127,7 @@ impl Law {
     }
 }
 
-/// Relative change of the half width of a hysteresis by which its derivative is computed.
+/// Relative change of the half width of a hysteresis in the difference quotient that gives its derivative.
 const WIDER: f64 = 0.01;
 
 /// State `s` of a hysteresis with the half width `width` at each row \[N m\]: of all values within `width` of the

@@ -9,9 +9,9 @@
 //! proportion to the load, and `F_v` viscous friction. Sine and cosine of `2 q_l` are fitted too.
 //!
 //! The load of a joint also depends on the position and motion of the other joints. The motion of each other joint adds
-//! a group of columns to the fit, if the fit then predicts held-out blocks better. The torque of the load `T_l`, which
-//! the gear carries, is the sum of all terms of the load except the rotor's inertia. It is first computed from a fit
-//! without load-dependent friction, and then from fits with it.
+//! a group of columns to the fit, if the fit then predicts held-out blocks better (blocks of time that were left out of
+//! a fit). The torque of the load `T_l`, which the gear carries, is the sum of all terms of the load except the rotor's
+//! inertia. It is first computed from a fit without load-dependent friction, and then from fits with it.
 
 use super::blocks::Fitted;
 use super::intervals::is_positive;

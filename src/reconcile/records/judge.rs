@@ -1,4 +1,5 @@
 //! Judges the records of one joint: which effects are found, which are absent, and about which the records say nothing.
+//! The errors of the models are those on held-out blocks, which are blocks of time that were left out of a fit.
 
 use super::blocks::Fitted;
 use super::compliance::{GRAVITY_OR_ERROR, compliance};
@@ -20,7 +21,8 @@ use crate::reconcile::verdict::joint_record::{JointRecord, State, Stated, Step, 
 const BLOCKS: usize = 30;
 /// Smallest number of blocks of time into which the records of a joint are divided, even if the blocks are then short.
 const FEWEST_BLOCKS: usize = 10;
-/// A block of time lasts at least this many times the correlation time of the errors.
+/// The number of blocks is chosen so that a block lasts at least this many times the correlation time of the errors.
+/// [`FEWEST_BLOCKS`] goes first.
 const LONG_BLOCK: f64 = 3.0;
 /// Smallest half width of an interval of friction, as a fraction of the value, because the friction of a joint is
 /// never constant.
@@ -30,7 +32,7 @@ const LEAST_FRICTION_PART: f64 = 0.01;
 const LEAST_LAW_PART: f64 = 0.05;
 /// Smallest half width of the interval of a time shift, as a fraction of the time between rows.
 const LEAST_STEP_PART: f64 = 0.01;
-/// Approximate number of points of a picture.
+/// Approximate number of points in the picture of twist against torque.
 const POINTS: usize = 600;
 /// Transmission errors once and twice a turn of the output can be told apart only if the joint turns through at least
 /// this angle \[rad\].

@@ -32,10 +32,10 @@ const JUMP: f64 = 6.0;
 /// A jump of the torque below this fraction of the standard deviation of the torque is left in the fit.
 const LEAST_JUMP_PART: f64 = 0.02;
 
-/// Whether the joint rests, row by row. Friction is not known while the joint rests: it may hold any torque of either
-/// sign, up to that of Coulomb friction, whatever the sign of the speed is. `sense` is the smoothed sign of the speed,
-/// and `half` the half width of its window \[rows\]. A reversal does not count as a rest. All `false` if the joint
-/// moves in fewer than [`LEAST_MOVING_PART`] of the rows.
+/// Whether the joint rests, row by row. While the joint rests, its friction may have any value of either sign up to the
+/// Coulomb friction, whatever the sign of the speed is. `sense` is the smoothed sign of the speed, and `half` the half
+/// width of its window \[rows\]. A reversal does not count as a rest. All `false` if the joint moves in fewer than
+/// [`LEAST_MOVING_PART`] of the rows.
 pub(super) fn rests(sense: &[f64], half: usize) -> Vec<bool> {
     let mut out = vec![false; sense.len()];
     let mut row = 0;

@@ -6,7 +6,8 @@
 //!   number of waves in a turn.
 //!
 //! For each cause, a fit is made in which its one or two columns replace the four columns of the transmission error of
-//! the output. A cause that predicts held-out blocks clearly better, with fewer columns, is nearer to the truth.
+//! the output. A cause that predicts held-out blocks (blocks of time left out of the fit) clearly better, with fewer
+//! columns, is nearer to the truth.
 
 use super::blocks::Fitted;
 use super::twist::{CLEARLY, Group, TwistModel, columns, fill_known};

@@ -1,4 +1,4 @@
-//! Verdict from records: named effects, calibrated stiffnesses and the corrected arm.
+//! Verdict from records against time: named effects, calibrated stiffnesses and the corrected arm.
 
 use super::compliance::GRAVITY_OR_ERROR;
 use super::curve::TORSION_CURVE;

@@ -27,7 +27,7 @@ const TELLING: f64 = 0.6;
 /// The root mean square of the oscillation of the twist must be at least this multiple of the noise of the twist from
 /// row to row.
 const LOUD: f64 = 4.0;
-/// Largest number of Gauss-Newton steps over frequency and decay rate.
+/// Largest number of Gauss-Newton steps that improve frequency and decay rate.
 const ROUNDS: usize = 30;
 
 /// Frequency and damping of the free vibration of a joint.
@@ -139,7 +139,8 @@ fn peak(t: &[f64], x: &[f64], low_hz: f64, high_hz: f64) -> Option<f64> {
     let duration = t[t.len() - 1];
     let count = ((high_hz - low_hz) * duration * 2.0).max(0.0) as usize;
     let turn = |f: f64| t.iter().map(move |t| libm::sincos(TAU * f * t));
-    // rotates the sine and cosine of each row from one frequency to the next, instead of computing them anew
+    // rotates the sine and cosine of each row from one frequency to the next, which is faster than computing them for
+    // each frequency
     let mut now: Vec<(f64, f64)> = turn(low_hz).collect();
     let on: Vec<(f64, f64)> = turn(0.5 / duration).collect();
     let mut best = (0.0, None);

@@ -1,4 +1,5 @@
-//! Signals of one joint from all records: smoothed, differentiated, and divided into blocks of time.
+//! Signals of one joint (angles, speeds, accelerations, torque) from all records: smoothed, differentiated, and divided
+//! into blocks of time.
 
 use super::blocks::Blocks;
 use super::known::{at_jumps, rests, turning};
@@ -278,7 +279,7 @@ impl JointRows {
         let row = sample.row.checked_add_signed(steps).filter(|r| *r < signals.t_s.len())?;
         let rest_s = signals.t_s[sample.row] + shift_s - signals.t_s[row];
         let (slope, curvature) = (signals.link_speed_rad_s[row], signals.link_acceleration_rad_s2[row]);
-        // across a gap in time there is no near row
+        // if the later time is in a gap of the record, no row is near to it
         if slope.is_nan() || rest_s.abs() > 1.5 * signals.step_s {
             return None;
         }
@@ -302,19 +303,20 @@ impl JointRows {
         (!out[0].is_nan()).then_some(out)
     }
 
-    /// Standard deviation of the noise of the twist from row to row \[rad\].
+    /// Standard deviation of the noise of the twist from row to row, before averaging, as a root mean square over the
+    /// records \[rad\].
     pub(crate) fn noise_rad(&self) -> f64 {
         let squares: f64 = self.records.iter().map(|r| r.noise_rad.powi(2)).sum();
         (squares / self.records.len() as f64).sqrt()
     }
 
-    /// Standard deviation of the noise that the average leaves in the twist \[rad\].
+    /// Standard deviation of the noise of the averaged twist, as a root mean square over the records \[rad\].
     pub(crate) fn averaged_noise_rad(&self) -> f64 {
         let squares: f64 = self.records.iter().map(|r| (r.gain * r.noise_rad).powi(2)).sum();
         (squares / self.records.len() as f64).sqrt()
     }
 
-    /// Standard deviation of the noise that the average leaves in the torque \[N m\].
+    /// Standard deviation of the noise of the averaged torque, as a root mean square over the records \[N m\].
     pub(crate) fn averaged_torque_noise_nm(&self) -> f64 {
         let squares: f64 = self.records.iter().map(|r| (r.gain * r.torque_noise_nm).powi(2)).sum();
         (squares / self.records.len() as f64).sqrt()

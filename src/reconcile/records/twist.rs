@@ -1,6 +1,7 @@
 //! Linear model of the twist of a joint, and the choice of its terms. The twist is the angle of torsion of the joint
 //! \[rad\]. Each term of the model is a column, which has one value for each row of the records. A fit finds the
-//! coefficients of the columns by least squares.
+//! coefficients of the columns by least squares. A held-out block is a block of time that was left out of a fit, and is
+//! then predicted by it.
 //!
 //! The recorded twist is the motor's angle minus the link's angle, `y = theta_m(t) - theta_l(t - s)`. Written as a sum,
 //!

@@ -2,8 +2,8 @@
 //! differentiated.
 //!
 //! Such an error varies fast. Its second derivative is as large as the acceleration of the motion and would be taken
-//! for inertia. The error is found in the fast part of the twist, `y - smooth(y)`. The sines and cosines that are
-//! fitted to the twist are filtered in the same way, so that slow torque and inertia have no influence.
+//! for inertia. The error is found in the fast part of the twist `y`, which is `y - smooth(y)`. The sines and cosines
+//! that are fitted to the twist are filtered in the same way, so that slow torque and inertia have no influence.
 
 use super::smooth::smooth;
 use crate::reconcile::readings::record::{JointSignals, Record};
