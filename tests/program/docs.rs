@@ -2,8 +2,8 @@
 //! every key that the readers know is described, and every file that they mention exists.
 //!
 //! In a block marked `console`, a line after `$ ` is a command, and the lines below it are what the command prints.
-//! `...` on a line of its own stands for any number of lines, and `…` within a line for any text. A comment `<!-- file:
-//! NAME -->` in front of a block makes the block a file of this name.
+//! `...` on a line of its own stands for any number of lines, and `…` within a line for any text. A comment
+//! `<!-- file: NAME -->` in front of a block makes the block a file of this name.
 
 use armwright::arm::read_arm_document;
 use armwright::arm::{DrivenJoint, read_load_cases};
