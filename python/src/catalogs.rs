@@ -1,4 +1,4 @@
-//! The catalogs, read once and shared by all questions.
+//! The catalogs of parts as a Python class. They are read once and used by every call that gets the object.
 
 use crate::errors::catalog_fault;
 use pyo3::prelude::*;
@@ -9,7 +9,7 @@ use std::sync::Arc;
 #[pyclass(module = "armwright", frozen)]
 pub(crate) struct Catalogs {
     pub(crate) parts: Arc<armwright::catalog::Catalogs>,
-    /// The folder that was laid over the built-in rows.
+    /// Folder whose rows were added to the built-in rows or replace them; `None` for the built-in rows alone.
     folder: Option<PathBuf>,
 }
 

@@ -1,5 +1,6 @@
-//! The native part of the Python package `armwright`. Arms, cases and results cross the border as JSON text, the same text
-//! that the program reads and prints, so that numbers are equal to the last digit. `python/armwright` gives them Python's types.
+//! The native part of the Python package `armwright`. Arms, cases and results are passed between Python and Rust as
+//! JSON text. It is the text that the program reads and prints, so that numbers are equal to the last digit. The Python
+//! code in `python/armwright` turns it into Python objects.
 
 mod catalogs;
 mod conduct;

@@ -1,4 +1,5 @@
-//! Questions that are answered at once, and reconciliation.
+//! The functions of the package that answer quickly, and `reconcile`, which may take long. The search for the front of
+//! a study is in `run`.
 
 use crate::catalogs::Catalogs;
 use crate::conduct::{pooled, workers};
@@ -19,10 +20,11 @@ use std::path::PathBuf;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
-/// Force \[N\], damping ratio, frequencies \[Hz\].
+/// A harmonic load at the tip: amplitude of the force \[N\], damping ratio \[-\], and frequencies \[Hz\].
 type HarmonicOf = ([f64; 3], f64, Vec<f64>);
 
-/// The results of every case in JSON, each in words, and remarks on all of them.
+/// Results of an analysis: a JSON list with one entry for each case, the same results as text for each case, and
+/// remarks on all of them.
 type Analyzed = (String, Vec<String>, Vec<String>);
 
 #[pyfunction]
@@ -57,7 +59,8 @@ pub(crate) fn driven_joints(catalogs: &Catalogs, arm: Source) -> PyResult<Vec<St
     Ok(arm.driven_joint_names().into_iter().map(String::from).collect())
 }
 
-/// The rows of the sizing in JSON, and remarks on them.
+/// Sizes the drives of a study: for the design with the identifier `design`, or with links of median mass if it is
+/// `None`. Returns the rows of the sizing as JSON text, and remarks on them.
 #[pyfunction]
 pub(crate) fn size(
     py: Python<'_>,
@@ -71,7 +74,9 @@ pub(crate) fn size(
     Ok((serde_json::to_string(&sizing.rows).map_err(errors::usage)?, sizing.remarks))
 }
 
-/// The capacity of a design of a study, or of an arm, which has cases and limits.
+/// Finds the largest payload. `asked` is a study or an arm. `design` is the identifier of a design of the study; with
+/// `None`, links have median mass and drives are the lightest. `cases` and `limits` are for an arm only. If an arm file
+/// has an `import.json` in its folder and `limits` is `None`, the limits are read from there. Returns JSON text.
 #[pyfunction]
 pub(crate) fn capacity(
     py: Python<'_>,
@@ -103,7 +108,8 @@ pub(crate) fn capacity(
     Ok(json.to_string())
 }
 
-/// The arm of a design and the cases in which it is judged.
+/// Returns the arm of the design with the identifier `id`, and the cases in which the study judges it, both as JSON
+/// text.
 #[pyfunction]
 pub(crate) fn design(
     py: Python<'_>,
@@ -118,10 +124,11 @@ pub(crate) fn design(
     Ok((arm.to_json().to_string(), Value::Array(cases).to_string()))
 }
 
-/// The name of the case, and the files of an export by name.
+/// The result of an export: the name of the exported case, and name and content of each file.
 type ExportedFiles = (String, Vec<(String, Vec<u8>)>);
 
-/// The files of an arm for another program.
+/// Exports an arm in one case for another program. `to` is the name of the format. `case` is the name of the case;
+/// `cases` are those to choose from.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "they are those of the Python function")]
 pub(crate) fn export(
@@ -143,7 +150,9 @@ pub(crate) fn export(
     Ok((exported.case, exported.files))
 }
 
-/// The arm of a robot in a URDF file, from its root to a link, and what became of the rest of it.
+/// Imports a robot from a URDF file: the chain from the root of the robot to the link `tip`. `stiffness` is an optional
+/// file with the stiffnesses, which a URDF file lacks. Returns the arm as JSON text, and a report on what was imported
+/// and what was left out.
 #[pyfunction]
 pub(crate) fn from_urdf(
     catalogs: &Catalogs,
@@ -157,7 +166,7 @@ pub(crate) fn from_urdf(
     Ok((arm.to_json().to_string(), report.to_string()))
 }
 
-/// The files of a study of the paper, by name.
+/// Reproduces the study of the paper with the name `name`. Returns name and content of each file.
 #[pyfunction]
 pub(crate) fn paper(py: Python<'_>, catalogs: &Catalogs, name: &str) -> PyResult<Vec<(String, String)>> {
     let output = pooled(py, || armwright::paper::run(name, &catalogs.parts))?.map_err(errors::usage)?;
@@ -175,7 +184,8 @@ pub(crate) fn study_text(name: &str) -> Option<&'static str> {
     named(name)
 }
 
-/// The verdict in JSON and in words, the corrected arm, the residuals as CSV, and the files of the result.
+/// The result of `reconcile`: the verdict as JSON and as text, the corrected arm as JSON, the residuals as CSV, and
+/// name and content of each file of the result.
 type Reconciled = (String, String, String, String, Vec<(String, String)>);
 
 #[pyfunction]
@@ -205,11 +215,13 @@ pub(crate) fn reconcile(
     ))
 }
 
-/// The outcome of the work, which has no flag that would stop it: after Ctrl-C it goes on alone, and nobody waits for it.
+/// Runs `work` on another thread and returns its outcome. This thread checks for signals every 50 ms. After Ctrl-C the
+/// function returns the exception at once. The work cannot be stopped and continues on its thread; its outcome is then
+/// dropped.
 fn interruptible(py: Python<'_>, work: impl FnOnce() -> Outcome + Send + 'static) -> PyResult<Outcome> {
     let (done, ended) = channel();
     let worker = std::thread::spawn(move || {
-        // nobody may listen any more
+        // sending fails if the caller was interrupted and no longer waits; this is no error
         let _ = done.send(work());
     });
     let ended = std::sync::Mutex::new(ended);
@@ -229,7 +241,8 @@ fn interruptible(py: Python<'_>, work: impl FnOnce() -> Outcome + Send + 'static
     }
 }
 
-/// The readings as CSV with the model's columns, and what has to be said about them.
+/// Adds the predictions of the model to a file of readings. `arm` and `campaign` are the paths of the arm file and of
+/// `campaign.json`. Returns the readings as CSV text with the added columns, and a remark if there is one.
 #[pyfunction]
 pub(crate) fn predict(
     py: Python<'_>,

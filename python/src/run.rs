@@ -1,4 +1,4 @@
-//! The front of a study.
+//! `armwright.run` of the package: the search for the front of a study.
 
 use crate::catalogs::Catalogs;
 use crate::conduct::{conduct, workers};
@@ -25,43 +25,50 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// A table: its columns and rows.
+/// A table: the names of its columns, and its rows of cells.
 type Table = (Vec<String>, Vec<Vec<String>>);
 
-/// What a search found, as Python gets it: the front, the front of each material, the near designs and the scatter as CSV
-/// text if they were asked for, facts in JSON, and the study's text.
+/// What a search found, as Python gets it, in this order: the table of the front; name and table of the front of each
+/// material; near designs and scatter as CSV text, each `None` if it was not asked for; facts on the search as JSON
+/// text; the text of the study file.
 type Found = (Table, Vec<(String, Table)>, [Option<String>; 2], String, String);
 
-/// Scatter of ratings in words, number of samples, seed.
+/// How the ratings of parts scatter: the scatter as text in the form that `--tolerance` takes, the number of samples,
+/// and the seed of the random numbers.
 type Scatter = (String, u32, u64);
 
-/// What a search tells while it runs.
+/// Progress of a search that runs.
 #[derive(Debug, Clone, Copy, Default)]
 struct Told {
+    /// Number of designs that the exhaustive search has visited; 0 in an exact search.
     designs: u64,
+    /// Number of designs of the study; `None` if it is not known.
     designs_total: Option<f64>,
+    /// What an exact search knows so far; `None` in an exhaustive search.
     known: Option<Known>,
 }
 
-/// How a study is searched.
+/// A study, and how it is to be searched.
 struct Asked<'a> {
     asked: &'a AskedStudy,
     catalogs: &'a catalog::Catalogs,
-    /// Why this method was chosen, if an estimate chose it.
+    /// Reason for the method, if the program chose it by an estimate; `None` if the caller chose it.
     why: Option<String>,
     method: SearchMethod,
-    /// Gap at which an exact search may end, as a fraction.
+    /// Gap at which an exact search may end, as a fraction: 0.02 is 2 %.
     gap: f64,
     time_limit: Option<Duration>,
-    /// How much worse near designs may be, and how many are listed; `None` if none are asked for.
+    /// By which fraction near designs may be worse, and how many are listed; `None` if none are asked for.
     slack: Option<Slack>,
-    /// How the ratings of parts scatter; `None` if this is not asked for.
+    /// How the ratings of parts scatter, for the scatter of the front; `None` if this is not asked for.
     sampling: Option<Sampling>,
 }
 
-/// Why a search has no front.
+/// Reason why a search has no front.
 enum NoFront {
+    /// The study cannot be searched, or no design meets its limits.
     Refused(Refusal),
+    /// The time limit ended the search before a design was found.
     OutOfTime,
 }
 
@@ -83,7 +90,7 @@ pub(crate) fn run(
 ) -> PyResult<Found> {
     let parts = catalogs.parts.clone();
     let pool = workers(threads)?;
-    // a study of many parts takes a while to read
+    // reading takes long for a study of many parts, so the interpreter is free meanwhile
     let asked = py.detach(|| pool.install(|| asked_study(&study, effects, &parts)))?;
     let slack = within.map(|(percent, most)| Slack { part: 0.01 * percent, most });
     let sampling = scatter.map(sampling).transpose()?;
@@ -122,7 +129,7 @@ pub(crate) fn run(
     }
 }
 
-/// The study of a name, file or text, with the effects of a measured arm if one is given.
+/// Reads the study. If `effects` names the arm file of a measured arm, its effects are applied to the study.
 fn asked_study(
     study: &Source,
     effects: Option<Source>,
@@ -137,11 +144,13 @@ fn asked_study(
     }
 }
 
+/// Reads the three values of a scatter. An error is a `UsageError`.
 fn sampling((scatter, samples, seed): Scatter) -> PyResult<Sampling> {
     let tolerance = scatter.parse::<Tolerance>().map_err(errors::usage)?;
     Ok(Sampling { tolerance, samples, seed })
 }
 
+/// The search method with the name `word`. Another word is a `UsageError`.
 fn search_method(word: &str) -> PyResult<SearchMethod> {
     match word {
         "exhaustive" => Ok(SearchMethod::Exhaustive),
@@ -150,11 +159,12 @@ fn search_method(word: &str) -> PyResult<SearchMethod> {
     }
 }
 
+/// A copy of the progress of the search.
 fn read(told: &Mutex<Told>) -> Told {
     *told.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The argument of a progress function.
+/// The dictionary that the progress function of the caller gets as its argument.
 fn progress_dict<'py>(py: Python<'py>, told: &Told, elapsed: Duration) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     dict.set_item("elapsed_s", elapsed.as_secs_f64())?;
@@ -166,7 +176,7 @@ fn progress_dict<'py>(py: Python<'py>, told: &Told, elapsed: Duration) -> PyResu
     Ok(dict)
 }
 
-/// Copies what a search knows until it is finished.
+/// Copies the progress `now` of a search to `told` every 20 ms, until `finished` is set, and once more after that.
 fn watch(told: &Mutex<Told>, finished: &AtomicBool, now: impl Fn() -> Told) {
     let copy = || *told.lock().unwrap_or_else(PoisonError::into_inner) = now();
     while !finished.load(Ordering::Relaxed) {
@@ -176,6 +186,7 @@ fn watch(told: &Mutex<Told>, finished: &AtomicBool, now: impl Fn() -> Told) {
     copy();
 }
 
+/// Searches the front by the method that `asked` names. The search stops early if `stop` is set.
 fn find(asked: &Asked, stop: &AtomicBool, told: &Mutex<Told>) -> Result<Found, NoFront> {
     match asked.method {
         SearchMethod::Exhaustive => visit_all(asked, stop, told),
@@ -183,11 +194,13 @@ fn find(asked: &Asked, stop: &AtomicBool, told: &Mutex<Told>) -> Result<Found, N
     }
 }
 
+/// The refusal for a study without a feasible design, with the reason. The reason is sought until `stop` is set or the
+/// time is `deadline`.
 fn infeasible(asked: &Asked, stop: &AtomicBool, deadline: Option<Instant>) -> NoFront {
     NoFront::Refused(Refusal::Infeasible(why_infeasible(&asked.asked.study, asked.catalogs, stop, deadline)))
 }
 
-/// Visits every design.
+/// Searches the front by visiting every design.
 fn visit_all(asked: &Asked, stop: &AtomicBool, told: &Mutex<Told>) -> Result<Found, NoFront> {
     let &Asked { asked: AskedStudy { study, .. }, catalogs, .. } = asked;
     let started = Instant::now();
@@ -204,7 +217,7 @@ fn visit_all(asked: &Asked, stop: &AtomicBool, told: &Mutex<Told>) -> Result<Fou
     Ok(tables(asked, (&problem, &outcome), near, stop, facts))
 }
 
-/// Finds the front without visiting every design.
+/// Searches the front by branch and bound, without visiting every design.
 fn search_exactly(asked: &Asked, stop: &AtomicBool, told: &Mutex<Told>) -> Result<Found, NoFront> {
     let &Asked { asked: AskedStudy { study, .. }, catalogs, gap, time_limit, slack, .. } = asked;
     let started = Instant::now();
@@ -232,7 +245,8 @@ fn search_exactly(asked: &Asked, stop: &AtomicBool, told: &Mutex<Told>) -> Resul
     Ok(tables(asked, (&problem, outcome), near, stop, facts))
 }
 
-/// The facts of a search, by the keys that `run.json` has for them; `search_reason` is said on the terminal.
+/// Facts on a search, with the keys that `run.json` has for them. The key `search_reason` is added; the command line
+/// prints this reason instead.
 fn facts(asked: &Asked, outcome: &StudyOutcome, started: Instant, search: &str) -> Value {
     let (study, sweep) = (&asked.asked.study, &outcome.sweep);
     json!({
@@ -265,12 +279,13 @@ fn facts(asked: &Asked, outcome: &StudyOutcome, started: Instant, search: &str) 
     })
 }
 
-/// A count as a JSON number; above 2^64 it is rounded.
+/// A count as a JSON number. Counts of 2^64 and more become floating-point numbers, which are rounded.
 fn count(n: u128) -> Value {
     u64::try_from(n).map_or_else(|_| json!(n as f64), |n| json!(n))
 }
 
-/// The tables of a search, with what is to be said of them added to the facts. `problem` has the designs of the outcome.
+/// The result of a search for Python. `problem` and `outcome` are the design space and what was found in it. Remarks,
+/// caveats, picks, and entries on near designs and scatter are added to `facts`.
 fn tables(
     asked: &Asked,
     (problem, outcome): (&ArmProblem, &StudyOutcome),
@@ -300,7 +315,8 @@ fn tables(
     (table(front), by_material.collect(), further, facts.to_string(), text.to_string())
 }
 
-/// Adds the entry `run` that a list of designs has in `run.json` to `facts`, and returns its `file` as text.
+/// Adds `run`, a key and a value for `run.json`, to `facts`. Returns the content of `file` as text; `None` if there is
+/// no file.
 fn added(
     run: Option<(&'static str, Value)>,
     file: Option<(&'static str, Vec<u8>)>,
@@ -312,7 +328,8 @@ fn added(
     file.map(|(_, csv)| String::from_utf8_lossy(&csv).into_owned())
 }
 
-/// A pick by the keys that it has in `run.json`, without what its budget adds there.
+/// A pick as JSON with its names, design and mass, as in `run.json`. The stiffness budget, which `run.json` adds, is
+/// left out.
 fn pick_json(pick: &Pick) -> Value {
     json!({"names": pick.names, "design_id": pick.design.design_id, "mass_kg": pick.design.mass_kg})
 }

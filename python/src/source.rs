@@ -1,4 +1,5 @@
-//! Where an arm, cases or a study come from: a file, a name, or the text of a Python object.
+//! Where the input of a call comes from, such as an arm, cases or a study: a file, a name, or the text of a Python
+//! object.
 
 use crate::errors;
 use armwright::arm::{ARM_FILE, Arm, read_arm_document};
@@ -8,12 +9,13 @@ use armwright::study::{STUDY_FILE, Study, is_arm_file, load_study, names, read_s
 use pyo3::prelude::*;
 use std::path::Path;
 
-/// A name or path, or the text of a Python object with the name it has in messages.
+/// An input of a call. The first value is a name or a path, and the second is `None`. For a Python object, the second
+/// value is its text, and the first is the name that messages use for it.
 #[derive(FromPyObject)]
 pub(crate) struct Source(String, Option<String>);
 
 impl Source {
-    /// The JSON document.
+    /// Reads the input as a JSON document.
     pub(crate) fn document(&self) -> PyResult<Document> {
         match &self.1 {
             Some(text) => Document::parse(&self.0, text).map_err(errors::faults),
@@ -21,12 +23,12 @@ impl Source {
         }
     }
 
-    /// The arm of a file or text.
+    /// Reads the input as an arm.
     pub(crate) fn arm(&self, catalogs: &Catalogs) -> PyResult<Arm> {
         read_arm_document(self.arm_document()?, catalogs).map_err(errors::faults)
     }
 
-    /// The document of an arm file, and not of a study.
+    /// Reads the input as the JSON document of an arm. A study is an error with a hint.
     pub(crate) fn arm_document(&self) -> PyResult<Document> {
         let document = self.document()?;
         if is_rather(&document, &STUDY_FILE, &ARM_FILE) {
@@ -36,23 +38,24 @@ impl Source {
         Ok(document)
     }
 
-    /// Whether this is an arm file, and no study.
+    /// Whether the input is an arm and not a study. `false` if it cannot be read.
     pub(crate) fn is_arm(&self) -> bool {
         self.document().is_ok_and(|document| is_arm_file(&document))
     }
 
-    /// The file of this name in the folder of this file, if it is there.
+    /// The file with the name `name` in the folder of this file. `None` if there is no such file, or if the input is no
+    /// file.
     pub(crate) fn beside(&self, name: &str) -> Option<Self> {
         let path = self.1.is_none().then(|| Path::new(&self.0).with_file_name(name))?;
         path.is_file().then(|| Self(path.to_string_lossy().into_owned(), None))
     }
 
-    /// The name or path.
+    /// The name or path of the input, for messages.
     pub(crate) fn name(&self) -> &str {
         &self.0
     }
 
-    /// The text of the file.
+    /// The text of the input.
     pub(crate) fn text(&self) -> PyResult<String> {
         match &self.1 {
             Some(text) => Ok(text.clone()),
@@ -60,7 +63,8 @@ impl Source {
         }
     }
 
-    /// The study of a name, file or text, and its text.
+    /// Reads the input as a study: one that is built in by its name, or a file, or a text. Returns the study and its
+    /// text. An arm is an error with a hint.
     pub(crate) fn study(&self, catalogs: &Catalogs) -> PyResult<(Study, String)> {
         let is_named = self.1.is_none() && names().contains(&self.0.as_str());
         if !is_named
@@ -90,7 +94,7 @@ fn is_rather(document: &Document, other: &FileKind, asked: &FileKind) -> bool {
     keys_of(other) > keys_of(asked)
 }
 
-/// The one fault of a document of another kind.
+/// An `InputError` for a document of another kind than the one that is needed. `words` say what it is.
 fn other_kind(document: &Document, words: &str, hint: &str) -> PyErr {
     errors::faults(Faults(vec![Fault {
         file: document.file().to_string(),

@@ -1,6 +1,6 @@
-//! Runs the whole analysis of displacements, frequencies and bench readings: whether they differ from the model, which
-//! effects are missing, how certain these are, and whether they predict held-out poses. Besides effects of the library,
-//! the analysis tries *laws without a name*: smooth functions that reveal physics which the library lacks.
+//! Analyses displacements, frequencies and bench readings: whether they differ from the model, which effects are
+//! missing, how certain these are, and whether they predict held-out poses. In addition to effects of the library, the
+//! analysis tries *laws without a name*: smooth functions that reveal physics which the library lacks.
 
 use super::fit::descent::{Effort, Fit, Weights};
 use super::fit::held_out::{self, HeldOut, rms};
@@ -35,7 +35,7 @@ use crate::arm::Arm;
 use serde_json::Value;
 use std::cell::OnceCell;
 
-/// Reconciles displacements, frequencies and bench readings with the arm of a campaign; positions and records are not used.
+/// Reconciles displacements, frequencies and bench readings with the arm; positions and records are not used.
 pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let mut forward = Forward::new(campaign);
     let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
@@ -96,7 +96,8 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
 }
 
 /// The candidates (effects at places) that the search tries: every effect that the campaign admits and the readings
-/// could show. If `few`, the campaign has only a handful of rows, and rare effects are left out.
+/// could show. If `few`, the campaign has only a handful of rows. Rare effects are then left out, and fits begin from
+/// more starting points.
 fn sought(campaign: &Campaign, forward: &Forward, nuisance: &Nuisance, few: bool) -> Vec<Candidate> {
     let mut candidates = candidates(forward);
     candidates.retain(|c| campaign.statement.considers(c.kind.name));
@@ -109,15 +110,15 @@ fn sought(campaign: &Campaign, forward: &Forward, nuisance: &Nuisance, few: bool
     candidates
 }
 
-/// Whether the evidence for the best effects is weak: their score exceeds that of the baseline by less than
-/// [`WEAK_EVIDENCE`]. False if there are no effects.
+/// Whether the evidence for the best effects is weak: their score exceeds the score of the baseline by less than
+/// [`WEAK_EVIDENCE`]. `false` if there are no effects.
 fn is_weak(selection: &Selection) -> bool {
     !selection.best.effects.is_empty() && selection.best.score - selection.baseline.score < WEAK_EVIDENCE
 }
 
-/// Finds the effects and the noise. If the noise of a channel shows that its readings are in another unit than stated,
-/// the search is repeated with larger standard deviations of this channel. The result of the repetition is used only if
-/// the wrong unit is then found as an effect. `forward` then gets the larger standard deviations too.
+/// Finds the effects and the noise. If a channel is so noisy that its readings may be in another unit than stated, the
+/// search is repeated with larger standard deviations of this channel. The repetition counts only if it finds the wrong
+/// unit as an effect. In that case `forward` gets the larger standard deviations too.
 fn settled(
     campaign: &Campaign,
     forward: &mut Forward,
@@ -161,19 +162,19 @@ struct Analysis<'a> {
     best: Fit<'a>,
     baseline: Fit<'a>,
     lack_of_fit: LackOfFit,
-    /// A law without a name that the named effects do not match: it explains the readings better than they do. If the
-    /// model fails the test for lack of fit, the law is instead compared with calibration alone. `None` if there is
-    /// no such law.
+    /// A law without a name that explains the readings better than the named effects, or better than calibration alone
+    /// if the model fails the test for lack of fit. `None` if there is no such law.
     unnamed: Option<Better>,
     alternatives: Vec<Vec<Scored>>,
-    /// All sets of effects that explain the readings, if the campaign has only a few rows; otherwise `None`.
+    /// All sets of effects that explain the readings. `None` unless the campaign has only a handful of rows.
     explaining: Option<Vec<Scored>>,
-    /// Result of the test for lack of fit for calibration alone; `None` unless the evidence for the effects is weak.
+    /// Result of the test for lack of fit of calibration alone; `None` unless the evidence for the effects is weak.
     without: Option<LackOfFit>,
     /// 95 % intervals of the parameters of the best model's effects. They are computed when they are first asked for.
     ends: OnceCell<Vec<Interval>>,
+    /// Residuals of held-out readings \[sigma\]: with the baseline, then with the best model.
     left_out: [Vec<Option<f64>>; 2],
-    /// Root mean square that the residuals of held-out poses have if the best model is right.
+    /// Root mean square that the residuals of held-out poses would have if the best model were right \[sigma\].
     expected_rms: f64,
 }
 
@@ -199,7 +200,7 @@ impl Analysis<'_> {
             reasons.extend(self.at_a_limit());
         }
         reasons.extend(self.remarks.iter().cloned());
-        // effects with weak evidence are only suspected if calibration alone is as good
+        // the findings are named with the verdict `Explained`, and are suspects with `NoGap` and `InsufficientData`
         let findings = match verdict {
             Verdict::Unexplained => Vec::new(),
             _ => self.findings(),
@@ -316,10 +317,10 @@ impl Analysis<'_> {
         (Verdict::Explained, vec![self.gap_sentence()])
     }
 
-    /// Verdict and reason if the best effects predict the readings of poses badly that are held out of the fit.
+    /// Verdict and reason if the best effects predict the readings of held-out poses badly; `None` if they do not.
     fn badly_predicted(&self, held_out: HeldOut) -> Option<(Verdict, String)> {
         let HeldOut { rms_before, rms_after, .. } = held_out;
-        // without the poses that alone show an effect nothing is known of it, so nothing can be predicted either
+        // if one fold alone shows an effect, a fit without this fold knows nothing of the effect and cannot predict it
         if self.shows_in_one_fold() && rms_after <= TOO_FAR_OFF * self.expected_rms {
             return None;
         }
@@ -367,20 +368,20 @@ impl Analysis<'_> {
         )
     }
 
-    /// 95 % intervals of the parameters of all effects of the best model, in the order of the parameters. They are
-    /// computed at the first call.
+    /// 95 % intervals of the parameters of all effects of the best model, in the order of the parameters. The first
+    /// call computes them.
     fn ends(&self) -> &[Interval] {
         self.ends.get_or_init(|| intervals(self.forward, &self.best, self.weights))
     }
 
-    /// Sentence that one of the best effects has reached the largest size that is sought; `None` if none has. The
-    /// sentence does not name the effect, because it may not be the right one.
+    /// Sentence which says that one of the best effects has the largest size that is sought; `None` if none has. It
+    /// does not name the effect, because the effect may not be the right one.
     fn at_a_limit(&self) -> Option<String> {
         let text = "the size of one of the best effects is the largest that is looked for: is arm.json the arm that was measured?";
         self.best.model.is_at_a_limit(&self.best.point.u).then(|| text.to_string())
     }
 
-    /// Sentences on the structure that the best model leaves in the residuals. They name no effect of the library.
+    /// Sentences on the structure that the best model leaves in the residuals, without names of effects.
     fn left_over(&self) -> Vec<String> {
         let mut out = units::other_conventions(self.forward);
         let beyond = self.lack_of_fit.sentences_beyond_scatter();
@@ -408,8 +409,8 @@ impl Analysis<'_> {
         out
     }
 
-    /// Sentence that the law without a name `law` explains the readings better than the effects of the library. The
-    /// sentence names none of these effects.
+    /// Sentence which says that `law`, a law without a name, explains the readings better than the effects of the
+    /// library.
     fn beaten(&self, law: &Better) -> String {
         format!(
             "the library lacks this law, and it explains the readings better than any effect of the library: {} \
@@ -424,7 +425,7 @@ impl Analysis<'_> {
     }
 
     /// Sentence that lists the stiffnesses about which the readings say nothing: their standard deviation after the fit
-    /// is more than 90 % of that before the fit, which follows from the tolerance. Empty if there are none.
+    /// is more than 90 % of the one that their tolerance gives. Empty if there are none.
     fn unidentified(&self) -> Vec<String> {
         let blind: Vec<String> = fitted::calibrated(&self.best)
             .into_iter()
@@ -435,8 +436,8 @@ impl Analysis<'_> {
         if blind.is_empty() { Vec::new() } else { vec![text] }
     }
 
-    /// Whether some effect shows in the poses of one fold alone. Even a right model then leaves more than
-    /// [`SHOWN_BY_ONE_FOLD`] standard deviations on held-out poses, so that these cannot confirm it.
+    /// Whether an effect shows in the poses of one fold alone. Even a right model then leaves an error of more than
+    /// [`SHOWN_BY_ONE_FOLD`] standard deviations on held-out poses, so held-out poses cannot confirm it.
     fn shows_in_one_fold(&self) -> bool {
         self.expected_rms > SHOWN_BY_ONE_FOLD
     }
@@ -448,7 +449,7 @@ impl Analysis<'_> {
             let each = list.iter().zip(&self.forward.data);
             rms(each.filter_map(|(r, d)| Some((*r)? / self.noise.scale[d.channel as usize])))
         };
-        // with a single pose no readings would be left from which to predict it
+        // if there is a single pose, no other readings are left from which to predict it
         (count > 0 && self.forward.groups.len() > 1).then(|| HeldOut {
             rms_before: scaled(before),
             rms_after: scaled(after),
@@ -465,7 +466,7 @@ impl Analysis<'_> {
         fitted::effects(&self.best, self.ends(), &competitors)
     }
 
-    /// Chooses the model for the corrected arm if no effect explains the readings.
+    /// Chooses the model of the corrected arm for the case that no effect explains the readings.
     fn model_without_explanation(&self) -> Choice<'_> {
         let first_law = self.search.candidates.len();
         let again =
@@ -566,10 +567,9 @@ impl Analysis<'_> {
         }
     }
 
-    /// The arms that the next test could compare with the best model: the same arm without each of the named effects
-    /// in turn. A test that separates an effect from its absence confirms the effect, if nothing else could be the
-    /// cause. The model without the effect is not fitted again, because a fit would change stiffnesses that are not
-    /// in question.
+    /// Arms with which the next test could compare the best model, each with a name: the same arm without one of the
+    /// named effects. If nothing else could be the cause, a test that separates an effect from its absence confirms it.
+    /// Other parameters stay as they were fitted with the effect.
     fn without_each(&self) -> Vec<(String, crate::arm::effect::subject::Subject)> {
         let best = &self.best;
         (0..best.model.effects.len())
@@ -589,7 +589,7 @@ impl Analysis<'_> {
         let residuals = self.best.residuals(self.forward, self.weights);
         let mut of_groups: Vec<Vec<f64>> = vec![Vec::new(); self.forward.groups.len()];
         for (residual, datum) in residuals.iter().zip(&self.forward.data) {
-            // rows on the bench have no pose
+            // bench readings have no pose and belong to no group
             of_groups.get_mut(datum.group).into_iter().for_each(|own| own.push(*residual));
         }
         let sizes = of_groups.into_iter().map(|own| rms(own.into_iter()));

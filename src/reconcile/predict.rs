@@ -1,4 +1,4 @@
-//! The verb `predict`: adds the model's predictions to the readings of a file.
+//! The verb `predict`: adds the predictions of the model to a table of readings.
 
 use super::model::direct::{Direct, subject};
 use super::positions;
@@ -25,11 +25,7 @@ pub fn channel_of(table: &Table) -> Option<Channel> {
     }
 }
 
-/// The file as CSV text, with columns added for the model's predictions. Static, modal and bench readings are
-/// predicted for the first of the `arms`. Absolute positions may belong to any of the arms, which stand on one trunk.
-///
-/// # Errors
-/// All faults of the file.
+/// All faults of the table.
 pub fn predict(arms: &[Placed], statement: &Statement, table: Table) -> Result<String, Faults> {
     let arm = &arms[0].arm;
     let subject = subject(arm, statement);
@@ -67,8 +63,8 @@ pub fn predict(arms: &[Placed], statement: &Statement, table: Table) -> Result<S
     if faults.is_empty() { Ok(text) } else { Err(Faults(faults)) }
 }
 
-/// Predicted positions of the rows of `table` \[mm\], in the frame of the instrument, on one arm or on several whose
-/// weights load a common trunk.
+/// Predicted positions of the rows of `table` \[mm\], in the frame of the instrument, one for each row. Several arms
+/// load a common trunk by their weights.
 fn positions_mm(
     arms: &[Placed],
     statement: &Statement,
@@ -88,8 +84,8 @@ fn positions_mm(
     }
 }
 
-/// Sentence on the number of position rows that belong to no known session (run of readings with one set-up); `None`
-/// if there are none. These rows are predicted with the placement that fits all sessions best.
+/// Sentence on rows of positions that belong to no known session (a run of readings between two changes of the set-up).
+/// Such rows are predicted with the placement that fits all sessions best. `None` if there are none.
 pub(crate) fn unplaced(arms: &[Placed], table: &Table) -> Option<String> {
     if channel_of(table) != Some(Channel::Positions) {
         return None;
@@ -111,6 +107,8 @@ pub(crate) fn unplaced(arms: &[Placed], table: &Table) -> Option<String> {
     })
 }
 
+/// The table as CSV text with the columns `names` added. `columns` has the values of these columns for each row; NaN
+/// becomes a blank cell.
 fn text(table: &Table, names: &[&str], columns: &[Vec<f64>]) -> String {
     let mut out = joined(table.shown());
     names.iter().for_each(|name| out.push_str(&format!(",{name}")));

@@ -1,4 +1,4 @@
-//! Predictions next to the readings of a file, from the files of an arm and a campaign.
+//! Reads the files that a prediction needs, and adds the predictions of the model to the readings.
 
 use super::predict::{predict, unplaced};
 use super::readings::campaign::{Statement, read_statement};
@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 pub struct Files<'a> {
     /// Path of the arm file, corrected or not.
     pub arm: &'a Path,
-    /// Path of the readings: a static, modal, windup or positions file.
+    /// Path of the file of readings, of any channel: static, modal, windup or positions.
     pub readings: &'a Path,
     /// Path of the `campaign.json` that states how the readings were taken.
     pub campaign: &'a Path,
@@ -26,17 +26,18 @@ pub struct Files<'a> {
 /// Readings with predictions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prediction {
-    /// The readings as CSV with the columns of the model added.
+    /// The readings as CSV text, with columns of predictions added.
     pub csv: String,
-    /// A remark on the prediction, if there is one, such as rows that belong to no known session.
+    /// A remark on the prediction, for example on rows that belong to no known session; `None` if there is none.
     pub remark: Option<String>,
-    /// Paths of the other arms on the same trunk, which were read too.
+    /// Paths of the arm files of other arms on the same trunk, which were read too.
     pub other_arms: Vec<PathBuf>,
-    /// Paths of all files that the campaign may have, whether or not the prediction needed them.
+    /// Paths of all arm files and files of readings that the campaign may have, whether they exist and were needed or
+    /// not.
     pub of_campaign: Vec<PathBuf>,
 }
 
-/// Adds the model's prediction to every reading of the readings file.
+/// Adds the model's prediction to every row of the file of readings.
 ///
 /// # Errors
 /// All faults of the files, or one file that cannot be read.
@@ -53,7 +54,8 @@ pub fn predict_files(files: &Files, catalogs: &Catalogs) -> Result<Prediction, I
     Ok(Prediction { csv, remark, other_arms, of_campaign })
 }
 
-/// Paths of the arm files and readings of the campaign with the statement `statement` in the file `campaign`.
+/// Paths of the arm files and files of readings that the campaign may have. `campaign` is the path of its
+/// `campaign.json`, and `statement` the content.
 fn of_campaign(campaign: &Path, statement: &Statement) -> Vec<PathBuf> {
     let folder = campaign.parent().unwrap_or(Path::new(""));
     let named = Channel::ALL.into_iter().filter_map(|channel| statement.source(channel).file);
@@ -62,11 +64,13 @@ fn of_campaign(campaign: &Path, statement: &Statement) -> Vec<PathBuf> {
     arms.chain(readings).map(|name| folder.join(name)).collect()
 }
 
+/// Content of a JSON file; null if the file cannot be read or is not JSON.
 fn json_of(file: &Path) -> Value {
     let text = std::fs::read_to_string(file).unwrap_or_default();
     serde_json::from_str(&text).unwrap_or_default()
 }
 
+/// Reads an arm file and the placement of the arm in it.
 fn placed(file: &Path, catalogs: &Catalogs) -> Result<Placed, InputError> {
     let arm = read_arm(file, catalogs)?;
     if let Some(fault) = arm.tilt_fault(&file.display().to_string()) {
@@ -75,8 +79,8 @@ fn placed(file: &Path, catalogs: &Catalogs) -> Result<Placed, InputError> {
     Ok(Placed { arm, placement: Placement::from_json(&json_of(file)) })
 }
 
-/// Paths of the other arms on the same trunk. They are named in the provenance of the corrected arm. If it names
-/// none, they are those that `campaign.json` names.
+/// Paths of the other arms on the same trunk. The provenance of a corrected arm names them. If the arm file has no such
+/// list, they are the arms that `campaign.json` names.
 fn other_arms(files: &Files, statement: &Statement) -> Vec<PathBuf> {
     let folder = |file: &Path| file.parent().map(Path::to_path_buf).unwrap_or_default();
     let corrected = json_of(files.arm);
@@ -88,9 +92,12 @@ fn other_arms(files: &Files, statement: &Statement) -> Vec<PathBuf> {
     }
 }
 
-/// Reads the table of readings from `file`. Users may give columns names of their own in `campaign.json`. The names
-/// stated for a channel are used if `campaign.json` names this file for the channel or, failing that, if the file has
-/// all of these columns.
+/// Reads the table of readings from `file`. In `campaign.json`, users may state other names for the columns of a
+/// channel. These names are used in two cases: `campaign.json` names this file for the channel, or the file has all
+/// columns with these names.
+///
+/// # Errors
+/// The file cannot be read.
 fn table(file: &Path, statement: &Statement) -> Result<Table, InputError> {
     let sources = Channel::ALL.map(|channel| statement.source(channel));
     let is_named = |source: &&Source| source.file.as_ref().is_some_and(|named| file.ends_with(named));

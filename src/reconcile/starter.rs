@@ -1,5 +1,5 @@
-//! The files of a new campaign: `campaign.json` with a note on each block, tables with the columns of the arm's joints
-//! and no rows, and `STARTER.md`, which explains what to measure and what each column means.
+//! The files of a new campaign: `campaign.json` with a note on each block, tables with column names and no rows, and
+//! `STARTER.md`. This page explains what to measure and what each column means.
 
 use super::positions::outcome::FEWEST as FEWEST_POSITIONS;
 use super::readings::source::{DEFAULT_FILES, columns_for};
@@ -10,10 +10,11 @@ use crate::arm::effect::channel::Channel;
 use crate::arm::pose::DrivenJoint;
 use serde_json::{Value, json};
 
-/// Name of the page that explains what to measure.
+/// Name of the file that explains what to measure.
 pub(crate) const PAGE: &str = "STARTER.md";
 
-/// Names and contents of the files of a new campaign. The arm file is not among them.
+/// Names and contents of the files of a new campaign for `arm`; `name` is the name of the campaign. The arm file is not
+/// among them.
 pub(crate) fn files(arm: &Arm, name: &str) -> Vec<(String, String)> {
     let joints = arm.driven_joints();
     let table = |channel: Channel| {
@@ -34,7 +35,8 @@ pub(crate) fn files(arm: &Arm, name: &str) -> Vec<(String, String)> {
     out
 }
 
-/// The kinds of readings that a campaign of the arm can have.
+/// The channels that a campaign of the arm can have: all of them, or all but absolute positions if the arm has
+/// something that the model of positions lacks.
 fn channels(arm: &Arm) -> impl Iterator<Item = Channel> {
     let has_positions = arm.beyond_positions().is_none();
     Channel::ALL.into_iter().filter(move |channel| has_positions || *channel != Channel::Positions)
@@ -84,7 +86,7 @@ fn campaign_json(name: &str) -> Value {
     })
 }
 
-/// Texts of the starter page on one kind of readings.
+/// Texts on one channel for `STARTER.md`: a title, what to measure, and how many readings are needed.
 struct Kind {
     channel: Channel,
     title: &'static str,
@@ -132,6 +134,7 @@ fn kinds(joints: usize) -> [Kind; 4] {
     ]
 }
 
+/// The content of `STARTER.md`.
 fn page(arm: &Arm, name: &str, joints: &[DrivenJoint]) -> String {
     let kinds_of_readings = if arm.beyond_positions().is_none() { "four" } else { "three" };
     let mut out = format!(
@@ -164,7 +167,7 @@ fn page(arm: &Arm, name: &str, joints: &[DrivenJoint]) -> String {
     out
 }
 
-/// Unit and meaning of the column `column` of the channel's file.
+/// Unit and meaning of the column with the name `column` in the file of the channel.
 fn meaning(channel: Channel, column: &str) -> (&'static str, &'static str) {
     match column {
         "test" => ("-", "your label of the row; may be blank"),

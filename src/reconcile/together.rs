@@ -1,8 +1,9 @@
-//! Reconciles all kinds of readings together.
+//! Reconciles all kinds of readings of a campaign together.
 //!
-//! Absolute positions determine the geometry, which the analysis of displacements, frequencies and bench readings takes
-//! as given. These readings determine compliances under various loads, while positions are loaded by gravity alone. So
-//! each kind is reconciled with the findings of the other. Records against time are judged separately.
+//! Absolute positions determine the geometry of the arm. The analysis of displacements, frequencies and bench readings
+//! takes the geometry as given. These readings determine compliances under various loads, while positions are loaded by
+//! little more than gravity. Each of the two kinds is therefore reconciled with the findings of the other. Records
+//! against time are judged separately.
 
 use super::analysis;
 use super::fit::held_out::HeldOut;
@@ -25,7 +26,7 @@ use crate::arm::{Arm, Element};
 use serde_json::{Value, json};
 
 /// Reconciles a campaign with its arm. If there are absolute positions and other readings, each of the two kinds gets a
-/// verdict of its own, and the two verdicts are then joined.
+/// verdict of its own, and the less favourable one is the verdict of the campaign.
 ///
 /// ```
 /// use armwright::catalog::Catalogs;
@@ -48,8 +49,8 @@ pub fn reconcile(campaign: &Campaign) -> Outcome {
     outcome
 }
 
-/// Sentence that effects which were found add to effects of the same name that the arm file states; `None` if no effect
-/// does.
+/// Sentence which says that an effect was found in addition to an effect of the same name and place in the arm file.
+/// `None` if there is no such effect.
 fn beyond_the_file(campaign: &Campaign, outcome: &Outcome) -> Option<String> {
     let stated: Vec<String> = campaign.arm.effects.iter().map(Effect::label).collect();
     let found = outcome.effects.iter().map(Finding::label).filter(|label| stated.contains(label));
@@ -62,7 +63,7 @@ fn beyond_the_file(campaign: &Campaign, outcome: &Outcome) -> Option<String> {
     })
 }
 
-/// Reconciles the records against time and all other readings, whichever of these the campaign has, and joins the two
+/// Reconciles the records against time and all other readings, as far as the campaign has them, and joins the two
 /// outcomes.
 fn of_all(campaign: &Campaign) -> Outcome {
     let has_others = campaign.has_displacements() || !campaign.positions.is_empty();
@@ -99,9 +100,12 @@ fn of_readings(campaign: &Campaign) -> Outcome {
     of_both(campaign, loaded, placed)
 }
 
-/// First finds effects from `loaded` (the readings other than positions), on an arm whose geometry was calibrated from
-/// `placed` (the positions). Then finds effects that the positions still need. If the first step does not explain the
-/// readings of `loaded`, the effects that the positions show are tried on these readings.
+/// Reconciles positions and other readings together. `loaded` is the campaign with the readings other than positions,
+/// and `placed` is the campaign with positions alone.
+///
+/// First, the geometry of the arm is calibrated from the positions, and effects are found from the other readings. If
+/// these are explained, effects that the positions still need are sought on the arm with the effects found. If not,
+/// effects are sought from the positions alone, and the other readings are reconciled again on the arm with these.
 fn of_both(campaign: &Campaign, mut loaded: Campaign, placed: Campaign) -> Outcome {
     let calibrated = positions::analysis::calibrated(&placed);
     loaded.arm = calibrated.arms[0].clone();
@@ -124,27 +128,28 @@ fn of_both(campaign: &Campaign, mut loaded: Campaign, placed: Campaign) -> Outco
     loaded.arm = second.corrected.clone();
     let again = if second.effects.is_empty() { first } else { analysis::reconcile(&loaded) };
     let corrected = again.corrected.clone();
-    // laws without a name also change the deflection under gravity, so the geometry is calibrated once more with them
+    // laws without a name also change the deflection under gravity, so the geometry is calibrated again with them
     let with_laws = (!again.empirical.is_empty())
         .then(|| positions::analysis::calibrated(&with_what_yields(&placed, &again)));
     Both { campaign, calibrated, with_laws, loaded: again, placed: second, told: false, corrected }.outcome()
 }
 
-/// Largest factor by which a corrected arm may increase the median error at held-out positions over calibration
-/// alone, if the readings are not explained. A model with a larger error is not written, no matter how well it
-/// predicts the other readings.
+/// Largest factor by which a corrected arm may increase the median error at held-out positions, compared with
+/// calibration alone, if the readings are not explained. A model with a larger error is not written, no matter how well
+/// it predicts the other readings.
 const MOST_HARM: f64 = 1.1;
 
-/// The corrected arms if some readings are not explained, the placements of these arms in the frame of the
-/// instrument, and whether the arms have laws without a name.
+/// The corrected arms for the case that some readings are not explained.
 struct Unexplained {
     arms: Vec<Arm>,
+    /// Placements of the arms in the frame of the instrument, as entries of the provenance.
     placements: Value,
+    /// Whether the arms have laws without a name.
     has_laws: bool,
 }
 
 impl Unexplained {
-    /// The first arm and the others. The placements of the arms are written into `provenance`.
+    /// Returns the first arm and the others, and writes the placements of the arms into `provenance`.
     fn arms_with(mut self, provenance: &mut Value) -> (Arm, Vec<Arm>) {
         let places = self.placements.as_object().into_iter().flatten();
         places.for_each(|(key, value)| provenance[key.as_str()] = value.clone());
@@ -153,15 +158,16 @@ impl Unexplained {
     }
 }
 
-/// Adds the calibrated factors that the other readings showed (`own`) to those of the positions (`provenance`).
+/// Adds the calibrated factors in the provenance `own` of the other readings to those in the provenance of the
+/// positions.
 fn add_calibrated(provenance: &mut Value, own: &Value) {
     if let (Some(all), Some(own)) = (provenance["calibrated"].as_array_mut(), own["calibrated"].as_array()) {
         all.extend(own.iter().cloned());
     }
 }
 
-/// The less favourable of two tests for lack of fit: the one that fails, or else the one with the larger chi-squared
-/// per degree of freedom. `None` if there is no test.
+/// The less favourable of two tests for lack of fit. A test that fails is less favourable than one that passes;
+/// otherwise the one with the larger chi-squared per degree of freedom is. `None` if there is no test.
 fn worse_fit(loaded: Option<LackOfFit>, placed: Option<LackOfFit>) -> Option<LackOfFit> {
     let order =
         |a: &LackOfFit, b: &LackOfFit| a.fails.cmp(&b.fails).then(a.chi2_per_dof.total_cmp(&b.chi2_per_dof));
@@ -173,8 +179,9 @@ fn labels(findings: &[Finding]) -> String {
     findings.iter().map(Finding::label).collect::<Vec<_>>().join(" and ")
 }
 
-/// The campaign of positions `placed`, with the stiffnesses, masses and effects that the other readings showed
-/// (`found`). The geometry stays as in `placed`. The payloads get the mass that the other readings showed.
+/// The campaign of positions `placed` with an arm that has the stiffnesses, masses and effects of the corrected arm in
+/// `found`, the outcome of the other readings. The geometry stays as in `placed`. The payloads get the mass that the
+/// other readings showed.
 fn with_what_yields(placed: &Campaign, found: &Outcome) -> Campaign {
     let mut out = placed.clone();
     let known = out.arm.effects.len();
@@ -207,17 +214,19 @@ fn with_what_yields(placed: &Campaign, found: &Outcome) -> Campaign {
     out
 }
 
-/// The outcome for positions and the outcome for all other readings, from which the common outcome is made.
+/// The outcomes for the positions and for the other readings, from which the common outcome is made.
 struct Both<'a> {
     campaign: &'a Campaign,
+    /// The arms calibrated from the positions alone, without effects.
     calibrated: Calibrated,
-    /// Result of calibrating the geometry again, with the laws without a name that the other readings showed; `None`
-    /// if they showed none.
+    /// The arms calibrated again from the positions, with the laws without a name that the other readings showed;
+    /// `None` if they showed none.
     with_laws: Option<Calibrated>,
+    /// Outcome for the readings other than positions.
     loaded: Outcome,
+    /// Outcome for the positions.
     placed: Outcome,
-    /// Whether the positions were analysed with the findings of the other readings. If not, the positions were
-    /// analysed without them.
+    /// Whether the positions were analysed on an arm with the findings of the other readings.
     told: bool,
     /// The arm with the findings from both kinds of readings.
     corrected: Arm,
@@ -273,9 +282,9 @@ impl Both<'_> {
         }
     }
 
-    /// The corrected arms if some readings are not explained. They contain the laws without a name, or the effects,
-    /// that the other readings showed. If positions are then predicted worse than [`MOST_HARM`] allows, the arms are
-    /// only calibrated.
+    /// The corrected arms for the case that some readings are not explained. They have the laws without a name, or the
+    /// effects, that the other readings showed. If they predict positions worse than [`MOST_HARM`] allows, the arms are
+    /// calibrated only.
     fn unexplained(&self) -> Unexplained {
         let error_mm = |stage: Option<&Stage>| stage.map_or(f64::INFINITY, |s| s.median_mm);
         let most_mm = MOST_HARM * error_mm(self.calibrated.stages.last());
@@ -296,12 +305,13 @@ impl Both<'_> {
         without_laws(&self.calibrated)
     }
 
-    /// The verdict on the arm as a whole. If positions or the other readings are not explained or not sufficient, the
-    /// same is said of the arm.
+    /// The verdict on the arm as a whole. It is the less favourable of the verdicts from the positions and from the
+    /// other readings.
     fn verdict(&self) -> Verdict {
         Verdict::on_all(&[self.loaded.verdict, self.placed.verdict])
     }
 
+    /// The reasons of both outcomes, each with the kind of readings to which it belongs.
     fn reasons(&self, verdict: Verdict) -> Vec<String> {
         let of = |outcome: &Outcome, what: &str| {
             let mut out: Vec<String> = outcome.reasons.iter().map(|r| format!("{what}: {r}")).collect();
@@ -313,14 +323,15 @@ impl Both<'_> {
         [of(&self.loaded, "the readings other than positions"), of(&self.placed, "the positions")].concat()
     }
 
-    /// Index, in the stages of the positions, of the last stage before the first effect was added; `None` if there is
-    /// none.
+    /// Index of the last stage of the positions that adds no effect (the name of an effect contains `@`); `None` if
+    /// there is none.
     fn last_calibration(&self) -> Option<usize> {
         self.placed.stages.iter().rposition(|s| !s.added.contains('@'))
     }
 
-    /// The table of position errors as effects are added. Its rows are calibration alone, then the findings of the
-    /// other readings, then the effects found in positions.
+    /// The table of position errors, stage by stage. Its rows are the stages of calibration alone, one row for the
+    /// findings of the other readings if the positions were analysed with them, and then the effects found in
+    /// positions.
     fn stages(&self) -> Vec<Stage> {
         let Some(last) = self.last_calibration() else { return Vec::new() };
         let mut out = self.calibrated.stages.clone();
@@ -332,10 +343,12 @@ impl Both<'_> {
         out
     }
 
-    /// Root mean squares of the held-out residuals of both kinds of readings together \[standard deviations\].
-    /// `rms_before` is to be that of calibration alone. But the fit of the positions already has effects that the other
-    /// readings showed. So its root mean square is multiplied by the ratio of two median errors: with calibration
-    /// alone, and with these effects.
+    /// Root mean squares of the residuals of held-out readings of both kinds together \[sigma\]. `None` if neither kind
+    /// has any; those of one kind if the other has none.
+    ///
+    /// `rms_before` is the error of calibration alone. The fit of the positions may already have effects that the other
+    /// readings showed. Its root mean square is therefore multiplied by the ratio of two median errors of position: the
+    /// one with calibration alone, divided by the one with these effects.
     fn held_out(&self) -> Option<HeldOut> {
         let (Some(loaded), Some(placed)) = (self.loaded.held_out, self.placed.held_out) else {
             return self.loaded.held_out.or(self.placed.held_out);

@@ -1,4 +1,5 @@
-//! The house: a room of the library knows only the rooms below it (docs/architecture.md).
+//! Checks the rules of docs/architecture.md on the source: for example, a room of the library uses only the rooms below
+//! it.
 
 use crate::imports::{Crate, Module, circles};
 use std::fs;

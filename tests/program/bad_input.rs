@@ -1,4 +1,4 @@
-//! What `armwright` says of bad input: a message that helps, an exit code of its own, and nothing half-written.
+//! `armwright` on bad input: it gives a message that helps and an exit code of its own, and writes no file in part.
 
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};

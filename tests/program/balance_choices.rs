@@ -1,5 +1,5 @@
-//! A study may leave values of springs and counterweights open: `armwright run` searches every choice, and its front is
-//! that of all designs of all choices.
+//! Studies that leave values of springs and counterweights open: `armwright run` searches every choice of these values.
+//! Its front must be the front of all designs of all choices.
 
 use crate::running::armwright;
 use serde_json::{Value, json};

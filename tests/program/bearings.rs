@@ -1,4 +1,5 @@
-//! Output bearings and extras as a user meets them: margins, moments, shares, reasons, what could not be checked, masses.
+//! Output bearings and extras in the files and messages of the program: margins, moments, shares, reasons, masses, and
+//! what could not be checked.
 
 use crate::links::{armwright, folder_with};
 use serde_json::{Value, json};

@@ -1,4 +1,5 @@
-//! The pages hold together: every relative link and anchor leads somewhere, and the book's table of contents has every page.
+//! The documents as a book: every relative link and anchor must lead to an existing place, and the table of contents
+//! must list every page.
 
 use crate::words::files;
 use armwright::arm::effect::KINDS;

@@ -1,4 +1,4 @@
-//! A headless Chromium, driven through its DevTools protocol: one page a test.
+//! Runs a headless Chromium through its DevTools protocol, for the tests of pages. Each test has one browser page.
 
 use serde_json::{Value, json};
 use std::cell::{Cell, RefCell};

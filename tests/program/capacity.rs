@@ -1,5 +1,5 @@
-//! The largest payload and speed that `capacity` finds against `size`, which must hold just below them and fail just above
-//! them.
+//! `armwright capacity` checked by `armwright size`: the drives must hold just below the largest payload and speed that
+//! `capacity` finds, and fail just above.
 
 use serde_json::{Value, json};
 use std::path::Path;

@@ -1,5 +1,5 @@
-//! The catalogs as a user meets them: what is built in, what a folder of one's own adds, and what is
-//! said about a folder that is wrong.
+//! The catalogs of parts as the program uses them: the built-in rows, the rows that a user's folder adds, and the
+//! messages on a faulty folder.
 
 use armwright::catalog::CatalogFile;
 use armwright::catalog::MaterialClass;

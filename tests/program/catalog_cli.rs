@@ -1,4 +1,4 @@
-//! `armwright catalog` as a user reads it.
+//! What `armwright catalog` prints.
 
 use armwright::catalog::Catalogs;
 use armwright::command_line::{Cli, Failure, run};

@@ -1,4 +1,4 @@
-//! The command line as a user meets it: help, exit codes, where text goes.
+//! The command line: help, exit codes, and which text goes to standard output and which to standard error.
 
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};

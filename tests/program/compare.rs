@@ -1,4 +1,4 @@
-//! Fronts made by hand, small enough to know the answers by eye.
+//! `armwright compare` on small fronts that are written by hand, so that the right answers are known.
 
 use armwright::command_line::{Cli, run};
 use armwright::report::compare::Thresholds;

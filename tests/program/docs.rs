@@ -1,9 +1,9 @@
-//! What the documents say is true: their commands run and print what is shown, their examples are read,
-//! every key the readers know is described, and every file they point at exists.
+//! Checks that the documents say what is true: their commands run and print what is shown, their examples can be read,
+//! every key that the readers know is described, and every file that they mention exists.
 //!
-//! In a block marked `console`, a line after `$ ` is a command and the lines below it are what it prints.
-//! `...` alone stands for any number of lines, `…` inside a line for any text. A comment
-//! `<!-- file: NAME -->` before a block makes it a file of that name.
+//! In a block marked `console`, a line after `$ ` is a command, and the lines below it are what the command prints.
+//! `...` on a line of its own stands for any number of lines, and `…` within a line for any text. A comment
+//! `<!-- file: NAME -->` in front of a block makes the block a file of this name.
 
 use armwright::arm::read_arm_document;
 use armwright::arm::{DrivenJoint, read_load_cases};

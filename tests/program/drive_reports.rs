@@ -1,5 +1,5 @@
-//! What `size`, the page and the bill of materials say of drives: forces of joints that slide with their units, the mass
-//! that goes inward, and messages that name all that is missing.
+//! What `armwright size`, the page and the bill of materials say about drives: the forces of prismatic joints with
+//! their units, the mass that moves inboard, and messages that name everything that is missing.
 
 use crate::drives::folder;
 use crate::links::armwright;

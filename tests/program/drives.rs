@@ -1,4 +1,5 @@
-//! Drives of any kind as a user meets them: gears of other makers, what a part lacks, actuators, motors with a torque curve.
+//! Drives of every kind in studies: gears of other makers, parts that lack ratings, actuators, and motors with a torque
+//! curve.
 
 use crate::links::armwright;
 use serde_json::{Value, json};

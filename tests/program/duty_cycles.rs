@@ -1,4 +1,4 @@
-//! Duty cycles and motor heat as a user meets them: keys of a study, numbers of `size`, columns of the front, warnings.
+//! Duty cycles and motor heat: keys of a study, numbers of `armwright size`, columns of the front, and warnings.
 
 use serde_json::{Value, json};
 use std::path::Path;

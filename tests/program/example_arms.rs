@@ -1,4 +1,4 @@
-//! The arms of `examples/arms` run as docs/example-arms.md says, with the answers that stand there.
+//! The arms of `examples/arms` must run as docs/example-arms.md says, with the results that are written there.
 
 use serde_json::Value;
 use std::path::Path;

@@ -1,6 +1,6 @@
-//! What files of other programs must have of an arm: torques, tangents, backlash, names and masses.
+//! The contents of exported files: torques, tangent stiffnesses, backlash, names and masses of an arm.
 //!
-//! Most arms here have one joint, so that what a file must say can be worked out by hand.
+//! Most arms here have one joint, so that the right content of a file can be computed by hand.
 
 use serde_json::{Value, json};
 use std::collections::BTreeSet;

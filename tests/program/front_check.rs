@@ -1,5 +1,5 @@
-//! `armwright run --search exact` and `armwright front check` from the command line: a sound front passes, and
-//! a cell changed, a row dropped or a row added is found out, whichever search made the front.
+//! `armwright front check` on results of both searches: a sound front passes. A front with a changed cell, a dropped
+//! row or an added row is rejected.
 
 use armwright::arm::read_arm_document;
 use armwright::catalog::Catalogs;

@@ -1,4 +1,4 @@
-//! Input that is too large is refused with the limit that it exceeds, before it takes the machine's memory.
+//! Input that is too large is refused before it fills the memory of the machine. The message names the limit.
 
 use crate::running::armwright;
 use serde_json::json;

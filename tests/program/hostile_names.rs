@@ -1,5 +1,5 @@
-//! Names are not paths, not commands and not tricks: names that would write outside, share a file, run in a spreadsheet or
-//! show something else.
+//! Names that could do harm: they would write outside the folder, make two files the same, run as a formula in a
+//! spreadsheet, or look like another name.
 
 use crate::running::armwright;
 use crate::whole_results::study;

@@ -1,5 +1,6 @@
-//! Which file of the crate uses which: modules, `use` trees and paths inside code, re-exports followed to the file that
-//! defines the name. Items under `#[cfg(test)]` do not count: a unit test may call a witness from any room.
+//! Finds out which file of the crate uses which, for the tests of architecture. It reads modules, `use` trees and paths
+//! in code, and follows a re-export to the file that defines the name. Items under `#[cfg(test)]` do not count, because
+//! a unit test may call a witness from any room.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

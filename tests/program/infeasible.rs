@@ -1,5 +1,6 @@
-//! A study that no design meets: the program names what stands in the way, by how much, and what is enough, whichever search
-//! was asked for. What it says is enough is tried, and so is a little less.
+//! Studies that no design meets: the program names what is in the way, by how much it fails, and which value is enough,
+//! with every search method. The tests try this value, which must be enough, and a slightly smaller one, which must
+//! not.
 
 use crate::running::armwright;
 use serde_json::{Value, json};

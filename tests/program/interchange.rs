@@ -1,7 +1,9 @@
-//! Robots of URDF files come in, arms and designs go out to other programs, and both are the same machine as before.
+//! Import of robots from URDF files, and export of arms and designs to other programs. The arm must be mechanically the
+//! same on both sides.
 //!
-//! `tests/data/urdf` has five public robots, written down from published figures, and a made-up one with everything that a URDF
-//! may have beside a plain chain. `simulators.rs` compares with CalculiX and MuJoCo.
+//! `tests/data/urdf` has five public robots that were written from published figures, and an invented one with
+//! everything that a URDF file may have in addition to a plain chain. `simulators.rs` compares with CalculiX and
+//! MuJoCo.
 
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 use serde_json::{Value, json};

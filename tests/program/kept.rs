@@ -1,5 +1,5 @@
-//! Nothing that is finished is lost: a terminal that is gone, a page that cannot be made, an input that an output would
-//! replace.
+//! Finished results are never lost: the terminal may be closed, a page may be impossible to make, and an output may
+//! have the path of an input.
 
 use crate::running::{command, said};
 use crate::whole_results::study;

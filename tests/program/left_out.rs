@@ -1,4 +1,4 @@
-//! What every number of a result leaves out stands beside the numbers.
+//! Every result must state what its numbers leave out, in the terminal, the summary, the page and `run.json`.
 
 use crate::links::{armwright, folder_with};
 use serde_json::{Value, json};

@@ -1,4 +1,5 @@
-//! What links are made of, by the program as a user meets it: thick walls and bars, stainless steel, the median section.
+//! Links in the files and messages of the program: thick walls and solid bars, stainless steel, and the section of
+//! median mass.
 
 use serde_json::{Value, json};
 use std::f64::consts::PI;

@@ -1,5 +1,5 @@
-//! The program as a user meets it: its commands, its messages, the files and pages that it writes, the documents; and the
-//! house that the source stands in.
+//! Tests of the program from the outside: its commands, its messages, the files and pages that it writes, and the
+//! documents. Also tests of the architecture of the source.
 
 mod architecture;
 mod bad_input;

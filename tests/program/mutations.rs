@@ -1,8 +1,9 @@
-//! Every reader is given files that were changed at random: none panics, none hangs, each answer is of the table of exit codes.
+//! Every reader of input gets files that were changed at random. None may panic or hang, and every exit code must be in
+//! the table of exit codes.
 //!
-//! The changes are those of a fuzzer: bits, spans, lines, numbers at the edge of what can be written, and for JSON whole values.
-//! They are the same each time. `ARMWRIGHT_MUTATIONS=20000` makes so many for each reader; `ARMWRIGHT_MUTATIONS_FROM=7` begins
-//! with another seed.
+//! The changes are those of a fuzzer: bits, spans, lines, numbers at the limits of what can be written, and whole
+//! values of JSON. They are the same in every run. `ARMWRIGHT_MUTATIONS=20000` sets the number of changed files for
+//! each reader, and `ARMWRIGHT_MUTATIONS_FROM=7` the first seed.
 
 use armwright::catalog::Catalogs;
 use armwright::command_line::{Cli, run};

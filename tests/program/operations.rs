@@ -1,5 +1,5 @@
-//! What an operator of a run sees: logs without carriage returns, JSON lines, quiet runs, exit codes of runs that were stopped,
-//! and results that are the same outside of their timings.
+//! What the operator of a run sees: logs without carriage returns, JSON lines, quiet runs, and exit codes of runs that
+//! were stopped. Results must be equal except for their timings.
 
 use crate::front_check::STUDY;
 use serde_json::Value;

@@ -1,4 +1,5 @@
-//! Ranges of joints, the worst poses within them, and deflections that are not small, as a user meets them.
+//! Poses other than the cases of a study: ranges of joints, the worst poses within them, and warnings for large
+//! deflections.
 
 use serde_json::{Value, json};
 use std::path::Path;

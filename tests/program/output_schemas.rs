@@ -1,5 +1,5 @@
-//! The schemas of written files and the writers know the same keys and columns: every file that the program writes is valid,
-//! and every key and column of a schema is in some file.
+//! The JSON Schemas of written files agree with the files: every file that the program writes is valid, and every key
+//! and column of a schema is in some file.
 
 use crate::front_check::STUDY;
 use crate::running::armwright;

@@ -1,5 +1,5 @@
-//! The pages in a real browser: quiet, linked, equal to their files. Without Chromium these tests say so
-//! and pass; `scripts/test` installs it where it may.
+//! The pages in a real browser: they report no errors, their links work, and their numbers equal those of the files.
+//! Without Chromium the tests print this and pass; `scripts/test` installs Chromium where it may.
 //!
 //! `ARMWRIGHT_SCREENSHOTS=DIR cargo test --test program pages` also writes pictures of the pages into a folder.
 

@@ -1,4 +1,5 @@
-//! What a run says of a search while it runs (`--progress`), and what it proves of a part of the front (`--mass-max-kg`).
+//! The progress that a run reports while it searches (`--progress`), and what it proves of a part of the front
+//! (`--mass-max-kg`).
 
 use crate::front_check::STUDY;
 use crate::running::armwright;

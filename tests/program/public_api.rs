@@ -1,8 +1,9 @@
-//! The public interface of the library, held against `tests/data/public-api.txt`: a change of it shows in the diff of that file.
+//! Compares the public interface of the library with `tests/data/public-api.txt`, so that a change of the interface
+//! shows in the diff of that file.
 //!
-//! The lint `unreachable_pub` is denied, so that what is written `pub` is what another program can reach. The file has each such
-//! item under the path by which it is reached, with its signature. The program itself (`command_line`) is no part of it. Write the
-//! file anew with
+//! The lint `unreachable_pub` is denied, so an item that is written `pub` can be reached by other programs. The file
+//! lists each such item with its path and its signature. The command line (`command_line`) is not part of it. To write
+//! the file again:
 //!
 //! ```text
 //! ARMWRIGHT_REFRESH=1 cargo test --test program public_interface

@@ -1,7 +1,7 @@
-//! A search that was stopped, killed, or lost its disk goes on with the same command, and its result has the bytes of a
-//! search that was never stopped.
+//! A search that was stopped or killed, or whose disk was full, continues with the same command. Its result has the
+//! same bytes as that of a search without interruption.
 //!
-//! `ARMWRIGHT_KILLS=50` kills at so many random moments; the default is 5.
+//! `ARMWRIGHT_KILLS=50` sets the number of random moments at which the search is killed; the default is 5.
 
 use crate::running::{command, said};
 use serde_json::{Value, json};

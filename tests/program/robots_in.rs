@@ -1,4 +1,4 @@
-//! Robots of URDF files that are odd: joints that mimic each other, rounding in inertias, and a stiffness file that a user
+//! Unusual robots in URDF files: joints that mimic each other, rounding in inertias, and a stiffness file that a user
 //! has filled in.
 
 use serde_json::Value;

@@ -1,4 +1,4 @@
-//! How tests run the program.
+//! Runs the program for the tests, and returns its exit code and what it printed.
 
 use std::path::Path;
 use std::process::Command;

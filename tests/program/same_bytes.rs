@@ -1,5 +1,5 @@
-//! Results have the same bytes on a processor with fused multiply-add and wide registers and on one without: the program is
-//! run by itself and in an emulator of an old processor.
+//! Results have the same bytes on processors with and without fused multiply-add and wide registers. The tests run the
+//! program directly and in an emulator of an old processor.
 
 use crate::front_check::STUDY;
 use std::path::{Path, PathBuf};

@@ -1,5 +1,6 @@
-//! Readers and schemas know the same keys: whatever a reader says of a key, its presence, its type or its sign, the schema
-//! says too, and a schema refuses nothing that the reader takes. What a schema calls a default is what holds without the key.
+//! Readers and JSON Schemas know the same keys. If a reader requires a key, a type or a sign, the schema requires it
+//! too. A schema accepts everything that the reader accepts. A default that a schema states is the value without the
+//! key.
 
 use crate::links::armwright;
 use crate::words::files as files_below;

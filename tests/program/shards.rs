@@ -1,5 +1,5 @@
-//! A search in shards: the joined result has the bytes of one machine, for any number of shards and threads; what does not
-//! belong together or is missing is refused.
+//! A search that is divided into shards: the joined result has the same bytes as that of one machine, for any number of
+//! shards and threads. Shards that are missing or do not belong together are refused.
 
 use crate::front_check::STUDY;
 use crate::running::armwright;

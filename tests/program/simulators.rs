@@ -1,5 +1,5 @@
-//! Other programs find the same torques, deflections and frequencies: CalculiX and MuJoCo, where they are installed. The
-//! comparisons are scripts in `tests/interchange`.
+//! Other programs, CalculiX and MuJoCo, find the same torques, deflections and frequencies, where they are installed.
+//! The comparisons are scripts in `tests/interchange`.
 
 use crate::interchange::{ROBOTS, SCARA, project, urdf};
 use std::process::Command;

@@ -1,8 +1,9 @@
-//! A study on a real Slurm, which the test starts and stops itself: of an array of shards one is killed, that one alone is
-//! submitted again, and the joined result has the bytes of one machine.
+//! A study on a real Slurm cluster, which the test starts and stops itself. One shard of an array is killed and
+//! submitted again alone. The joined result must have the same bytes as that of one machine.
 //!
-//! It runs where `slurmctld`, `slurmd` and `sbatch` are installed (Debian: `apt-get install slurmctld slurmd slurm-client`), as
-//! any user, without systemd, munge, cgroups or a free well-known port. `ARMWRIGHT_SLURM=0` leaves it out.
+//! The test runs where `slurmctld`, `slurmd` and `sbatch` are installed (Debian: `apt-get install slurmctld slurmd
+//! slurm-client`). It runs as any user and needs neither systemd, munge and cgroups nor a certain port.
+//! `ARMWRIGHT_SLURM=0` skips it.
 
 use crate::front_check::STUDY;
 use std::fs;

@@ -1,4 +1,5 @@
-//! What a newcomer starts with: starters that run as they are, `check` of any file, completions and manual pages.
+//! What a new user starts with: starters that run unchanged, `armwright check` for any file, shell completions and
+//! manual pages.
 
 use crate::links::armwright;
 use serde_json::{Value, json};

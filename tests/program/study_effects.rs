@@ -1,4 +1,4 @@
-//! Effects in studies, by the program as a user meets it: in a study file, from an arm file, from a campaign.
+//! Effects in studies: from the study file, from an arm file, and from a campaign.
 
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};

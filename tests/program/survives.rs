@@ -1,5 +1,5 @@
-//! Runs survive and never lie: links are not followed, files of others are not replaced, a signal leaves nothing half
-//! done and nothing unsaid.
+//! A run that meets trouble keeps what it has and says what is missing. Symbolic links are not followed, files of
+//! others are not replaced, and after a signal no file is half-written.
 
 use crate::running::{armwright, command, said};
 use crate::whole_results::{copy, study};

@@ -1,5 +1,5 @@
-//! A result is one thing: whatever stops the program while it replaces a result, a reader finds the old one or the new one,
-//! whole. Files of others are neither replaced nor removed.
+//! A result is replaced as a whole: at whatever moment the program stops, a reader finds either the old result or the
+//! new one, complete. Files that do not belong to the result are neither replaced nor removed.
 
 use crate::running::{command, said};
 use serde_json::{Value, json};

@@ -1,4 +1,4 @@
-//! Standard words: those that docs/glossary.md has replaced do not come back in the documents, in help, or in public
+//! Words that docs/glossary.md has replaced by standard ones must not appear again in documents, help texts or public
 //! names.
 
 use crate::starters::verbs;

@@ -1,4 +1,5 @@
-//! Bad campaigns: every fault is listed at once, and too little is called too little.
+//! Campaigns with bad data: all faults are listed at once, and too few readings give the verdict that there are too
+//! few.
 
 use armwright::catalog::Catalogs;
 use armwright::reconcile::Campaign;

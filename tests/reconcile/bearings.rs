@@ -1,5 +1,6 @@
-//! Arms whose nominal model has output bearings: a bearing within its tolerance is calibrated, and what tilts beyond it is
-//! named. The witness that makes the readings has one spring across each joint and knows nothing of nominal bearings.
+//! Arms whose nominal model has output bearings: the stiffness of a bearing within its tolerance is calibrated, and a
+//! larger tilt is named as an effect. The independent model that makes the readings has one spring across each joint
+//! and knows nothing of nominal bearings.
 
 use crate::generator::{self, Dice, Plan, Specimen};
 use armwright::arm::Element;

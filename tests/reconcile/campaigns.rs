@@ -1,4 +1,4 @@
-//! Made campaigns from an independent model, reconciled without their keys; the keys are opened when all
+//! Campaigns made by an independent model. They are reconciled without their answer keys, which are read only after all
 //! verdicts have been written.
 
 use crate::scoring;

@@ -1,4 +1,5 @@
-//! Positions that were written down by another convention: the verdict says which would fit, and changes nothing.
+//! Absolute positions that were written by another convention, such as other units or axes: the verdict names the
+//! convention that would fit, and changes nothing.
 
 use crate::positions_maker::standard;
 use armwright::catalog::Catalogs;

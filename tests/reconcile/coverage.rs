@@ -1,5 +1,5 @@
-//! How often the 95 % intervals hold, kind of readings by kind of readings. `ARMWRIGHT_COVERAGE` is the number of campaigns
-//! of each; by default it is small, and only gross faults show. The table is printed.
+//! How often the 95 % intervals contain the truth, for each kind of readings. `ARMWRIGHT_COVERAGE` is the number of
+//! campaigns of each kind. By default it is small, so that only gross faults show. The test prints a table.
 
 use crate::generator;
 use crate::scoring;

@@ -1,4 +1,4 @@
-//! What three frequencies can say: the paper's own, as if measured on the arm of its Table 1.
+//! What three natural frequencies can show: the paper's own, taken as if they were measured on the arm of its Table 1.
 
 use armwright::catalog::Catalogs;
 use armwright::reconcile::Campaign;

@@ -1,4 +1,4 @@
-//! The prepared model that fits use against mechanics itself, for every effect at every place.
+//! Compares the prepared model that fits use with the full mechanics, for every effect at every place.
 
 use armwright::arm::effect::Subject;
 use armwright::arm::{Bearing, Curve, Effect, Element, JointModel, Windup};

@@ -1,7 +1,8 @@
-//! Readings as people with a dial gauge take them: one direction, blanks, zeros that are no readings, a spreadsheet.
+//! Readings as people with a dial gauge take them: one direction, blank cells, zeros that are not readings, a
+//! spreadsheet.
 //!
-//! The folders of `tests/data/dial_gauge` and the campaigns made here are of a bench with two joints, computed in closed
-//! form: a torque over a stiffness turns what is outboard of the joint. Gauges read with a noise of 0.01 mm.
+//! The folders of `tests/data/dial_gauge` and the campaigns made here are of a bench with two joints, computed in
+//! closed form: each joint turns by its torque divided by its stiffness. Gauges have a noise of 0.01 mm.
 
 use crate::positions_maker::Noise;
 use armwright::catalog::Catalogs;

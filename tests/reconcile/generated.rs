@@ -1,5 +1,5 @@
-//! Fresh campaigns made by the independent witness, reconciled without their keys. The rates over hundreds of
-//! them are in docs/reconcile.md; here a few of each class hold the line.
+//! New campaigns made by the independent model and reconciled without their answer keys. docs/reconcile.md has the
+//! rates over hundreds of campaigns; here a few of each class must be right.
 
 use crate::detectability;
 use crate::generator;

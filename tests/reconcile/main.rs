@@ -1,4 +1,5 @@
-//! A model reconciled with measurements: campaigns of the independent witness, of other simulators, of real machines.
+//! Tests of `reconcile`, the comparison of a model with measurements: with campaigns of an independent model, of other
+//! simulators and of real machines.
 
 mod bad_data;
 mod bearings;

@@ -1,6 +1,8 @@
-//! Positions of arms whose file has compliances: what differs from the file is a mass, cables, a modulus or a spring, and
-//! stiffnesses within tolerance. The arms are made by the independent witness, and their lengths are off by millimetres.
-//! `ARMWRIGHT_POSITIONS` is the number of arms of each kind; the table is printed.
+//! Absolute positions of arms whose arm file has compliances. The true arm differs from its file by a mass, cables, a
+//! modulus or a spring, and by stiffnesses within their tolerance. The readings are made by the independent model, and
+//! lengths differ by millimetres.
+//!
+//! `ARMWRIGHT_POSITIONS` is the number of arms of each kind. The test prints a table.
 
 use super::generator::{self, Dice, Plan, Specimen};
 use armwright::catalog::Catalogs;

@@ -1,5 +1,6 @@
 //! Campaigns from a simulator that shares nothing with this library or its tests: a finite-element arm in relative
-//! coordinates, written from the documentation alone. Each of these once got another verdict than its key.
+//! coordinates, written from the documentation alone. Each of these campaigns got a wrong verdict in an earlier
+//! version.
 
 use armwright::catalog::Catalogs;
 use armwright::reconcile::{Campaign, Outcome, Verdict, reconcile};

@@ -1,7 +1,7 @@
-//! Absolute positions: two real machines, and made campaigns whose truth is known.
+//! Absolute positions: of two real machines, and of made campaigns whose truth is known.
 //!
-//! The machines' measurements may not be redistributed: the folder that holds them is named by the
-//! environment variable ARMWRIGHT_MEASURED, and their tests say aloud when they are skipped.
+//! The measurements of the machines may not be redistributed. The environment variable `ARMWRIGHT_MEASURED` names the
+//! folder that has them; without it, their tests print that they are skipped.
 
 use crate::measured;
 use crate::positions_maker::{EVEN_RAD_PER_NM, LOPSIDED_RAD_PER_NM, LOST_RAD, Made, UNEVEN_RAD, standard};

@@ -1,5 +1,5 @@
-//! Made campaigns of absolute positions: a base that lifts off, a stiffness that varies with the angle, a drift, and physics
-//! that is no effect in positions but looks like one.
+//! Made campaigns of absolute positions: a base that lifts off, a stiffness that varies with the angle, a drift, and
+//! physics that is not an effect in positions but looks like one.
 
 use crate::positions_maker::{
     DRIFT_MM_PER_ROW, LIFT_RAD_PER_NM, LOST_RAD, Made, PRELOAD_NM, WAVE, WAVE_PHASE_RAD, standard,

@@ -1,4 +1,4 @@
-//! Long campaigns of absolute positions: effects are screened on a part of the rows, and everything else is from all rows.
+//! Long campaigns of absolute positions: effects are screened on a part of the rows, and everything else uses all rows.
 
 use crate::positions_maker::{Made, Truth, in_poses};
 use armwright::catalog::Catalogs;

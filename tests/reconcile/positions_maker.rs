@@ -1,5 +1,5 @@
-//! Made campaigns of absolute positions, by small rotations of rigid bodies, independent of the library:
-//! a true arm with offset zeros stands askew, sags about its joints, and is read with noise.
+//! Makes campaigns of absolute positions by small rotations of rigid bodies, independently of the library. The true arm
+//! has offset zeros, stands at an angle, and deflects in its joints under gravity. The readings have noise.
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use serde_json::{Value, json};

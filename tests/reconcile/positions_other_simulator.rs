@@ -1,5 +1,5 @@
-//! Campaigns of absolute positions from a simulator that shares nothing with this library or its tests, written from the
-//! documentation alone. Each of these once got another verdict.
+//! Campaigns of absolute positions from a simulator that shares nothing with this library or its tests, written from
+//! the documentation alone. Each of these campaigns got a wrong verdict in an earlier version.
 
 use armwright::catalog::Catalogs;
 use armwright::reconcile::Campaign;

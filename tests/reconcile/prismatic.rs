@@ -1,5 +1,5 @@
-//! Campaigns on arms with prismatic joints. The readings are those of the full model of a true arm, with noise; the arm file
-//! beside them has the stated numbers.
+//! Campaigns on arms with prismatic joints. The readings are those of the full model of a true arm, with noise. The arm
+//! file has the stated numbers instead of the true ones.
 
 use crate::generator::Dice;
 use armwright::arm::{Arm, JointModel, LinkModel, Payload, pose_si, read_arm_document};

@@ -1,9 +1,9 @@
-//! A simulator of one driven joint against time, which uses nothing of the library: motor, spring with friction play or a
-//! stiffening curve, link under gravity, friction on the motor's side, a controller that follows a reference, encoders with
-//! noise, resolution and a delay.
+//! A simulator of one driven joint against time, which uses nothing of the library. It has a motor, a spring with
+//! friction play or a stiffening curve, a link under gravity, friction on the motor's side, a controller that follows a
+//! reference, and encoders with noise, resolution and a delay.
 //!
-//! `J_m q_m'' = T - T_s - friction(q_m', T_s)`, `J_l q_l'' = T_s - m g l sin q_l`, `T_s = k (q_m - q_l)` without play.
-//! Integrated by the classical Runge-Kutta rule of fourth order.
+//! Without play, the equations are `J_m q_m'' = T - T_s - friction(q_m', T_s)`, `J_l q_l'' = T_s - m g l sin q_l` and
+//! `T_s = k (q_m - q_l)`. They are integrated by the classical Runge-Kutta method of fourth order.
 
 use super::generator::Dice;
 use std::fmt::Write;

@@ -1,4 +1,4 @@
-//! Records against time: of joints made by an independent simulator, and of an industrial robot.
+//! Records against time: of joints of an independent simulator, and of an industrial robot.
 
 use super::generator::Dice;
 use super::record_simulator::{Joint, Test, record};

@@ -1,4 +1,4 @@
-//! Records of which some rows, columns or causes are not what a fit takes them for.
+//! Records with rows or columns that a fit must leave out, and with causes that look like an effect of the library.
 
 use super::generator::Dice;
 use super::record_simulator::{Joint, Test};

@@ -1,4 +1,5 @@
-//! Records against time of a joint whose motion and load are prescribed: what explains its twist, and what must not.
+//! Records against time of a joint with prescribed motion and load: which effects explain its twist, and which must
+//! not.
 
 use super::generator::Dice;
 use super::records::{names, number, outcome};

@@ -1,5 +1,5 @@
-//! Absolute positions beside displacements, frequencies and bench readings, of arms made by the independent
-//! witness whose lengths are off by millimetres.
+//! Absolute positions together with displacements, frequencies and bench readings. The arms are made by the independent
+//! model, and their lengths differ from the arm file by millimetres.
 
 use super::generator::{self, Dice, Plan, Specimen};
 use armwright::arm::read_arm_document;

@@ -1,4 +1,4 @@
-//! Effects of unusual size, links that are not as drawn, and wrong readings beside an effect.
+//! Effects of unusual size, links that differ from the drawing, and wrong readings together with an effect.
 
 use crate::generator::{self, Dice, Plan, Specimen};
 use armwright::catalog::Catalogs;

@@ -1,5 +1,5 @@
-//! Physics that the library has no effect for: the verdict stays `unexplained`, and the corrected arm has laws without a name
-//! and predicts poses better that nobody fitted.
+//! Physics for which the library has no effect: the verdict must be `unexplained`. The corrected arm must have laws
+//! without a name, and must predict poses that were not fitted better than the nominal arm.
 
 use crate::generator::{self, Dice, Plan, Specimen};
 use armwright::arm::{JointModel, read_arm_document};

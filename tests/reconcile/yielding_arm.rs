@@ -1,5 +1,6 @@
-//! Made positions of a six-axis arm of which every joint yields about its axis and some bearings tilt, most of them too
-//! little to be named. Rotations of rigid bodies as the arm hangs, independent of the library.
+//! Makes positions of a six-axis arm. Every joint is compliant about its axis and some bearings tilt, most of them too
+//! little to be named. The arm is computed in its deflected pose by rotations of rigid bodies, independently of the
+//! library.
 
 use crate::generator::Dice;
 use nalgebra::{Rotation3, Unit, Vector3};

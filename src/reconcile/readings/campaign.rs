@@ -1,4 +1,4 @@
-//! Reads a campaign: an arm file, the statements about it, and the readings.
+//! Reads a campaign: the arm file, what `campaign.json` states about arm and readings, and the readings.
 
 use super::cells::Purpose;
 use super::components::{Components, DISPLACEMENT, POSITION, leave_out_idle};
@@ -20,16 +20,18 @@ use crate::catalog::Catalogs;
 use crate::input::json::{Document, Fault, Faults, InputError, Node};
 use std::path::{Path, PathBuf};
 
-/// Tolerance of parts: limits within which 95 % of faultless parts lie, as fractions of the nominal value.
+/// Tolerance of parts, as fractions of nominal values. 95 % of faultless parts deviate from their nominal value by no
+/// more than this.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance {
-    /// Limit of the deviation of each joint's stiffness. The joints deviate independently.
+    /// Tolerance of the stiffness of each joint. Joints deviate independently of each other.
     pub joint_stiffness: f64,
-    /// Limit of the deviation of the common factor on the moduli E and G of each material.
+    /// Tolerance of one factor for each material, by which both its moduli E and G are multiplied.
     pub modulus: f64,
-    /// Limit of the deviation of each joint's mass. The joints deviate independently.
+    /// Tolerance of the mass of each joint. Joints deviate independently of each other.
     pub joint_mass: f64,
-    /// Limit of the deviation of the tilting stiffness of each joint's bearing. The bearings deviate independently.
+    /// Tolerance of the tilting stiffness of the output bearing of each joint. Bearings deviate independently of each
+    /// other.
     pub bearing_stiffness: f64,
 }
 
@@ -38,9 +40,9 @@ pub struct Tolerance {
 pub struct PositionsSpec {
     /// Whether the position and attitude of the base in the instrument's frame are unknown.
     pub base_placement: bool,
-    /// Whether the position of each measured point on the last frame is unknown.
+    /// Whether the position of each measured point in the last frame of the arm is unknown.
     pub tool_offset: bool,
-    /// Whether the zero of each joint may deviate from its nominal value.
+    /// Whether the zero of the angle of each joint may deviate from its nominal value.
     pub joint_offsets: bool,
     /// Whether each link's vector and each joint's axis may deviate from their nominal values.
     pub geometry: bool,
@@ -49,14 +51,14 @@ pub struct PositionsSpec {
     /// Names of the links whose mounting is unknown: position and attitude of everything outboard of such a link are
     /// fitted. An example is an arm that is bolted to a trunk at an unknown attitude.
     pub mounts: Vec<String>,
-    /// Sessions that are declared, because something was moved on purpose.
+    /// Sessions that `campaign.json` declares because something was moved on purpose.
     pub sessions: Vec<DeclaredSession>,
 }
 
 impl PositionsSpec {
-    /// Whether the direction of gravity must be fitted. It must if this is stated. It also must if the base placement
-    /// and the axis of the first joint are both free, because positions alone cannot tell which of them is not
-    /// vertical.
+    /// Whether the direction of gravity must be fitted. This is so if `campaign.json` states it. It is also so if both
+    /// the base placement and the axis of the first joint are free, because positions cannot tell which of the two is
+    /// not vertical.
     pub fn frees_gravity(&self) -> bool {
         self.gravity_direction || (self.geometry && self.base_placement)
     }
@@ -67,36 +69,38 @@ impl PositionsSpec {
 pub struct Statement {
     /// Name of the campaign.
     pub name: String,
-    /// Tolerance of the parts, within which they are calibrated.
+    /// How far stiffnesses, masses and moduli of good parts may be from their nominal values. Calibration may change
+    /// them within this tolerance.
     pub tolerance: Tolerance,
-    /// Density of the payloads, for their buoyancy \[kg/m³\].
+    /// Density of the payloads, from which their buoyancy in a fluid follows \[kg/m³\].
     pub payload_density_kg_m3: f64,
     /// Whether the links are rigid in the nominal model.
     pub rigid_links: bool,
-    /// The effects that may be named; `None` for all of them.
+    /// Names of the effects that may be named as causes; `None` if all effects may be.
     pub effects: Option<Vec<String>>,
     /// What is unknown in absolute positions, and the declared sessions.
     pub positions: PositionsSpec,
-    /// What is stated about each record against time.
+    /// Files, columns and constants of each record against time.
     pub records: Vec<RecordSpec>,
-    /// File of the measured arm.
+    /// Arm file of the nominal arm, in the folder of `campaign.json`.
     pub(crate) arm_file: String,
-    /// Files of other arms on the same trunk, in the folder of `campaign.json`.
+    /// Arm files of other arms on the same trunk (the elements at the base that all arms have in common), in the folder
+    /// of `campaign.json`.
     pub other_arm_files: Vec<String>,
     /// File and columns of each channel, in the order of [`Channel::ALL`]; `None` if nothing is stated.
     sources: [Option<Source>; 4],
 }
 
-/// A campaign, read and checked.
+/// A campaign: an arm, what is stated about it, and its readings. All of it was read and checked.
 #[derive(Debug, Clone)]
 pub struct Campaign {
     /// Folder of the campaign.
     pub folder: PathBuf,
     /// Content of its `campaign.json`.
     pub statement: Statement,
-    /// The nominal arm.
+    /// The nominal arm, as its arm file describes it.
     pub arm: Arm,
-    /// Other arms on the same trunk, for absolute positions.
+    /// Other arms on the same trunk (see [`Campaign::trunk`]). Only absolute positions use them.
     pub other_arms: Vec<Arm>,
     /// Tip displacements, in the order of the file.
     pub statics: Vec<StaticRow>,
@@ -106,30 +110,27 @@ pub struct Campaign {
     pub windup: Vec<WindupRow>,
     /// Absolute positions, in the order of the file.
     pub positions: Vec<PositionRow>,
-    /// Sentences on readings that were not taken as they are written, such as a constant column that is taken as not
-    /// measured.
+    /// Sentences on readings that were left out, for example a column that has the same value in all rows.
     pub remarks: Vec<String>,
-    /// If several campaigns were joined, the index in `positions` of the first row of each campaign after the first
-    /// one.
+    /// Index in `positions` of the first row of each campaign that was joined to this one. Empty if no campaign with
+    /// positions was joined.
     pub(crate) joined_at: Vec<usize>,
     /// Records against time.
     pub records: Vec<Record>,
-    /// blake3 hash of all files of the campaign.
+    /// BLAKE3 hash of all files of the campaign, in hexadecimal digits; empty if it was not read from files.
     pub hash: String,
 }
 
 const DEFAULT_PAYLOAD_DENSITY_KG_M3: f64 = 7850.0;
 
-/// Reads `campaign.json`.
-///
-/// # Errors
-/// The file is missing, or all of its faults.
+/// The file is missing, or it has faults. The error lists all of them.
 pub(crate) fn read_statement(path: &Path) -> Result<Statement, InputError> {
     let document = Document::read(path)?;
     let statement = statement(&document.root());
     Ok(document.finish(statement)?)
 }
 
+/// Reads the content of `campaign.json`. `None` after recording a fault.
 fn statement(node: &Node) -> Option<Statement> {
     let root = node.shaped(&CAMPAIGN)?;
     let name = root.or("name", "campaign".to_string(), |n| n.string().map(String::from));
@@ -159,12 +160,13 @@ fn statement(node: &Node) -> Option<Statement> {
     })
 }
 
-/// Tolerance that applies if the campaign states none, as fractions of the nominal value.
+/// Tolerance if `campaign.json` has no key `tolerance`. If it has this key, each tolerance that it does not state is
+/// zero.
 const DEFAULT_TOLERANCE: Tolerance =
     Tolerance { joint_stiffness: 0.10, modulus: 0.03, joint_mass: 0.02, bearing_stiffness: 0.0 };
 
-/// Reads the density of the payloads from `conventions`; everything else in `conventions` is text for people. Returns
-/// `None` after recording a fault.
+/// Reads the density of the payloads from `conventions` \[kg/m³\]. Other keys of `conventions` are for people and are
+/// ignored. Returns `None` after recording a fault.
 fn read_payload_density(node: &Node) -> Option<f64> {
     let (_, density) = node.entries()?.into_iter().find(|(key, _)| *key == "payload_density_kg_m3").unzip();
     density.map_or(Some(DEFAULT_PAYLOAD_DENSITY_KG_M3), |density| density.positive())
@@ -218,26 +220,27 @@ fn read_names(node: &Node) -> Option<Vec<String>> {
 }
 
 impl Statement {
-    /// File and columns of a channel, as `campaign.json` states them; empty if it states nothing, and the usual names
-    /// then apply.
+    /// File and columns of a channel, as `campaign.json` states them. If it states nothing, all fields are empty and
+    /// the usual names apply.
     pub(crate) fn source(&self, channel: Channel) -> Source {
         self.sources[channel as usize].clone().unwrap_or_default()
     }
 
-    /// Whether the campaign allows the effect with this name to be named as a cause.
+    /// Whether the effect with the name `effect` may be named as a cause.
     pub fn considers(&self, effect: &str) -> bool {
         self.effects.as_ref().is_none_or(|list| list.iter().any(|name| name == effect))
     }
 }
 
-/// Largest number of readings of a channel: those for which time and memory were measured (docs/speed.md).
+/// Largest number of readings of a channel. Up to this number, time and memory were measured (docs/speed.md).
 const MOST_READINGS: usize = 100_000;
 
 impl Campaign {
-    /// Reads a campaign folder.
+    /// Reads the campaign in the folder `folder`. The path of a file in the folder, such as `campaign.json`, is
+    /// accepted too.
     ///
     /// # Errors
-    /// A file is missing, or all faults of all files.
+    /// A file cannot be read, or there are faults. The error lists all faults of all files.
     pub fn read(folder: &Path, catalogs: &Catalogs) -> Result<Self, InputError> {
         if !folder.join("campaign.json").exists() && folder.is_file() {
             return Self::read(folder.parent().unwrap_or(folder), catalogs);
@@ -294,6 +297,8 @@ impl Campaign {
         if faults.is_empty() { Ok(campaign) } else { Err(Faults(faults).into()) }
     }
 
+    /// Stores the rows of a table. Components that were not measured are left out with a remark (see
+    /// [`leave_out_idle`]).
     fn read_channel(&mut self, channel: Channel, table: &Table) {
         match channel {
             Channel::Static => {
@@ -314,20 +319,22 @@ impl Campaign {
         }
     }
 
-    /// All arms on the trunk, the campaign's own first.
+    /// All arms on the trunk, the arm of the campaign first.
     pub fn arms(&self) -> Vec<&Arm> {
         std::iter::once(&self.arm).chain(&self.other_arms).collect()
     }
 
-    /// Names of the joints that have an entry in a pose: those of the first arm, then those that only other arms have.
+    /// Names of the driven joints, in the order of the angles of a pose: those of the first arm, then those that only
+    /// other arms have.
     pub fn driven_joint_names(&self) -> Vec<String> {
         driven_joints(&self.arms()).into_iter().map(|joint| joint.name).collect()
     }
 
-    /// A campaign that consists of arms and absolute positions of points on them, without files.
+    /// A campaign of absolute positions `rows` of points on `arms`, without files. The first arm is the arm of the
+    /// campaign.
     ///
-    /// # Errors
-    /// The arms do not stand on one trunk.
+    /// # Errors Two arms have the same name, two elements outboard of the trunk have the same name, or a mount names no
+    /// link.
     pub fn of_positions(
         statement: &Statement,
         arms: &[&Arm],
@@ -351,14 +358,16 @@ impl Campaign {
         if faults.is_empty() { Ok(campaign) } else { Err(Faults(faults)) }
     }
 
-    /// Number of elements that all arms have in common, counted from the base: the trunk.
+    /// Number of elements of the trunk, which are the elements from the base on that all arms have in common. All
+    /// elements of the arm if it is the only one.
     pub fn trunk(&self) -> usize {
         let shared =
             |other: &Arm| self.arm.chain.iter().zip(&other.chain).take_while(|(a, b)| a == b).count();
         self.other_arms.iter().map(shared).min().unwrap_or(self.arm.chain.len())
     }
 
-    /// Faults that show when the arms are compared with one another, and names in `campaign.json` that no arm has.
+    /// Faults that show when the arms are compared with one another, and names of mounts in `campaign.json` that are no
+    /// link of any arm. Empty if there are none.
     fn faults(&self) -> Vec<Fault> {
         let mut out = Vec::new();
         let trunk: Vec<&str> = self.arm.chain[..self.trunk()].iter().map(Element::name).collect();
@@ -394,12 +403,13 @@ impl Campaign {
         out
     }
 
-    /// The campaign without absolute positions and without records.
+    /// A copy of the campaign with displacements, frequencies and bench readings only: without absolute positions,
+    /// records and other arms.
     pub fn without_positions(&self) -> Self {
         Self { positions: Vec::new(), records: Vec::new(), other_arms: Vec::new(), ..self.clone() }
     }
 
-    /// The campaign with absolute positions alone.
+    /// A copy of the campaign with absolute positions as its only readings.
     pub fn positions_alone(&self) -> Self {
         Self {
             statics: Vec::new(),
@@ -420,8 +430,8 @@ impl Campaign {
         Fault { file, line: None, field: field.into(), problem, hint: hint.into() }
     }
 
-    /// The file of a channel: the one named in `campaign.json`, or else the usual one if it exists. `None` if there is
-    /// neither.
+    /// Path of the file of a channel: the file that `campaign.json` names, otherwise the file with the usual name if it
+    /// exists. `None` if there is neither.
     fn file(&self, channel: Channel) -> Option<PathBuf> {
         let usual = self.folder.join(DEFAULT_FILES[channel as usize]);
         match self.statement.source(channel).file {
@@ -440,6 +450,7 @@ impl Campaign {
         files.chain(records).collect()
     }
 
+    /// BLAKE3 hash of the content of all files that were read, in hexadecimal digits.
     fn hash_files(&self) -> String {
         let mut hasher = blake3::Hasher::new();
         for file in self.input_files() {
@@ -448,10 +459,10 @@ impl Campaign {
         hasher.finalize().to_hex().to_string()
     }
 
-    /// Appends the readings of further campaigns of the same arm to this one.
+    /// Appends the readings of further campaigns of the same arm to this one. Names and hashes are combined too.
     ///
     /// # Errors
-    /// The arms or what is stated of them differ.
+    /// The arms or the tolerances of two campaigns differ.
     pub fn join(mut self, others: Vec<Campaign>) -> Result<Self, String> {
         for other in others {
             let is_same = other.arm == self.arm && other.other_arms == self.other_arms;
@@ -481,7 +492,8 @@ impl Campaign {
     }
 }
 
-/// Driven joints of several arms, in the order of a pose: those of the first arm, then those that only others have.
+/// Driven joints of several arms, in the order of the angles of a pose: those of the first arm, then those that only
+/// other arms have.
 pub(crate) fn driven_joints(arms: &[&Arm]) -> Vec<DrivenJoint> {
     let mut out: Vec<DrivenJoint> = Vec::new();
     for joint in arms.iter().flat_map(|arm| arm.driven_joints()) {
@@ -492,6 +504,7 @@ pub(crate) fn driven_joints(arms: &[&Arm]) -> Vec<DrivenJoint> {
     out
 }
 
+/// Moves the faults of a file to `faults`, so that the other files are read too. The value is then `None`.
 fn keep_faults<T>(
     result: Result<T, InputError>,
     faults: &mut Vec<crate::input::json::Fault>,

@@ -1,11 +1,11 @@
-//! Reads single cells of a table of readings: values, standard deviations, and blanks.
+//! Reads single cells of a table of readings as values or standard deviations, and says what a blank cell means.
 
 use super::table::Table;
 
-/// Upper limit of the magnitude of readings and loads, in their units. A larger number is a fault in the file.
+/// Readings and loads must be smaller than this, in the unit of their column. A larger number is a fault of the file.
 pub(crate) const ABSURD: f64 = 1e9;
 
-/// Purpose for which the rows of a file are read.
+/// What the rows of a file are read for. This decides whether cells of readings may be blank.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Purpose {
     /// A model is fitted to the readings: every row must have a reading with its standard deviation.
@@ -14,12 +14,14 @@ pub(crate) enum Purpose {
     Predict,
 }
 
-/// Reads a cell as a number whose magnitude is below [`ABSURD`]. `None` if it is not; this is recorded as a fault.
+/// Reads the cell at `row` and `column` as a number whose magnitude is below [`ABSURD`]. `None` if it is not such a
+/// number; this is recorded as a fault in `table`.
 pub(crate) fn measured(table: &Table, row: usize, column: usize) -> Option<f64> {
     table.number_that(row, column, |x| x.abs() < ABSURD, "too large for any unit: is it a slip?")
 }
 
-/// Reads a cell as a standard deviation, which must be above zero. `None` if it is not; this is recorded as a fault.
+/// Reads the cell at `row` and `column` as a standard deviation, which must be above zero. `None` if it is not, or if
+/// its magnitude is absurd; this is recorded as a fault in `table`.
 pub(crate) fn sigma(table: &Table, row: usize, column: usize) -> Option<f64> {
     const SIGMA: &str = "a standard deviation is greater than 0";
     let value = table.number_that(row, column, |s| s > 0.0, SIGMA)?;
@@ -45,8 +47,8 @@ pub(crate) fn or_zero(
     }
 }
 
-/// Reads a cell that a fit needs and a prediction does not. If `purpose` is a prediction, a blank cell or an absent
-/// column gives zero. `None` if there is a fault, which is recorded.
+/// Reads a cell that a fit needs and a prediction does not. For a prediction, a blank cell or an absent column gives
+/// zero. `None` if there is a fault, which is recorded in `table`; for a fit also if `column` is `None`.
 pub(crate) fn needed(
     table: &Table,
     row: usize,
@@ -60,8 +62,9 @@ pub(crate) fn needed(
     }
 }
 
-/// Index of a column of readings. For a prediction the column may be absent, and the inner value is then `None`. The
-/// outer value is `None` if a fit needs the column and it is missing, which is recorded as a fault.
+/// Index of the column `name`, which has readings. The outer value is `None` if a fit needs the column and it is
+/// missing; this is recorded as a fault. The inner value is `None` if the column is absent and the purpose is a
+/// prediction.
 pub(crate) fn reading_column(table: &Table, name: &str, purpose: Purpose) -> Option<Option<usize>> {
     match purpose {
         Purpose::Predict => Some(table.optional(name)),

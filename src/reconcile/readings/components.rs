@@ -1,15 +1,17 @@
 //! Reads the three components of a displacement or a position, each with its standard deviation.
 //!
-//! An instrument may read fewer than three components: a dial gauge reads one, a level one, a theodolite two. A
-//! component is not measured if its cell is blank or its column is absent. Some programs write zeros instead. Two cases
-//! are recognized. A column with the same value in all rows is no reading of an instrument with noise. Zeros are no
-//! readings if each row has a single component that is not zero, as from a gauge that is moved from one direction to
-//! the next.
+//! An instrument may read fewer than three components: a dial gauge or a level reads one, and a theodolite reads two. A
+//! component is not measured if its cell is blank or its column is absent. Some programs write zeros instead, which
+//! `leave_out_idle` recognizes in two cases:
+//!
+//! - A column has the same value in all rows. An instrument with noise does not read that.
+//! - Every row has one component at most that is not zero. Such zeros come from a gauge that is moved from one
+//!   direction to the next.
 
 use super::cells::{Purpose, measured, sigma};
 use super::table::Table;
 
-/// One component of a vector, as an instrument read it.
+/// One component of a displacement or a position, as an instrument read it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Component {
     /// Measured value \[mm\].
@@ -21,7 +23,7 @@ pub struct Component {
 /// The components x, y and z of a vector; `None` for a component that was not measured.
 pub type Components = [Option<Component>; 3];
 
-/// Smallest number of rows from which equal readings of a component are suspicious.
+/// Equal readings of a component are taken as not measured only if there are at least this many.
 pub(crate) const FEWEST_ALIKE: usize = 4;
 
 /// Names of the columns with the components of a vector and with their standard deviations.
@@ -43,7 +45,8 @@ pub(crate) const POSITION: Names =
 /// Name of the column with one standard deviation for all components of a row.
 const COMMON_SIGMA: &str = "sigma_mm";
 
-/// Indices of the columns of a vector's components in a table of readings.
+/// Indices of the columns with the components of a vector and their standard deviations, in a table of readings; `None`
+/// for a column that the table lacks.
 pub(crate) struct VectorColumns<'a> {
     table: &'a Table,
     names: &'a Names,
@@ -54,8 +57,8 @@ pub(crate) struct VectorColumns<'a> {
 }
 
 impl<'a> VectorColumns<'a> {
-    /// Finds the columns with these names in the table. `None` if a necessary one is missing, which is recorded as a
-    /// fault.
+    /// Finds the columns `names` in the table. `None` if a column is missing that the purpose needs, or if one is
+    /// misspelt; both are recorded as faults.
     pub(crate) fn find(table: &'a Table, names: &'a Names, purpose: Purpose) -> Option<Self> {
         table.check_family("sigma", &[names.sigmas.as_slice(), &[COMMON_SIGMA]].concat());
         let values = names.values.map(|name| table.optional(name));
@@ -80,7 +83,8 @@ impl<'a> VectorColumns<'a> {
         Some(Self { table, names, values, sigmas, common, purpose })
     }
 
-    /// Reads the components of the row with index `row`. `None` if there is a fault, which is recorded.
+    /// Reads the components of the row with index `row`. `None` if there is a fault, which is recorded. For a fit, a
+    /// row without any component is a fault.
     pub(crate) fn read(&self, row: usize) -> Option<Components> {
         let read = [0, 1, 2].map(|component| self.component(row, component));
         let [Some(x), Some(y), Some(z)] = read else { return None };
@@ -106,8 +110,8 @@ impl<'a> VectorColumns<'a> {
         measured(self.table, row, column)
     }
 
-    /// Reads the component with index `component` and its standard deviation. The outer value is `None` if there is a
-    /// fault, the inner one if the component was not measured.
+    /// Reads the component with index `component` (0, 1, 2 for x, y, z) and its standard deviation. The outer value is
+    /// `None` if there is a fault. The inner value is `None` if the component was not measured.
     fn component(&self, row: usize, component: usize) -> Option<Option<Component>> {
         let is_given = |c: &usize| !self.table.is_blank(row, *c);
         let Some(value) = self.values[component].filter(is_given) else { return Some(None) };
@@ -116,18 +120,20 @@ impl<'a> VectorColumns<'a> {
         let sigma_mm = match (own, self.purpose) {
             (Some(column), Purpose::Fit) => sigma(self.table, row, column),
             (None, Purpose::Fit) => None,
-            // a prediction needs no standard deviation
+            // a prediction does not use the standard deviation, so any positive value will do
             (_, Purpose::Predict) => Some(1.0),
         };
         Some(Some(Component { value_mm: value_mm?, sigma_mm: sigma_mm? }))
     }
 }
 
-/// Texts that people write into a cell if nothing was read.
+/// Texts that people write into a cell if nothing was read. They are faults; a blank cell is expected.
 const NOTHING: [&str; 9] = ["-", "--", "\u{2013}", "\u{2014}", "/", "?", "n/a", "na", "none"];
 
-/// Removes readings that stand in the file but were not measured (constant columns, zeros of other directions), and
-/// returns a sentence for each kind. `file` is the file's name, for the sentence.
+/// Replaces readings in `rows` that are in the file but were not measured by `None`, and returns a sentence on each
+/// case. The cases are constant columns and zeros of other directions (see the head of this file). `file` is the name
+/// of the file for the sentences. Nothing is replaced, and the result is empty, if there are fewer than
+/// [`FEWEST_ALIKE`] rows.
 pub(crate) fn leave_out_idle(file: &str, names: &Names, rows: &mut [&mut Components]) -> Vec<String> {
     if rows.len() < FEWEST_ALIKE {
         return Vec::new();
@@ -137,7 +143,7 @@ pub(crate) fn leave_out_idle(file: &str, names: &Names, rows: &mut [&mut Compone
     }
     let constants = [0, 1, 2].map(|component| constant(component, rows));
     let is_read = |component: usize| rows.iter().any(|row| row[component].is_some());
-    // if no component varies, the instrument did not work, and the verdict says so
+    // if no component varies, the instrument did not work; the readings stay, and the verdict reports it
     if (0..3).all(|component| constants[component].is_some() || !is_read(component)) {
         return Vec::new();
     }
@@ -153,8 +159,8 @@ pub(crate) fn leave_out_idle(file: &str, names: &Names, rows: &mut [&mut Compone
     .collect()
 }
 
-/// The value that a component has in all rows with a reading of it, and the number of these rows. `None` if the
-/// readings differ or are fewer than [`FEWEST_ALIKE`].
+/// Value \[mm\] of the component with index `component` if it is the same in all rows that have this component, and the
+/// number of these rows. `None` if the values differ or are fewer than [`FEWEST_ALIKE`].
 fn constant(component: usize, rows: &[&mut Components]) -> Option<(f64, usize)> {
     let mut values = rows.iter().filter_map(|row| row[component]).map(|read| read.value_mm);
     let first = values.next()?;
@@ -163,9 +169,9 @@ fn constant(component: usize, rows: &[&mut Components]) -> Option<(f64, usize)> 
     (count >= FEWEST_ALIKE && others.iter().all(|value| *value == first)).then_some((first, count))
 }
 
-/// Removes the zeros of a gauge that was moved from one direction to the next, and returns a sentence on it. They are
-/// recognized by this: every row has three components, at least two of which are exactly zero, and more than one
-/// direction occurs. `None` if that is not so.
+/// Replaces the zeros of a gauge that was moved from one direction to the next by `None`, and returns a sentence on it.
+/// Such zeros are recognized if every row has three components, at least two of which are exactly zero, and if not all
+/// rows are about the same direction. Otherwise nothing is replaced, and the result is `None`.
 fn leave_out_other_directions(file: &str, names: &Names, rows: &mut [&mut Components]) -> Option<String> {
     let is_zero = |read: &Option<Component>| read.is_some_and(|read| read.value_mm == 0.0);
     let has_one =

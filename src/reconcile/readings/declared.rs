@@ -1,28 +1,28 @@
-//! Sessions that `campaign.json` declares: rows from which on a point is elsewhere on the tool, or the arm or the
-//! instrument stands elsewhere.
+//! Sessions of absolute positions that `campaign.json` declares. Each begins at a row, before which a point was moved
+//! on the tool, or the base of the arm or the instrument was moved.
 
 use super::keys::SESSION;
 use super::rows::PositionRow;
 use crate::arm::BASE;
 use crate::input::json::Node;
 
-/// A session that `campaign.json` declares.
+/// A session (a run of readings between two changes of the set-up) that `campaign.json` declares.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DeclaredSession {
-    /// The first row of the session, counted from 1 without the line of the column names.
+    /// Number of the first row of the session. The first row of the file below the column names has the number 1.
     pub from_row: usize,
-    /// What was moved before that row: the name of a point, or `base` for the arm's base or the instrument.
+    /// What was moved before this row: the name of a point, or `base` if it was the base of the arm or the instrument.
     pub moved: String,
 }
 
 impl DeclaredSession {
-    /// This session in a file that has `rows` more rows before its own: its row number grows by `rows`.
+    /// The same session after `rows` other rows were put in front of its file: its row number grows by `rows`.
     pub(super) fn after(self, rows: usize) -> Self {
         Self { from_row: self.from_row + rows, ..self }
     }
 }
 
-/// Reads the list `positions.sessions`. Returns `None` after recording a fault.
+/// Reads the list `positions.sessions` of `campaign.json`. Returns `None` after recording a fault.
 pub(super) fn read(node: &Node) -> Option<Vec<DeclaredSession>> {
     let session = |n: &Node| {
         let object = n.shaped(&SESSION)?;
@@ -38,8 +38,8 @@ pub(super) fn read(node: &Node) -> Option<Vec<DeclaredSession>> {
     sessions.into_iter().collect()
 }
 
-/// Faults of declared sessions that show when they are compared with the rows of positions: a row that does not
-/// exist, or a point that is not measured. Each problem comes with a hint.
+/// Faults of declared sessions that show only when they are compared with the rows of positions: a row that does not
+/// exist, or a point that is not measured. Each fault is a problem and a hint. Empty if there is none.
 pub(super) fn problems(sessions: &[DeclaredSession], rows: &[PositionRow]) -> Vec<(String, String)> {
     let mut points: Vec<&str> = rows.iter().map(|row| row.point.as_str()).collect();
     points.sort_unstable();

@@ -1,4 +1,5 @@
-//! The keys of `campaign.json`, as the readers know them and as `armwright schema campaign` prints them.
+//! The keys of `campaign.json`. The code that reads the file uses these tables, and `armwright schema campaign` prints
+//! them as a JSON Schema.
 
 use crate::arm::effect::catalogue::NAMES as EFFECTS;
 use crate::input::key::{Key, Kind, SCHEMA_ADDRESS, Shape, optional, required};

@@ -1,4 +1,4 @@
-//! The median, which one gross value does not change.
+//! The median. A single value that is wrong by far hardly changes it.
 
 /// The median of the values, in their unit; 0 for an empty list.
 pub(crate) fn median(mut values: Vec<f64>) -> f64 {

@@ -1,4 +1,5 @@
-//! Reads the files of a campaign: its statement, its rows, and the placement of the arm and the points.
+//! Reads the files of a campaign: `campaign.json`, the tables of readings, and the records against time. Also reads and
+//! writes the placement of an arm in the frame of an instrument.
 
 pub(crate) mod campaign;
 pub(crate) mod cells;

@@ -1,8 +1,9 @@
 //! Placement of an arm in the frame of an instrument, session by session.
 //!
-//! Between two sessions a reflector is put back slightly differently, or the instrument or the base is moved. The
-//! number of a row's test tells to which session the row belongs, as long as the tests are numbered as in the campaign.
-//! All other rows get the placement that fits all sessions best.
+//! The placement changes between two sessions, for example because a reflector is put back slightly differently, or
+//! because the instrument or the base is moved. The number of a row's test tells to which session the row belongs, if
+//! the tests are numbered as in the campaign from which the placement was found. All other rows get the placement that
+//! fits all sessions best.
 
 use super::rows::PositionRow;
 use crate::arm::Arm;
@@ -10,21 +11,22 @@ use nalgebra::{Matrix3, Vector3};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
-/// Where the arm stands in the instrument's frame, and where the points sit on it.
+/// Where the arm stands in the instrument's frame, and where the measured points are on its last frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stand {
-    /// Rotation of the arm's base frame in the instrument's frame.
+    /// Rotation matrix that turns vectors of the arm's base frame into the instrument's frame.
     pub rotation: Matrix3<f64>,
     /// Origin of the base frame in the instrument's frame \[m\].
     pub origin_m: Vector3<f64>,
-    /// Name and position of each point, in the last frame \[m\].
+    /// Name of each measured point, and its position in the last frame of the arm \[m\].
     pub points_m: Vec<(String, Vector3<f64>)>,
 }
 
 /// A session: the tests with numbers in one range, during which the placement stayed the same.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Session {
-    /// Test number that ends the session: its tests have smaller numbers. Infinite for the last session.
+    /// Upper limit of the test numbers: the tests of the session have smaller numbers than this. Infinite for the last
+    /// session.
     pub before_test: f64,
     /// The placement during the session.
     pub stand: Stand,
@@ -37,11 +39,11 @@ pub struct Placement {
     pub usual: Stand,
     /// The sessions in the order of their tests; empty if there is only one.
     pub sessions: Vec<Session>,
-    /// For each test of the campaign, the mark of its pose as [`pose_mark`] gives it. The marks show whether rows are
-    /// numbered as in the campaign.
+    /// Mark of the pose of each test of the campaign, by the name of the test. [`pose_mark`] gives the mark. It shows
+    /// whether other rows with the same test names have the same poses.
     pub tests: BTreeMap<String, String>,
-    /// The names of the tests in the order of the campaign, if they are no numbers that rise. The place of a test in
-    /// this list is then its number. Empty if the tests are numbered.
+    /// Names of the tests in the order of the campaign, if the names are not rising numbers. The number of a test is
+    /// then its place in this list, from 0. Empty if the names of the tests are numbers.
     pub order: Vec<String>,
 }
 
@@ -52,7 +54,8 @@ impl Default for Stand {
 }
 
 impl Stand {
-    /// Position of the point `name` in the last frame \[m\]; the tip (zero) if the point is not known.
+    /// Position of the point `name` in the last frame of the arm \[m\]; zero, which is the tip, if there is no such
+    /// point.
     pub fn point_m(&self, name: &str) -> Vector3<f64> {
         self.points_m.iter().find(|(n, _)| n == name).map_or(Vector3::zeros(), |(_, at)| *at)
     }
@@ -76,8 +79,8 @@ impl Stand {
 }
 
 impl Placement {
-    /// Reads the `placement` in the provenance of a corrected arm, from the JSON of its arm file. If there is none,
-    /// the arm stands at the instrument's origin.
+    /// Reads the `placement` in the provenance of a corrected arm, from the JSON of its arm file. If there is none, the
+    /// base frame is the instrument's frame and there are no sessions.
     pub fn from_json(arm_file: &Value) -> Self {
         let placement = &arm_file["provenance"]["placement"];
         let session = |s: &Value| {
@@ -98,7 +101,7 @@ impl Placement {
         }
     }
 
-    /// The entry `placement` in the provenance of a corrected arm.
+    /// The placement as JSON: the entry `placement` in the provenance of a corrected arm.
     pub fn to_json(&self) -> Value {
         let mut out = self.usual.to_json();
         if !self.sessions.is_empty() {
@@ -116,8 +119,8 @@ impl Placement {
         out
     }
 
-    /// The placement for each row of positions: that of the row's session if the rows are numbered as in the
-    /// campaign, otherwise the usual one.
+    /// The placement for each row of positions, in the order of `rows`. If the rows are numbered as in the campaign, it
+    /// is the placement of the session of the row; otherwise it is the usual one.
     pub fn stands<'a>(&'a self, rows: &[PositionRow]) -> Vec<&'a Stand> {
         let numbered = self.numbers(rows).filter(|_| rows.iter().all(|row| self.agrees(row)));
         let Some(numbers) = numbered else { return vec![&self.usual; rows.len()] };
@@ -125,8 +128,8 @@ impl Placement {
         numbers.into_iter().map(|number| of(number).unwrap_or(&self.usual)).collect()
     }
 
-    /// The number of each row's test, as the sessions count them; NaN for a test that the campaign does not name.
-    /// `None` if the tests should be numbers and are not.
+    /// Number of the test of each row, as [`Session::before_test`] counts tests. NaN for a test that
+    /// [`Placement::order`] lacks. `None` if that list is empty and the names of the tests are not all numbers.
     fn numbers(&self, rows: &[PositionRow]) -> Option<Vec<f64>> {
         if self.order.is_empty() {
             return test_numbers(rows);
@@ -135,28 +138,29 @@ impl Placement {
         Some(rows.iter().map(|row| place(row).map_or(f64::NAN, |at| at as f64)).collect())
     }
 
-    /// Indices of the rows that belong to no known session although there are sessions, because their tests have no
-    /// number or are numbered differently from the campaign.
+    /// Indices of the rows that belong to no session, because their tests have no number or have other numbers than in
+    /// the campaign. Empty if the placement has no sessions.
     pub(crate) fn strangers(&self, rows: &[PositionRow]) -> Vec<usize> {
         let is_usual = |stand: &Stand| !self.sessions.is_empty() && std::ptr::eq(stand, &self.usual);
         let stands = self.stands(rows).into_iter().enumerate();
         stands.filter(|(_, stand)| is_usual(stand)).map(|(i, _)| i).collect()
     }
 
-    /// Whether a row has the same pose as the test of the same name in the campaign. True if there is no such test.
+    /// Whether a row has the same pose as the test of the same name in the campaign. `true` if the campaign has no such
+    /// test.
     fn agrees(&self, row: &PositionRow) -> bool {
         self.tests.get(&row.test).is_none_or(|mark| *mark == pose_mark(&row.pose_deg))
     }
 }
 
-/// The number of each row's test, which is the name of the test read as a number; `None` if one of the names is not a
-/// number.
+/// Number of the test of each row: the name of the test, read as a number. `None` if a name is not a finite number.
 pub fn test_numbers(rows: &[PositionRow]) -> Option<Vec<f64>> {
     rows.iter().map(|row| row.test.trim().parse().ok().filter(|n: &f64| n.is_finite())).collect()
 }
 
-/// The number of each row's test where tests have names, and the names in their order: a test has the place of its name
-/// in this list. `None` if the rows of one test do not follow each other.
+/// Numbers for tests that have names. The first result is the number of the test of each row, and the second is the
+/// list of the names in the order of the rows. The number of a test is the place of its name in this list, from 0.
+/// `None` if the rows of one test do not follow each other.
 pub fn tests_in_order(rows: &[PositionRow]) -> Option<(Vec<f64>, Vec<String>)> {
     let mut order: Vec<String> = Vec::new();
     let mut numbers = Vec::new();
@@ -173,19 +177,20 @@ pub fn tests_in_order(rows: &[PositionRow]) -> Option<(Vec<f64>, Vec<String>)> {
     Some((numbers, order))
 }
 
-/// A short text that identifies a pose. Equal angles give equal texts.
+/// A short text that identifies a pose, given as the angles of the driven joints \[deg\]. Equal angles give equal
+/// texts.
 pub fn pose_mark(pose_deg: &[f64]) -> String {
     // rounded, because a file may change the last digits of an angle
     let angles: String = pose_deg.iter().map(|angle| format!("{angle:.6},")).collect();
     blake3::hash(angles.as_bytes()).to_hex()[..8].to_string()
 }
 
-/// An arm and its placement.
+/// An arm and its placement in the frame of an instrument.
 #[derive(Debug, Clone)]
 pub struct Placed {
     /// The arm.
     pub arm: Arm,
-    /// Placement of the arm, for absolute positions.
+    /// Where the arm stands in the instrument's frame; used for absolute positions only.
     pub placement: Placement,
 }
 

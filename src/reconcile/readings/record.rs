@@ -1,8 +1,8 @@
-//! Reads a record: angles on both sides of each gear and the motor's torque, against time.
+//! Reads a record: a table against time, with the angles on both sides of each gear and the motor's torque.
 //!
-//! All values are converted to SI units at the output: an angle of the motor shaft is divided by the ratio, a torque at
-//! the shaft is multiplied by it. A record may have a hundred thousand rows, so only the columns that are used are
-//! converted to numbers.
+//! All values are converted to SI units and referred to the output of the gear. An angle of the motor shaft is divided
+//! by the gear ratio, and a torque at the shaft is multiplied by it. A record may have a hundred thousand rows, so only
+//! the columns that are used are converted to numbers.
 
 use super::median::median;
 use super::record_spec::RecordSpec;
@@ -10,19 +10,20 @@ use crate::input::json::{Fault, InputError, closest};
 use csv::{ReaderBuilder, Trim};
 use std::path::Path;
 
-/// Number of faults of one file that are listed. Further faults are only counted.
+/// Largest number of faults of one file that are listed. Further faults are only counted.
 const MOST_FAULTS: usize = 10;
 /// Smallest number of rows of a record. A shorter record is a fault.
 pub(crate) const FEWEST_ROWS: usize = 200;
 
-/// Upper limit of the range of angles that an encoder of one turn can show \[rad\]. The margin is for rounding.
+/// Largest range of the readings of an encoder that starts again at zero after one turn \[rad\]. The factor leaves room
+/// for rounding.
 const ONE_TURN_RAD: f64 = std::f64::consts::TAU * (1.0 + 1e-9);
-/// The angles of motor and link are compared only if each of them turns through at least this \[rad\].
+/// The angles of motor and link are compared only if both turn through at least this angle \[rad\].
 const LEAST_RANGE_RAD: f64 = 0.1;
-/// Motor and link move together if the square of their correlation is at least this.
+/// Motor and link move in proportion if the square of the correlation of their angles is at least this.
 const TOGETHER: f64 = 0.9;
-/// Largest ratio of the motion of one side of the gear to that of the other, both referred to the output. No joint that
-/// twists turns one side twice as far as the other.
+/// Largest credible ratio of the motion of one side of the gear to the motion of the other side, both referred to the
+/// output. Torsion of a joint does not turn one side twice as far as the other, so a larger ratio is a fault.
 const MOST_SLOPE: f64 = 2.0;
 
 /// Signals of one joint, all referred to the output of the gear.
@@ -49,14 +50,15 @@ pub struct Record {
     pub file: String,
     /// Time of each row, strictly rising \[s\].
     pub t_s: Vec<f64>,
-    /// Joints that have a motor angle.
+    /// Joints of which the file has the angle of the motor, in the order of the arm.
     pub joints: Vec<JointSignals>,
-    /// What the reader noticed: columns that are not used, times that may be in another unit.
+    /// Sentences on what the reader noticed: columns that are not used, or times that may be in another unit. Empty if
+    /// nothing was noticed.
     pub(crate) remarks: Vec<String>,
 }
 
-/// Indices of the columns of a file with the signals of a joint. Motor angle and torque come with the factor that
-/// refers them to the output of the gear.
+/// Indices of the columns of a file that have the signals of one joint; `None` for a signal that is not recorded. The
+/// second number of `motor` and `torque` is the factor that refers the signal to the output of the gear.
 struct Columns {
     joint: String,
     motor: (usize, f64),
@@ -64,10 +66,11 @@ struct Columns {
     torque: Option<(usize, f64)>,
 }
 
-/// If the usual time between rows is longer than this, the times may be in another unit than seconds \[s\]. Controllers
-/// write a row of a moving joint every 0.25 to 20 ms.
+/// Times are suspected to be in another unit than seconds if the usual time between two rows is longer than this \[s\].
+/// Controllers write a row of a moving joint every 0.25 to 20 ms.
 const LONGEST_STEP_S: f64 = 0.15;
 
+/// Reads one file and collects its faults.
 struct Reader<'a> {
     file: String,
     spec: &'a RecordSpec,
@@ -75,11 +78,8 @@ struct Reader<'a> {
     faults: Vec<Fault>,
 }
 
-/// Reads all records of a campaign. The default record, which `campaign.json` does not name, is read only if its file
-/// exists.
-///
-/// # Errors
-/// A file cannot be opened. Faults in the content of a file are added to `faults`.
+/// Reads all records that `specs` lists, for the joints with the names `joints`. A record that `campaign.json` does not
+/// name is read only if its file exists.
 pub(crate) fn read_all(
     folder: &Path,
     specs: &[RecordSpec],
@@ -127,6 +127,7 @@ fn read_record(
 }
 
 impl Reader<'_> {
+    /// Reads the content `text` of the file. Faults are collected. `None` if the columns are not those of a record.
     fn read(&mut self, text: &[u8], joints: &[String]) -> Option<Record> {
         let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
         let mut csv = ReaderBuilder::new()
@@ -175,7 +176,7 @@ impl Reader<'_> {
         });
     }
 
-    /// Name that the file gives to the column `column` of this program.
+    /// Name in the file of the column that this program calls `column`.
     fn name_of(&self, column: &str) -> String {
         let mapped = self.spec.columns.iter().find(|(ours, _)| ours == column);
         mapped.map_or(column, |(_, theirs)| theirs).to_string()
@@ -197,8 +198,8 @@ impl Reader<'_> {
         })
     }
 
-    /// Adds a fault for each column that `campaign.json` names and the file lacks. Adds another for each joint that
-    /// `campaign.json` names and the arm lacks.
+    /// Adds a fault for each column that `campaign.json` names and the file lacks, for each name of a column that is
+    /// unknown, and for each joint that `campaign.json` names and the arm lacks.
     fn check_names(&mut self, joints: &[String]) {
         for (ours, theirs) in self.spec.columns.clone() {
             if !self.header.contains(&theirs) {
@@ -231,6 +232,8 @@ impl Reader<'_> {
         }
     }
 
+    /// Finds the columns of a joint. `None` if the file lacks its motor angle, or if the ratio that the angle needs is
+    /// not stated; the latter is a fault.
     fn columns_of(&mut self, joint: &str) -> Option<Columns> {
         let ratio = self.spec.ratio.of(joint);
         let at_output = self.index(&format!("{joint}_motor_deg")).map(|c| (c, 1.0));
@@ -258,7 +261,7 @@ impl Reader<'_> {
         })
     }
 
-    /// Sentence on the columns of the file that are not used; `None` if all are.
+    /// Sentence that lists the columns of the file that are not used; `None` if all are used.
     fn unused(&self, time: usize, columns: &[Columns]) -> Option<String> {
         let of_joint = |c: &Columns| [Some(c.motor.0), c.link, c.torque.map(|t| t.0)];
         let used: Vec<usize> = columns.iter().flat_map(of_joint).flatten().chain([time]).collect();
@@ -268,6 +271,7 @@ impl Reader<'_> {
         (!names.is_empty()).then(|| format!("{}: columns that are not used: {}", self.file, names.join(", ")))
     }
 
+    /// The record without rows, with the constants of each joint.
     fn empty(&self, columns: &[Columns]) -> Record {
         let signals = |c: &Columns| {
             let ratio = self.spec.ratio.of(&c.joint);
@@ -292,6 +296,8 @@ impl Reader<'_> {
         }
     }
 
+    /// Appends the row `cells` to the record `out`, in SI units at the output of the gear. The index `time` is that of
+    /// the column of times. Faults are collected.
     fn push(&mut self, out: &mut Record, columns: &[Columns], time: usize, cells: &csv::ByteRecord) {
         let line = cells.position().map(|p| p.line() as usize);
         if cells.len() != self.header.len() {
@@ -339,6 +345,8 @@ impl Reader<'_> {
         }
     }
 
+    /// Checks the number of rows, removes jumps of a whole turn from the angles, and checks that motor and link of each
+    /// joint move together. Faults are collected.
     fn finish(&mut self, out: &mut Record, columns: &[Columns]) {
         if self.faults.is_empty() && out.t_s.len() < FEWEST_ROWS {
             let problem = format!("has {} rows", out.t_s.len());
@@ -346,8 +354,8 @@ impl Reader<'_> {
         }
         for (signals, c) in out.joints.iter_mut().zip(columns) {
             let is_at_shaft = c.motor.1 != 1.0;
-            // a shaft may turn by more than half a turn between rows, so its jumps are removed only if the encoder
-            // shows one turn
+            // a motor shaft may turn by more than half a turn between two rows, so a change of the angle by a whole
+            // turn is taken for a jump only if all angles are within one turn
             if !is_at_shaft || range(&signals.motor_rad) < ONE_TURN_RAD {
                 unwrap(&mut signals.motor_rad);
             }
@@ -363,8 +371,8 @@ impl Reader<'_> {
     }
 }
 
-/// A remark if the rows follow each other so slowly that the times may be in milliseconds or microseconds, and not in
-/// seconds; `None` if they do not.
+/// A remark if the usual time between rows is so long that the times may be in milliseconds or microseconds. `None` if
+/// it is not.
 fn slow_rows(record: &Record) -> Option<String> {
     let step_s = usual_step_s(&record.t_s);
     (step_s > LONGEST_STEP_S).then(|| {
@@ -376,20 +384,20 @@ fn slow_rows(record: &Record) -> Option<String> {
     })
 }
 
-/// Usual (median) time between rows \[s\].
+/// Usual (median) time between two rows \[s\].
 pub(crate) fn usual_step_s(t_s: &[f64]) -> f64 {
     median(t_s.windows(2).map(|w| w[1] - w[0]).collect())
 }
 
-/// Largest less smallest of the angles.
+/// Difference of the largest and the smallest of the angles \[rad\].
 fn range(angles_rad: &[f64]) -> f64 {
     let ends = (f64::INFINITY, f64::NEG_INFINITY);
     let (low, high) = angles_rad.iter().fold(ends, |(low, high), a| (low.min(*a), high.max(*a)));
     high - low
 }
 
-/// What is wrong with the angles of a joint whose link and motor move far and in proportion, but not by about the same
-/// angle. `None` if they move by about the same angle, or if one of them hardly moves, as in a test with a locked
+/// Problem of a joint whose link and motor move in proportion, but by clearly different angles or in opposite
+/// directions. `None` if they move by about the same angle, or if one of them hardly moves, as in a test with a locked
 /// output.
 fn not_together(signals: &JointSignals) -> Option<String> {
     let (motor_rad, link_rad) = (&signals.motor_rad, &signals.link_rad);
@@ -414,7 +422,8 @@ fn not_together(signals: &JointSignals) -> Option<String> {
     })
 }
 
-/// Removes jumps of a whole turn, which occur where a single-turn encoder passes zero.
+/// Removes jumps of a whole turn from a list of angles \[rad\]. They occur where an encoder that shows one turn starts
+/// again at zero.
 fn unwrap(angles_rad: &mut [f64]) {
     let mut turns = 0.0;
     for i in 1..angles_rad.len() {

@@ -1,4 +1,5 @@
-//! What `campaign.json` says about records: the files, the meaning of their columns, and the constants of each drive.
+//! What `campaign.json` says about records against time: their files, the names of their columns, and constants of the
+//! drives.
 
 use super::keys::RECORD;
 use crate::input::json::{Node, Object};
@@ -6,18 +7,18 @@ use crate::input::json::{Node, Object};
 /// Name of the file that is read if `campaign.json` names none.
 pub(crate) const DEFAULT_FILE: &str = "record.csv";
 
-/// A constant of the drives: one number for all joints, or one number for each joint.
+/// A constant of the drives: one number for all joints, or a number for each joint by its name.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PerJoint(Vec<(Option<String>, f64)>);
 
 impl PerJoint {
-    /// The constant of the joint with the name `joint`; `None` where nothing is stated.
+    /// The constant of the joint with the name `joint`; `None` if nothing is stated for it.
     pub fn of(&self, joint: &str) -> Option<f64> {
         let own = self.0.iter().find(|(name, _)| name.as_deref() == Some(joint));
         own.or_else(|| self.0.iter().find(|(name, _)| name.is_none())).map(|(_, value)| *value)
     }
 
-    /// Names of the joints for which a number of their own is stated.
+    /// Names of the joints for which `campaign.json` states a number by name.
     pub fn joints(&self) -> impl Iterator<Item = &str> {
         self.0.iter().filter_map(|(name, _)| name.as_deref())
     }
@@ -28,9 +29,9 @@ impl PerJoint {
 pub struct RecordSpec {
     /// Name of the file, in the folder of `campaign.json`.
     pub file: String,
-    /// Whether `campaign.json` names the file. If not, the file need not exist.
+    /// Whether `campaign.json` has an entry for this record. If it has none, the file need not exist.
     pub is_named: bool,
-    /// Pairs of names: the name of the column in this program, and its name in the file.
+    /// Columns whose names differ, as pairs: the name in this program, and the name in the file.
     pub columns: Vec<(String, String)>,
     /// Gear ratio: turns of the motor for one turn of the output.
     pub ratio: PerJoint,
@@ -38,12 +39,14 @@ pub struct RecordSpec {
     pub torque_constant_nm_per_a: PerJoint,
     /// Inertia of rotor and wave generator \[kg m²\], at the motor shaft if a ratio is stated, otherwise at the output.
     pub rotor_inertia_kgm2: PerJoint,
-    /// Whether torques in the file are at the output even if a ratio is stated.
+    /// Whether the torques in the file are at the output of the gear. If not, and a ratio is stated, they are at the
+    /// motor shaft.
     pub torque_at_output: bool,
 }
 
-/// Reads `records` of `campaign.json`. If the list is absent, there is one record in [`DEFAULT_FILE`], which need not
-/// exist.
+/// Reads `records` of `campaign.json`. If the list is absent, the result is one record in [`DEFAULT_FILE`], which need
+/// not exist. Constants that an entry does not state are those of `campaign.json` itself. `None` after recording a
+/// fault.
 pub(crate) fn read_records(root: &Object) -> Option<Vec<RecordSpec>> {
     let common = read_constants(root, &RecordSpec { file: DEFAULT_FILE.into(), ..RecordSpec::default() })?;
     let Some(node) = root.optional("records") else { return Some(vec![common]) };
@@ -86,7 +89,7 @@ fn read_columns(node: &Node) -> Option<Vec<(String, String)>> {
 }
 
 /// Reads a constant of the drives: one number for all joints, or an object `{"j1": 100, ...}`. A number for which
-/// `allowed` is false is a fault.
+/// `allowed` is false is a fault. `None` after recording a fault.
 fn read_per_joint(node: &Node, allowed: fn(f64) -> bool) -> Option<PerJoint> {
     let number = |n: &Node| match n.number()? {
         x if allowed(x) => Some(x),

@@ -1,4 +1,4 @@
-//! Reads the rows of `static.csv`, `modal.csv`, `windup.csv` and `positions.csv`.
+//! Reads the rows of the tables of readings: `static.csv`, `modal.csv`, `windup.csv` and `positions.csv`.
 
 use super::cells::{ABSURD, Purpose, measured, needed, or_zero, reading_column, sigma};
 use super::components::{Components, DISPLACEMENT, POSITION, VectorColumns};
@@ -10,7 +10,8 @@ use crate::arm::pose::{DrivenJoint, Motion, any_slides};
 use nalgebra::Vector3;
 use std::collections::{HashMap, HashSet};
 
-/// Key by which equal poses are found in a map: the bits of each angle. Zero and minus zero are the same angle.
+/// Key of a pose for a hash map: the bits of each angle. Equal poses have equal keys; zero and minus zero count as
+/// equal.
 pub(crate) fn pose_key(pose_deg: &[f64]) -> Vec<u64> {
     pose_deg.iter().map(|angle| (angle + 0.0).to_bits()).collect()
 }
@@ -24,13 +25,14 @@ pub struct StaticRow {
     pub pose_deg: Vec<f64>,
     /// Payload as stated in the file.
     pub payload: Payload,
-    /// Temperature of the arm \[°C\], if the file has the column `temperature_c`.
+    /// Temperature of the arm \[°C\]; `None` if the file has no column `temperature_c`.
     pub temperature_c: Option<f64>,
     /// Force at the tip, in the directions of the world \[N\].
     pub force_n: Vector3<f64>,
-    /// Branch of the loading cycle (loading or unloading), as the operator labelled it; may be empty.
+    /// Branch of the loading cycle (loading or unloading) as the file names it; empty if the file does not say.
     pub branch: String,
-    /// Components of the displacement from the reference state; `None` for those that were not measured.
+    /// Components of the displacement of the tip from the reference state \[mm\]; `None` for a component that was not
+    /// measured.
     pub measured: Components,
 }
 
@@ -43,9 +45,9 @@ pub struct ModalRow {
     pub pose_deg: Vec<f64>,
     /// Payload as stated in the file.
     pub payload: Payload,
-    /// Temperature of the arm \[°C\], if the file has the column `temperature_c`.
+    /// Temperature of the arm \[°C\]; `None` if the file has no column `temperature_c`.
     pub temperature_c: Option<f64>,
-    /// Number of the mode in its list (the modes of one pose and payload), from 1 by rising frequency.
+    /// Number of the mode among the modes of one pose and payload, from 1 in the order of rising frequency.
     pub mode: usize,
     /// Measured natural frequency \[Hz\].
     pub frequency_hz: f64,
@@ -62,7 +64,7 @@ pub struct WindupRow {
     pub joint: String,
     /// Torque on the joint \[N m\].
     pub torque_nm: f64,
-    /// Branch of the torque cycle (loading or unloading), as the operator labelled it; may be empty.
+    /// Branch of the torque cycle (loading or unloading) as the file names it; empty if the file does not say.
     pub branch: String,
     /// Twist of the joint \[arcmin\].
     pub windup_arcmin: f64,
@@ -77,22 +79,23 @@ pub struct PositionRow {
     pub row: usize,
     /// Name or number of the test; empty if it has none.
     pub test: String,
-    /// Angles of the driven joints of all arms \[deg\].
+    /// Angles of the driven joints \[deg\]: those of the first arm, then those that only other arms have.
     pub pose_deg: Vec<f64>,
     /// Payload as stated in the file.
     pub payload: Payload,
-    /// Temperature of the arm \[°C\], if the file has the column `temperature_c`.
+    /// Temperature of the arm \[°C\]; `None` if the file has no column `temperature_c`.
     pub temperature_c: Option<f64>,
-    /// Index of the arm to which the point belongs, in the order of the campaign.
+    /// Index of the arm to which the point belongs, in the order of
+    /// [`Campaign::arms`](super::campaign::Campaign::arms).
     pub arm: usize,
-    /// Name of the point; `tip` if the file has no such column.
+    /// Name of the point; `tip` if the file has no column `point`.
     pub point: String,
-    /// Coordinates in the frame of the instrument; `None` for those that were not measured.
+    /// Coordinates of the point in the frame of the instrument \[mm\]; `None` for a coordinate that was not measured.
     pub measured: Components,
 }
 
 impl PositionRow {
-    /// Mean standard deviation of the measured coordinates \[mm\].
+    /// Mean standard deviation of the measured coordinates \[mm\]; 0 if none was measured.
     pub(crate) fn sigma_mm(&self) -> f64 {
         let own = || self.measured.iter().flatten().map(|read| read.sigma_mm);
         own().sum::<f64>() / own().count().max(1) as f64
@@ -100,14 +103,14 @@ impl PositionRow {
 }
 
 impl StaticRow {
-    /// Row and temperature of the reading, for effects of warming.
+    /// Row and temperature of the reading, on which effects of warming depend.
     pub fn moment(&self) -> Moment {
         Moment { row: self.row, temperature_c: self.temperature_c }
     }
 }
 
 impl ModalRow {
-    /// Row and temperature of the reading, for effects of warming.
+    /// Row and temperature of the reading, on which effects of warming depend.
     pub fn moment(&self) -> Moment {
         Moment { row: self.row, temperature_c: self.temperature_c }
     }
@@ -120,7 +123,8 @@ impl PositionRow {
     }
 }
 
-/// Indices of the columns of pose, payload and temperature in a table of readings.
+/// Indices of the columns of pose, payload and temperature in a table of readings; `None` for a column that the table
+/// lacks. `motions` says of each driven joint whether it turns or slides.
 struct StateColumns {
     pose: Vec<usize>,
     motions: Vec<Motion>,
@@ -137,6 +141,7 @@ enum PayloadColumn {
 }
 
 impl StateColumns {
+    /// Finds the columns. Missing or unknown columns are recorded as faults; `None` if a necessary one is missing.
     fn find(table: &Table, joints: &[DrivenJoint], payload: PayloadColumn) -> Option<Self> {
         let expected: Vec<String> = joints.iter().map(|joint| format!("q_{}", joint.key())).collect();
         for column in table.columns.iter().filter(|c| c.starts_with("q_") && !expected.contains(c)) {
@@ -161,6 +166,8 @@ impl StateColumns {
         Some(Self { motions, pose: pose.into_iter().collect::<Option<_>>()?, mass, cg, temperature })
     }
 
+    /// Angles \[deg\] and travels \[mm\] of the driven joints in the row with index `row`. `None` if there is a fault,
+    /// which is recorded.
     fn pose(&self, table: &Table, row: usize) -> Option<Vec<f64>> {
         let angles: Vec<_> = self
             .pose
@@ -178,8 +185,8 @@ impl StateColumns {
         angles.into_iter().collect()
     }
 
-    /// Temperature of the arm in the row with index `row` \[°C\]. The outer value is `None` if there is a fault, the
-    /// inner one if there is no such column.
+    /// Temperature of the arm in the row with index `row` \[°C\]. The outer value is `None` if there is a fault, which
+    /// is recorded. The inner value is `None` if there is no such column.
     fn temperature_c(&self, table: &Table, row: usize) -> Option<Option<f64>> {
         let Some(column) = self.temperature else { return Some(None) };
         let is_sound = |c: f64| (-100.0..=200.0).contains(&c);
@@ -187,6 +194,8 @@ impl StateColumns {
         table.number_that(row, column, is_sound, hint).map(Some)
     }
 
+    /// Payload in the row with index `row`; no payload if the file has no such column. `None` if there is a fault,
+    /// which is recorded.
     fn payload(&self, table: &Table, row: usize) -> Option<Payload> {
         let Some(mass) = self.mass else { return Some(Payload::default()) };
         let mass_kg = table.number_that(
@@ -206,12 +215,13 @@ impl StateColumns {
     }
 }
 
-/// Reads the rows of `static.csv`. `purpose` says whether readings may be blank. Faults are recorded in `table`.
+/// Reads the rows of `static.csv`. `purpose` says whether readings may be blank. Faults are recorded in `table`, and
+/// rows with faults are left out.
 pub(crate) fn static_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<StaticRow> {
     const FORCE: [&str; 3] = ["force_x_n", "force_y_n", "force_z_n"];
     table.check_family("force", &FORCE);
     let force = FORCE.map(|name| table.optional(name));
-    // if there is a force, a payload is not necessary
+    // a displacement needs a load: a payload, or a force at the tip
     let payload = match force.iter().all(Option::is_none) {
         true => PayloadColumn::Needed,
         false => PayloadColumn::Optional,
@@ -241,7 +251,8 @@ pub(crate) fn static_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Sta
     rows
 }
 
-/// Reads the rows of `modal.csv`. `purpose` says whether readings may be blank. Faults are recorded in `table`.
+/// Reads the rows of `modal.csv`. `purpose` says whether readings may be blank. Faults are recorded in `table`, and
+/// rows with faults are left out.
 pub(crate) fn modal_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<ModalRow> {
     let state = StateColumns::find(table, &arm.driven_joints(), PayloadColumn::Optional);
     let mode = table.required("mode");
@@ -278,7 +289,8 @@ pub(crate) fn modal_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Moda
     rows
 }
 
-/// Reads the rows of `windup.csv`. `purpose` says whether readings may be blank. Faults are recorded in `table`.
+/// Reads the rows of `windup.csv`. `purpose` says whether readings may be blank. Faults are recorded in `table`, and
+/// rows with faults are left out.
 pub(crate) fn windup_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<WindupRow> {
     let columns = ["joint", "torque_nm"].map(|n| table.required(n));
     let readings = ["windup_arcmin", "sigma_arcmin"].map(|name| reading_column(table, name, purpose));
@@ -310,7 +322,8 @@ pub(crate) fn windup_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Win
 }
 
 /// Reads the rows of `positions.csv`. `arms` lists the names of the arms, and `driven` lists the driven joints, each of
-/// which has a column. `purpose` says whether readings may be blank.
+/// which has a column of angles. `purpose` says whether readings may be blank. Faults are recorded in `table`, and rows
+/// with faults are left out. Prismatic joints are a fault, because positions of arms with such joints are not computed.
 pub(crate) fn position_rows(
     table: &Table,
     arms: &[&str],
@@ -357,6 +370,8 @@ pub(crate) fn position_rows(
     rows
 }
 
+/// Index in `arms` of the arm that the cell at `row` and `column` names. `None` if there is no such arm, which is
+/// recorded as a fault.
 fn arm_named(table: &Table, row: usize, column: usize, arms: &[&str]) -> Option<usize> {
     let name = table.text(row, column);
     let found = arms.iter().position(|a| *a == name);
@@ -371,15 +386,18 @@ fn arm_named(table: &Table, row: usize, column: usize, arms: &[&str]) -> Option<
     found
 }
 
+/// Reads every row by `read`, and leaves out those for which it gives `None`.
 fn each_row<T>(table: &Table, read: impl Fn(usize) -> Option<T>) -> Vec<T> {
     let rows: Vec<Option<T>> = (0..table.rows.len()).map(read).collect();
     rows.into_iter().flatten().collect()
 }
 
-/// Reports each row that repeats an earlier row in everything but the label of the test. Such a row is a copying error,
-/// because a repeated test would have noise of its own. The rows `coarse`, of which a single number was measured, are an
-/// exception: an instrument may show the same digits twice, so two such rows with different labels are taken as
-/// repeated tests.
+/// Records a fault for each row that repeats an earlier row in every cell but the label of the test. Such a row is a
+/// copying error, because a repeated test would have noise of its own.
+///
+/// The rows with indices in `coarse`, whose readings have only one or two numbers, are an exception: an instrument may
+/// show the same digits twice. Two such rows with different labels are taken as repeated tests. If the table has no
+/// labels, these rows are not checked.
 fn check_duplicates(table: &Table, coarse: &HashSet<usize>) {
     let label = table.optional("test");
     let mut seen: HashMap<Vec<&str>, usize> = HashMap::new();
@@ -400,8 +418,8 @@ fn check_duplicates(table: &Table, coarse: &HashSet<usize>) {
     }
 }
 
-/// Reports angles that are probably in radians: in five or more different poses, no angle exceeds 3.2 (half a turn in
-/// radians).
+/// Records a fault if the angles are probably in radians: the table has five or more different poses, and the largest
+/// angle is between 0.3 and 3.2 (about half a turn in radians).
 fn check_angles<'a>(table: &Table, motions: &[Motion], poses: impl Iterator<Item = &'a [f64]>) {
     let poses: Vec<&[f64]> = poses.collect();
     let angles = poses.iter().flat_map(|p| p.iter().zip(motions)).filter(|(_, m)| **m == Motion::Turns);

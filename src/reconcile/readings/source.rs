@@ -1,15 +1,17 @@
-//! Sources of the readings of a channel: the file, the sheet if it is a spreadsheet, and the names that the columns
-//! have in it.
+//! Where the readings of a channel are: the file, the sheet if the file is a spreadsheet, and the names that the
+//! columns have in the file.
 
 use super::keys::{COLUMNS as COLUMN_NAMES, FILES, SHEET};
 use crate::arm::effect::channel::Channel;
 use crate::arm::pose::DrivenJoint;
 use crate::input::json::{Node, Object, closest};
 
-/// Usual names of the channels' files, in the order of [`Channel::ALL`].
+/// Names of the files that are read if `campaign.json` names none, one for each channel in the order of
+/// [`Channel::ALL`].
 pub(crate) const DEFAULT_FILES: [&str; 4] = ["static.csv", "modal.csv", "windup.csv", "positions.csv"];
 
-/// The columns of each channel, in the order of [`Channel::ALL`], without the angles `q_<joint>_deg`.
+/// Names of the columns of each channel, in the order of [`Channel::ALL`]. The angles `q_<joint>_deg` and the column
+/// `temperature_c` are not in this list.
 const COLUMNS: [&[&str]; 4] = [
     &[
         "test",
@@ -58,8 +60,8 @@ const COLUMNS: [&[&str]; 4] = [
     ],
 ];
 
-/// Names of the columns of a channel's table for an arm with the driven joints `joints`, in the usual order. Columns
-/// that few files need are left out.
+/// Names of the columns of the table of a new campaign, for an arm with the driven joints `joints`: first the test,
+/// then the angles, then the rest in the order of [`COLUMNS`]. Columns that few files need are left out.
 pub(crate) fn columns_for(channel: Channel, joints: &[DrivenJoint]) -> Vec<String> {
     let (label, others) = COLUMNS[channel as usize].split_at(1);
     let angles = joints.iter().map(|joint| format!("q_{}", joint.key()));
@@ -69,25 +71,26 @@ pub(crate) fn columns_for(channel: Channel, joints: &[DrivenJoint]) -> Vec<Strin
     label.iter().map(|name| name.to_string()).chain(angles).chain(others).collect()
 }
 
-/// Columns with the standard deviation of a single component. Few files have them.
+/// Columns with the standard deviation of a single component. Few files have them, because most state one for all
+/// components.
 const OWN_SIGMAS: [&str; 6] =
     ["sigma_dx_mm", "sigma_dy_mm", "sigma_dz_mm", "sigma_x_mm", "sigma_y_mm", "sigma_z_mm"];
 
 /// Where the readings of a channel are: file, sheet and names of columns.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Source {
-    /// Name of the file, in the folder of `campaign.json`; `None` for the usual one.
+    /// Name of the file, in the folder of `campaign.json`; `None` for the usual name (`DEFAULT_FILES`).
     pub file: Option<String>,
-    /// Name of the sheet, if the file is a spreadsheet with several.
+    /// Name of the sheet of a spreadsheet; `None` for a spreadsheet with one sheet, or for a CSV file.
     pub sheet: Option<String>,
-    /// Row of a spreadsheet that names the columns, from 1; `None` for the first that is not blank.
+    /// Row of a spreadsheet that names the columns, from 1; `None` for the first row that is not blank.
     pub header_row: Option<usize>,
-    /// Pairs of column names: the name in this program, and the name in the file.
+    /// Columns whose names differ, as pairs: the name in this program, and the name in the file.
     pub columns: Vec<(String, String)>,
 }
 
-/// Reads from `campaign.json` where the readings of each channel are. `None` for a channel about which it says
-/// nothing.
+/// Reads from `root`, the content of `campaign.json`, where the readings of each channel are, in the order of
+/// [`Channel::ALL`]. `None` for a channel about which it says nothing.
 pub(crate) fn read_sources(root: &Object) -> [Option<Source>; 4] {
     let files = root.optional("files").and_then(|n| n.shaped(&FILES));
     let columns = root.optional("columns").and_then(|n| n.shaped(&COLUMN_NAMES));
@@ -109,15 +112,15 @@ pub(crate) fn read_sources(root: &Object) -> [Option<Source>; 4] {
     })
 }
 
-/// Reads the name of the file from the block of a channel. Everything else in a block is text for people. `None` if the
-/// block has no key `file`, or after recording a fault.
+/// Reads the name of the file from the block of a channel, for example `"static": {"file": "a.csv"}`. Other keys of the
+/// block are not read here. `None` if the block has no key `file`, or after recording a fault.
 fn read_block(node: &Node) -> Option<String> {
     let (_, file) = node.entries()?.into_iter().find(|(key, _)| *key == "file")?;
     file.string().map(String::from)
 }
 
-/// Reads where the readings of a channel are: `"m.xlsx"`, or `{"file": "m.xlsx", "sheet": "S1", "header_row": 3}`.
-/// Returns `None` after recording a fault.
+/// Reads an entry of `files`: a name such as `"m.xlsx"`, or an object such as `{"file": "m.xlsx", "sheet": "S1",
+/// "header_row": 3}`. Returns `None` after recording a fault.
 fn read_file(node: &Node) -> Option<Source> {
     if node.value().is_string() {
         return Some(Source { file: Some(node.string()?.into()), ..Source::default() });

@@ -13,20 +13,20 @@ pub(crate) struct Sheet {
     pub name: String,
     /// Rows that are not blank, each with its row number as the spreadsheet shows it.
     pub rows: Vec<(usize, Vec<String>)>,
-    /// Letters of the columns, such as A, B, AA.
+    /// Letters by which the spreadsheet shows the columns, such as A, B, AA.
     pub letters: Vec<String>,
 }
 
-/// Whether a file is a spreadsheet, by its extension.
+/// Whether a file is a spreadsheet, judged by the extension of its name.
 pub(crate) fn is_spreadsheet(path: &Path) -> bool {
     let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_lowercase();
     EXTENSIONS.contains(&extension.as_str())
 }
 
-/// Reads the sheet with the name `sheet`; without a name, the only sheet of the file.
+/// Reads the sheet with the name `sheet`. If `sheet` is `None`, the file must have one sheet only, which is read.
 ///
 /// # Errors
-/// The problem, and a hint what to try.
+/// The problem, and a hint on what to do.
 pub(crate) fn read_sheet(path: &Path, sheet: Option<&str>) -> Result<Sheet, (String, String)> {
     let unreadable = |e: String| {
         (

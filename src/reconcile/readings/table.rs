@@ -1,5 +1,5 @@
-//! A CSV file or a sheet of a spreadsheet as named columns. Every fault is recorded with file, line, column, value and
-//! hint.
+//! A CSV file or a sheet of a spreadsheet as a table with named columns. Faults are collected with file, line, column,
+//! value and hint, so that all of them can be reported at once.
 
 use super::source::Source;
 use super::spreadsheet::{is_spreadsheet, read_sheet};
@@ -18,17 +18,17 @@ const NAMES: [&str; 3] = ["test", "joint", "point"];
 /// A CSV file or a sheet of a spreadsheet, whose first row names the columns.
 #[derive(Debug)]
 pub struct Table {
-    /// Path of the file as given; for a spreadsheet with the name of the sheet.
+    /// Path of the file; for a spreadsheet followed by the name of the sheet.
     pub file: String,
-    /// Names of the columns, by which this program knows them.
+    /// Names of the columns in this program.
     pub columns: Vec<String>,
     /// Cells of each row as text.
     pub rows: Vec<Vec<String>>,
-    /// Line number of each row in the file.
+    /// Line number of each row in the file, from 1.
     pub lines: Vec<usize>,
-    /// Line of the column names in the file.
+    /// Line number of the column names in the file, from 1.
     header_line: usize,
-    /// Names of the columns as they are in the file.
+    /// Names of the columns as the file has them, before they are mapped to the names in this program.
     shown: Vec<String>,
     /// Letters of the columns of a spreadsheet; empty for a CSV file.
     letters: Vec<String>,
@@ -108,7 +108,7 @@ impl Table {
         table
     }
 
-    /// Checks the column names, removes a row of units, and reports an empty table.
+    /// Checks the column names, removes a row of units, and records a fault if the table is empty.
     fn finish(&mut self) {
         self.shown = self.columns.clone();
         self.check_header();
@@ -118,8 +118,8 @@ impl Table {
         }
     }
 
-    /// Renames columns. Each pair in `names` is the name in this program and the name in the file. A name that the file
-    /// lacks is a fault.
+    /// Renames columns. Each pair in `names` is the name in this program and the name in the file. A fault is recorded
+    /// for a name that the file lacks, and for a column name that two columns then have.
     fn rename(&mut self, names: &[(String, String)]) {
         for (name, shown) in names {
             match self.shown.iter().position(|column| column == shown) {
@@ -141,7 +141,8 @@ impl Table {
         }
     }
 
-    /// Reports a row of units below the column names and removes it.
+    /// Removes a row of units below the column names, and records a fault for it. A row counts as one if it has no
+    /// numbers and the next row has some.
     fn check_units(&mut self) {
         let is_number = |cell: &String| cell.replace(',', ".").parse::<f64>().is_ok();
         let [first, second, ..] = self.rows.as_slice() else { return };
@@ -155,14 +156,15 @@ impl Table {
         }
     }
 
-    /// Reports columns that are separated by something other than commas, or named twice.
+    /// Records a fault if columns are separated by something other than commas, if a column name has characters that
+    /// are not allowed, or if two columns have the same name.
     fn check_header(&self) {
         let separators: Vec<&str> = other_separators(&self.columns, 2).collect();
         for word in &separators {
             let hint = "separate columns with commas, write decimals with a point, and name the columns in the first row";
             self.fault(Some(self.header_line), "", format!("its columns are separated by {word}"), hint);
         }
-        // without columns there are no names to check
+        // if the whole line was read as one column, there are no column names to check
         if !separators.is_empty() && !self.has_header() {
             return;
         }
@@ -183,8 +185,8 @@ impl Table {
         }
     }
 
-    /// Whether there is a header with more than one column. If not, the table was not read as one, and further faults
-    /// would only confuse.
+    /// Whether the header has more than one column. If not, the text was probably not separated by commas, and further
+    /// faults would only confuse.
     fn has_header(&self) -> bool {
         self.columns.len() > 1
     }
@@ -198,6 +200,8 @@ impl Table {
         }
     }
 
+    /// Adds a line of the file: the first as the column names, every other as a row. A row with another number of cells
+    /// than the header is a fault.
     fn push(&mut self, Record { line, cells }: Record) {
         if self.columns.is_empty() {
             self.header_line = line;
@@ -217,8 +221,8 @@ impl Table {
         }
     }
 
-    /// Records a fault of the file. `line` is the line number in the file, and `column` the name of a column, or
-    /// empty.
+    /// Records a fault of the file. `line` is the line number in the file and `column` the name of the column; they are
+    /// `None` and empty if the fault is not at one place.
     pub fn fault(&self, line: Option<usize>, column: &str, problem: String, hint: &str) {
         self.faults.borrow_mut().push(Fault {
             file: self.file.clone(),
@@ -277,8 +281,8 @@ impl Table {
         self.columns.iter().position(|c| c == name)
     }
 
-    /// Reports columns whose name begins with `beginning` and is not among the names in `family`, such as a misspelt
-    /// `sigma_...`.
+    /// Records a fault for each column whose name begins with `beginning` and an underscore follows somewhere, unless
+    /// the name is in `family`. An example is a misspelt `sigma_...`.
     pub(crate) fn check_family(&self, beginning: &str, family: &[&str]) {
         let begins = |column: &&String| column.starts_with(beginning) && column.contains('_');
         for column in self.columns.iter().filter(begins).filter(|column| !family.contains(&column.as_str())) {
@@ -287,8 +291,8 @@ impl Table {
         }
     }
 
-    /// Reports a column that is probably a misspelt `name`. `name` is an optional column that the table lacks.
-    /// Columns whose names are in `known` are not suspected. Returns whether such a column was found.
+    /// Records a fault if one of the columns is probably a misspelt `name`, and returns whether there is one. `name` is
+    /// an optional column that the table lacks. Columns whose names are in `known` are not suspected.
     pub(crate) fn check_spelling(&self, name: &str, known: &[&str]) -> bool {
         let others: Vec<&str> =
             self.columns.iter().map(String::as_str).filter(|column| !known.contains(column)).collect();
@@ -300,12 +304,12 @@ impl Table {
         near.is_some()
     }
 
-    /// Name of the file without its folder, with the sheet of a spreadsheet.
+    /// Name of the file without its folder; for a spreadsheet followed by the name of the sheet.
     pub(crate) fn short_name(&self) -> String {
         self.file.rsplit(['/', '\\']).next().unwrap_or(&self.file).to_string()
     }
 
-    /// The names of the columns in the file.
+    /// Names of the columns as the file has them.
     pub(crate) fn shown(&self) -> &[String] {
         &self.shown
     }

@@ -1,24 +1,32 @@
-//! Least squares with standard errors from blocks of time and not from single rows.
+//! Linear least squares with standard errors from blocks of time instead of single rows. Errors of neighbouring rows
+//! are correlated, so rows are not independent readings.
 //!
-//! The rows of a record are cut into stretches of time. Each block keeps the sums of products of all columns, so that a
-//! model of any of the columns can be fitted with any block left out without a further pass through the rows. Two
-//! results come from these fits. One is the error on held-out blocks. The other is the delete-a-block jackknife (Tukey
-//! 1958; for autocorrelated errors Künsch 1989), whose intervals need no model of the autocorrelation.
+//! The rows of a record are cut into stretches of time, the blocks. Each block stores the sums of products of every two
+//! columns. With them, a model with any of the columns can be fitted to any of the blocks without reading the rows
+//! again. Two results come from fits with one block left out:
+//!
+//! - the error of the predicted rows of this block (error on held-out blocks);
+//! - the delete-a-block jackknife (Tukey 1958; for autocorrelated errors Künsch 1989). Its intervals need no model of
+//!   the autocorrelation.
 
 use crate::reconcile::model::estimate::{Estimate, Z_95};
 use nalgebra::{DMatrix, DVector};
 
-/// This number is added to the diagonal of the scaled normal equations. A column that is a combination of others then
-/// gets a coefficient near zero instead of a large one.
+/// This number is added to the diagonal of the normal equations, whose columns are scaled to unit length. A column that
+/// is a combination of other columns then gets a coefficient near zero instead of a large one.
 const LEAST: f64 = 1e-10;
 
-/// Sums, over the rows of a record, of the products of every two columns: one matrix per block of time. A fit explains one
-/// column by others.
+/// Sums, over the rows of a record, of the products of every two columns: one matrix per block of time. A fit explains
+/// one column (the target) by others.
 pub(crate) struct Blocks {
+    /// Sums of products of each block, divided by the scales of both columns.
     sums: Vec<DMatrix<f64>>,
+    /// Sum of the matrices of all blocks.
     total: DMatrix<f64>,
+    /// Number of rows of each block.
     rows: Vec<usize>,
-    /// Root of the sum of squares of each column over all rows. The sums of products are divided by it.
+    /// Root of the sum of squares of each column over all rows (scale), in the unit of the column; 1 for a column of
+    /// zeros.
     scale: Vec<f64>,
 }
 
@@ -29,7 +37,8 @@ pub(crate) struct Fitted {
     pub columns: Vec<usize>,
     /// Coefficient of each column, fitted to all blocks, in the unit of the target per unit of the column.
     pub values: Vec<f64>,
-    /// Coefficients fitted with one block of time left out: one list for each block.
+    /// Coefficients of the model fitted with one block of time left out: one list for each block, in the order of
+    /// `columns`.
     without: Vec<Vec<f64>>,
     /// Sum of squared errors of each block, in squared units of the target. The block is predicted by the model that
     /// was fitted without it.
@@ -42,8 +51,8 @@ pub(crate) struct Fitted {
 }
 
 impl Blocks {
-    /// Sums the products of every two of `width` columns, block by block. `fill` writes the columns of the row with
-    /// the given index, and returns whether the row is used. `block_of` gives the block of a row.
+    /// Sums the products of every two of `width` columns, block by block. `fill` writes the columns of the row with the
+    /// given index, and returns whether the row is used. `block_of` gives the index of the block of a row.
     pub(crate) fn new(
         rows: usize,
         width: usize,
@@ -79,9 +88,10 @@ impl Blocks {
         Self { sums, total, rows: numbers, scale }
     }
 
-    /// Fits the column `target` by the columns `columns`, with all blocks and with each block left out. `prior` gives
-    /// the prior standard deviation of a column's coefficient as a multiple of sigma, the standard deviation of an
-    /// independent row; `None` if nothing is known before. The result is `None` if the normal equations are singular.
+    /// Fits the column `target` by the columns `columns`, once to all blocks and once with each block left out. `prior`
+    /// gives the prior standard deviation of the coefficient of a column, as a multiple of the standard deviation of
+    /// the error of an independent row. It is `None` for a coefficient without a prior. The result is `None` if the
+    /// normal equations are singular.
     pub(crate) fn fit(
         &self,
         columns: &[usize],
@@ -121,12 +131,14 @@ impl Blocks {
         })
     }
 
+    /// Coefficients in the units of the columns, from the coefficients `b` of the scaled columns.
     fn unscaled(&self, columns: &[usize], target: usize, b: &DVector<f64>) -> Vec<f64> {
         columns.iter().zip(b.iter()).map(|(c, b)| b * self.scale[target] / self.scale[*c]).collect()
     }
 
-    /// Fraction of the variance of `column` that the columns `others` do not explain. The variance is the sum of
-    /// squares that a fit by the columns `constants` (offsets) leaves.
+    /// Fraction of the variance of the column `column`, from 0 to 1, that the columns `others` do not explain. The
+    /// variance is the sum of squares that remains after a fit by the columns `constants` (the offsets of the records).
+    /// 0 if this sum is zero.
     pub(crate) fn own_share(&self, column: usize, constants: &[usize], others: &[usize]) -> f64 {
         let left = |of: &[usize]| self.fit(of, column, |_| None).map_or(0.0, |f| f.squares);
         let about_mean = left(constants);
@@ -134,6 +146,7 @@ impl Blocks {
     }
 }
 
+/// Adds the products of every two columns of a row to `sum`, in its lower triangle only.
 fn add(sum: &mut DMatrix<f64>, row: &[f64]) {
     for (j, right) in row.iter().enumerate().filter(|(_, x)| **x != 0.0) {
         let mut column = sum.column_mut(j);
@@ -144,7 +157,8 @@ fn add(sum: &mut DMatrix<f64>, row: &[f64]) {
 }
 
 impl Fitted {
-    /// Index of the column `column` among the coefficients of the model; `None` if the model lacks it.
+    /// Position of the column with the index `column` among the coefficients of the model; `None` if the model lacks
+    /// this column.
     fn place(&self, column: usize) -> Option<usize> {
         self.columns.iter().position(|c| *c == column)
     }
@@ -155,8 +169,9 @@ impl Fitted {
         self.place(column).map_or(0.0, |i| self.values[i])
     }
 
-    /// Value of `of`, a function of the model's coefficients, with its 95 % interval by the jackknife (the scatter of
-    /// the value when each block is left out in turn).
+    /// Value of a function `of` of the coefficients with its 95 % interval. `of` gets a function that gives the
+    /// coefficient of a column, 0 if the model lacks it. The interval comes from the jackknife: the scatter of the
+    /// value when each block is left out in turn.
     pub(crate) fn estimate(&self, of: impl Fn(&dyn Fn(usize) -> f64) -> f64) -> Estimate {
         let with = |list: &[f64]| of(&|column| self.place(column).map_or(0.0, |i| list[i]));
         let value = with(&self.values);
@@ -173,13 +188,15 @@ impl Fitted {
         self.estimate(|c| c(column))
     }
 
-    /// Root mean square error over all rows, each predicted without its block, in the unit of the target.
+    /// Root mean square error over all rows, in the unit of the target. Each row is predicted by the model that was
+    /// fitted without the block of this row.
     pub(crate) fn held_out_rms(&self) -> f64 {
         (self.held_out.iter().sum::<f64>() / self.rows as f64).sqrt()
     }
 
-    /// Whether this model predicts nearly all held-out blocks better than the model `other`, and leaves less than half of its
-    /// error. One block with most of the error can keep [`Fitted::better_than`] small although this is so.
+    /// Whether this model predicts at least 90 % of the held-out blocks no worse than the model `other`, and has less
+    /// than half of its root mean square error on held-out blocks. [`Fitted::better_than`] can be small in such a case,
+    /// if one block has most of the error.
     pub(crate) fn halves(&self, other: &Fitted) -> bool {
         const NEARLY_ALL: f64 = 0.9;
         let better = other.held_out.iter().zip(&self.held_out).filter(|(a, b)| a >= b).count();
@@ -187,8 +204,9 @@ impl Fitted {
             && better as f64 >= NEARLY_ALL * self.held_out.len() as f64
     }
 
-    /// How clearly this model predicts held-out blocks better than the model `other`, in standard errors: the mean
-    /// over the blocks of the reduction of the sum of squared errors, divided by the standard error of this mean.
+    /// How clearly this model predicts held-out blocks better than the model `other`, in standard errors. The reduction
+    /// of the sum of squared errors is averaged over the blocks, and this mean is divided by its standard error.
+    /// Negative if this model predicts worse; 0 if all blocks have the same reduction.
     pub(crate) fn better_than(&self, other: &Fitted) -> f64 {
         let saved: Vec<f64> = other.held_out.iter().zip(&self.held_out).map(|(a, b)| a - b).collect();
         let count = saved.len() as f64;
@@ -210,9 +228,9 @@ pub(crate) fn student_quantile(dof: f64) -> f64 {
     Z + terms.iter().enumerate().map(|(i, term)| term / dof.powi(i as i32 + 1)).sum::<f64>()
 }
 
-/// Number of rows that together have as much information as one independent reading. It is more than 1 because errors
-/// are autocorrelated: 1 + 2 times the sum of the autocorrelations of `errors`. The sum ends at the first pair of lags
-/// that is not positive (Geyer 1992).
+/// Number of rows that together have as much information as one independent reading. It is more than 1 if the errors
+/// are autocorrelated: `1 + 2 sum_k rho_k`, where `rho_k` is the autocorrelation of `errors` at a lag of `k` rows. The
+/// sum ends before the first pair of neighbouring lags whose sum is not positive (Geyer 1992).
 pub(crate) fn rows_per_reading(errors: &[f64]) -> f64 {
     const MOST_LAGS: usize = 4000;
     let n = errors.len();

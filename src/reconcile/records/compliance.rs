@@ -1,35 +1,36 @@
 //! The compliance of a joint from records: whether they identify it, and the stiffness with its interval.
 //!
-//! Gravity and a transmission error of the output both follow the angle of the joint. Where the records cannot tell the
-//! two apart, the interval covers the fits with and without that error.
+//! The twist by gravity and a transmission error of the output both vary with the angle of the joint. Where the records
+//! cannot tell the two apart, the interval covers the fits with and without a transmission error.
 
 use super::intervals::{attenuated, covering, is_positive, widened};
 use super::twist::{CLEARLY, Group, TwistModel};
 use crate::reconcile::model::estimate::Estimate;
 use crate::reconcile::verdict::joint_record::{State, Stated};
 
-/// The compliance is identified if at least this fraction of the torque's variance is not explained by the joint's
-/// own acceleration and friction. This remainder is what tells the compliance from rotor inertia and friction. See
-/// also [`WELL_BALANCED`].
+/// The compliance may be identified if at least this fraction of the torque's variance is independent of the joint's
+/// own motion (see [`TwistModel::own_share_of_torque`]). This part of the torque tells the compliance from rotor
+/// inertia and friction. See also [`WELL_BALANCED`].
 const OWN_SHARE: f64 = 0.1;
-/// A fraction below [`OWN_SHARE`] is also enough if it is at least this many times the fraction of the torque's
-/// variance that the balance of torques leaves unexplained. Friction then follows its formula closely.
+/// A fraction below [`OWN_SHARE`] is enough too, if it is at least this many times the fraction of the torque's
+/// variance that the balance of torques leaves unexplained. Load and friction then follow their formulas closely.
 const WELL_BALANCED: f64 = 20.0;
-/// A compliance is not identified if the upper end of its interval is more than this many times the lower end.
+/// A compliance is not identified if the upper end of its interval is more than this multiple of the lower end.
 const WIDE: f64 = 5.0;
 /// Smallest half width of the interval of a compliance, as a fraction of the value, because the scale factors of
 /// sensors are not known better.
 const LEAST_PART: f64 = 5e-3;
-/// Largest compliance in the presence of a transmission error, as a multiple of the compliance for a rotor without
-/// inertia. A rotor with the inertia of its load gives this multiple, and no rotor is taken to have more inertia.
+/// Upper bound of the compliance where a transmission error is in the model, as a multiple of the compliance for a
+/// rotor without inertia. A rotor with the same inertia as its load, both referred to the output, gives this multiple.
+/// Larger rotors are not considered.
 const MOST_ROTOR: f64 = 2.0;
-/// Reason why a compliance or a transmission error is not identified: either of them alone explains the twist by
-/// gravity.
+/// Words for the case that either a compliance under gravity or a transmission error alone explains the twist, so that
+/// neither is identified.
 pub(crate) const GRAVITY_OR_ERROR: &str = "the twist by gravity and a transmission error both follow the angle of the joint, and the rotor's inertia is not \
      stated: the records cannot tell them apart";
 
-/// Result for the compliance of a joint: whether it is identified, and the stiffness with its interval. `left_share`
-/// is the fraction of the torque's variance that the balance of torques leaves unexplained, and `least` that of
+/// Result for the compliance of a joint: whether it is identified, and the stiffness with its interval. `left_share` is
+/// the fraction of the torque's variance that the balance of torques leaves unexplained, and `least` the result of
 /// [`TwistModel::least_attenuation`].
 pub(super) fn compliance(model: &TwistModel, left_share: f64, least: f64) -> Stated {
     const WHAT: &str = "compliance";
@@ -81,7 +82,7 @@ pub(super) fn compliance(model: &TwistModel, left_share: f64, least: f64) -> Sta
 }
 
 /// A clause that says how many times too large the compliance `rad_per_nm` would come out in a model without time shift
-/// and friction. `None` if the model has no time shift, or if the difference is small.
+/// and friction. `None` if the model has no time shift, or if this factor is at most 1.1.
 fn softer_without_shift(model: &TwistModel, rad_per_nm: f64) -> Option<String> {
     let p = model.places;
     let plain = model.fit_with(&[p.offsets(), vec![p.torque()]].concat());
@@ -90,8 +91,9 @@ fn softer_without_shift(model: &TwistModel, rad_per_nm: f64) -> Option<String> {
     is_said.then(|| format!("without time shift and friction it would come out {factor:.1} times too soft"))
 }
 
-/// Sentence on a joint whose torque mostly serves its own motion. `share` is the fraction of the torque's variance that
-/// does not, and `left_share` is the fraction that the balance of torques leaves unexplained.
+/// Sentence that says why the compliance of a joint is not identified: its own acceleration and friction explain nearly
+/// all of the torque. `share` is the fraction of the torque's variance that they do not explain. `left_share` is the
+/// fraction that the balance of torques leaves unexplained.
 fn insufficient(model: &TwistModel, share: f64, left_share: f64) -> String {
     let is_stated = model.rows.rotor_inertia_kgm2.is_some();
     format!(
@@ -103,8 +105,9 @@ fn insufficient(model: &TwistModel, share: f64, left_share: f64) -> String {
     )
 }
 
-/// The compliance `c` \[rad/(N m)\], with its interval widened for a transmission error of the output. It then covers
-/// the fit with this error, and also the fit without the error if that fit shows the compliance.
+/// The compliance `c` \[rad/(N m)\] with a wider interval, if a transmission error of the output is in the model or
+/// remains possible. The interval then covers the fit with this error, and also the fit without it if that fit shows
+/// the compliance. Otherwise `c` is unchanged.
 fn beside_gear_error(model: &TwistModel, c: Estimate) -> Estimate {
     let Some(beside) = &model.error_or_gravity else { return c };
     if !beside.is_doubtful && !model.groups.contains(&Group::Output) {
@@ -117,17 +120,17 @@ fn beside_gear_error(model: &TwistModel, c: Estimate) -> Estimate {
         out = covering(out, beside.without.coefficient(torque));
     }
     if beside.is_held {
-        // with a rotor of zero inertia the compliance is smallest; with a rotor of the load's inertia it is twice as
-        // large
+        // the compliance is smallest with a rotor of zero inertia, and twice as large with a rotor of the load's
+        // inertia
         let most = |high: f64| high.max(MOST_ROTOR * with.high.unwrap_or(high));
         out.high = out.high.map(most);
     }
     out
 }
 
-/// The limits `low` and `high` of the compliance \[rad/(N m)\], widened so that they include the value without a
-/// transmission error in the model, and a sentence on it. Gravity and a transmission error both vary with the joint's
-/// angle and are hard to tell apart.
+/// The limits `low` and `high` of the compliance \[rad/(N m)\] and a remark. If the model has a transmission error of
+/// the output, the limits are widened to cover the compliance of a fit without it. Without such an error, or if that
+/// compliance may be zero, the limits are unchanged and there is no remark.
 fn with_gear_error(model: &TwistModel, low: f64, high: f64) -> (f64, f64, Vec<String>) {
     if !model.groups.contains(&Group::Output) {
         return (low, high, Vec::new());
@@ -142,8 +145,9 @@ fn with_gear_error(model: &TwistModel, low: f64, high: f64) -> (f64, f64, Vec<St
     (low.min(c.low.unwrap_or(low)), high.max(c.high.unwrap_or(high)), vec![words])
 }
 
-/// Stiffness with its interval \[N m/rad\], as a parameter, for a compliance `c` that is not identified. The upper
-/// end is `None` where the compliance may be zero. Empty if the best compliance or its upper end is not positive.
+/// Stiffness \[N m/rad\] for a compliance `c` that is not identified, as a named parameter with its interval. The upper
+/// end of the interval is `None` where the compliance may be zero. Empty if the best compliance or its upper end is not
+/// positive.
 fn open(c: &Estimate) -> Vec<(String, Vec<Estimate>)> {
     let stiffness = |c: Option<f64>| c.filter(|c| *c > 0.0 && c.is_finite()).map(|c| 1.0 / c);
     let Some(low) = stiffness(c.high) else { return Vec::new() };

@@ -1,14 +1,17 @@
-//! Nonlinear torsion laws of a joint, beyond a single compliance: three segments, lost motion and hysteresis.
+//! Nonlinear torsion laws of a joint, in addition to a constant compliance: three segments, lost motion and hysteresis.
 //!
-//! The spring is the joint as a compliance. Its torque is the motor's torque without friction and without the torque
-//! that accelerates the rotor. The friction comes from the balance of torques, and the rotor's inertia from the linear
-//! fit of the twist. Each law is written as a few columns, which are functions of the spring torque
-//! a grid. The best grid point is then improved with the derivatives of the twist with respect to these torques. The
-//! columns of the derivatives are part of the fit, so that the intervals contain the uncertainty of the torques.
+//! A torsion law gives the twist as a function of the spring torque. This is the motor's torque at the output without
+//! friction and without the torque that accelerates the rotor. The friction comes from the balance of torques, and the
+//! rotor's inertia from the linear fit of the twist.
+//!
+//! In the model of the twist, a law is a few columns. They depend on the spring torque and on torques of the law: break
+//! points, a closing torque or a half width `r`. The law's torques are first tried on a grid, and the best grid point
+//! is improved by Gauss-Newton steps. The derivatives of the twist with respect to the law's torques are columns too,
+//! so that the intervals contain the uncertainty of these torques. The columns at the spring torque `T` are
 //!
 //! - three segments: `clip(T, T1)` and `clip(T, T2)` in addition to `T`, with slopes that fall;
 //! - lost motion: `tanh(T / T_c)`;
-//! - hysteresis: `s - T`, where `s` is dragged so that it stays within `r` of `T`.
+//! - hysteresis: `s - T`, where the state `s` follows `T` and stays within `r` of it.
 
 use super::blocks::{Blocks, Fitted};
 use super::friction::Friction;
@@ -23,22 +26,20 @@ use std::ops::Range;
 const BREAKS: [f64; 11] = [0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 /// Closing torques T_c of lost motion that are tried, as fractions of the largest spring torque.
 const CLOSING: [f64; 6] = [0.01, 0.02, 0.05, 0.1, 0.2, 0.4];
-/// Half widths of the hysteresis, as torques, that are tried, as fractions of the largest spring torque.
+/// Half widths of a hysteresis (torques) that are tried, as fractions of the largest spring torque.
 const PLAYS: [f64; 8] = [0.005, 0.01, 0.02, 0.04, 0.07, 0.12, 0.2, 0.3];
-/// A law is accepted only if it predicts held-out blocks better by this many standard errors. More is asked than for
-/// a single given column, because the law is the best of a whole grid.
+/// A law is accepted only if it predicts held-out blocks better by this many standard errors. The number is larger than
+/// for a single column, because the law is the best one of a whole grid.
 const CLEARLY_OF_GRID: f64 = 3.0;
-/// A law is accepted only if it changes the twist by more than this fraction of the twist's root mean square. A
-/// smaller change may come from the simplicity of the model of friction.
+/// A law is accepted only if it changes the twist by more than this fraction of the twist's root mean square. A smaller
+/// change may be an error of the model of friction, which is simple.
 pub(super) const LEAST_TWIST_CHANGE: f64 = 0.02;
-/// A law that is not accepted may still be hidden in the record: a few blocks with most of the error can keep a true
-/// law from being clear. It is taken as hidden if it would lower the error on held-out blocks to less than this
-/// fraction.
+/// A law whose improvement is not clear, because a few blocks have most of the error, may still be in the record. It is
+/// reported as hidden if it lowers the root mean square error on held-out blocks to less than this fraction.
 const HIDDEN: f64 = 0.5;
-/// If the intervals of the two break points of three segments are closer together than this fraction of the second one,
-/// they count as one break point.
+/// The two break points count as one if the gap between their intervals is at most this fraction of the second.
 const ONE_BREAK: f64 = 0.2;
-/// Number of Gauss-Newton steps by which the torques at which the laws change are improved.
+/// Number of Gauss-Newton steps that improve the torques of the laws.
 const ROUNDS: usize = 5;
 /// Largest change of a torque of a law in one Gauss-Newton step, as a fraction of this torque.
 const LARGEST_STEP: f64 = 0.3;
@@ -61,24 +62,23 @@ pub(crate) struct Curve {
     pub laws: Vec<Law>,
     /// Names of laws that were refused because their best coefficients are physically impossible, each with the reason.
     pub refused: Vec<(&'static str, &'static str)>,
-    /// Name of a law that held-out blocks cannot tell from one that was chosen; `None` if there is none.
+    /// Name of another law that predicts held-out blocks about as well as a chosen one; `None` if there is none.
     pub competing: Option<&'static str>,
     /// Name of a law that may be hidden in the record (see [`HIDDEN`]), and the root mean square error on held-out
     /// blocks with it \[rad\]; `None` if there is none.
     pub hidden: Option<(&'static str, f64)>,
-    /// Fit of the twist with the columns of all laws, including the derivatives with respect to the torques of the
-    /// laws.
+    /// Fit of the twist by the linear model and the columns of all laws.
     pub fitted: Fitted,
     /// Root mean square error of the twist on held-out blocks after each law was added \[rad\], with the law's name.
     pub steps: Vec<(String, f64)>,
     first: usize,
     /// Torque of the spring (the motor's torque without friction and rotor inertia), one per row \[N m\].
     pub spring_nm: Vec<f64>,
-    /// Friction that has a known value in all fits with a law; `None` if these fits find the friction themselves.
+    /// Friction that is held at a known value in all fits with a law; `None` if the friction is free in these fits.
     pub held: Option<Held>,
 }
 
-/// Name of the three segments of a gear in `verdict.json`.
+/// Name of a torsion curve with three segments in `verdict.json`.
 pub(crate) const TORSION_CURVE: &str = "torsion_curve";
 
 impl Law {
@@ -96,10 +96,10 @@ impl Law {
         if matches!(self, Law::Segments(..)) { 2 } else { 1 }
     }
 
-    /// The four columns of the law at the spring torque `t` \[N m\]. The first two are shapes, and the others are their
-    /// derivatives with respect to the torques of the law. For a law with a single torque, the second of each pair is
-    /// 0. `drag` is the state `s` of the hysteresis, for the law's half width and for one that is larger by [`WIDER`];
-    /// other laws do not use it.
+    /// The four columns of the law at the spring torque `t` \[N m\]: two functions of `t` (shapes, see the head of this
+    /// file), then their derivatives with respect to the law's torques. A law with a single torque has zeros in the
+    /// place of the second shape and derivative. `drag` is the state `s` of the hysteresis \[N m\], for the law's half
+    /// width and for one that is larger by the fraction [`WIDER`]. Other laws do not use it.
     fn columns(self, t: f64, drag: [f64; 2]) -> [f64; 4] {
         let beyond = |edge: f64| if t.abs() > edge { t.signum() } else { 0.0 };
         match self {
@@ -112,6 +112,8 @@ impl Law {
         }
     }
 
+    /// The law with its torques changed by `step` \[N m\], each by at most [`LARGEST_STEP`] of itself. Break points
+    /// that would change their order stay as they are.
     fn moved(self, step: [f64; 2]) -> Self {
         let by = |torque: f64, step: f64| torque + step.clamp(-LARGEST_STEP * torque, LARGEST_STEP * torque);
         match self {
@@ -125,7 +127,7 @@ impl Law {
     }
 }
 
-/// Relative change of the half width of a hysteresis by which its derivative is computed.
+/// Relative change of the half width of a hysteresis in the difference quotient that gives its derivative.
 const WIDER: f64 = 0.01;
 
 /// State `s` of a hysteresis with the half width `width` at each row \[N m\]: of all values within `width` of the
@@ -144,9 +146,9 @@ fn dragged(spring_nm: &[f64], record: impl Fn(usize) -> usize, width: f64) -> Ve
     spring_nm.iter().enumerate().map(drag).collect()
 }
 
-/// Torque of the spring at each row \[N m\]: the motor's torque without friction and rotor inertia. The friction is
-/// that of `friction`, the balance of torques, as far as it is certain there. Otherwise it is that of the linear fit of
-/// the twist, which mistakes a hysteresis for friction.
+/// Torque of the spring at each row \[N m\]: the motor's torque without friction and without the torque that
+/// accelerates the rotor. The friction comes from the balance of torques `friction` where it is certain. Otherwise it
+/// comes from the fit `fitted` of the twist, which may take a hysteresis for friction.
 pub(crate) fn spring_torque(model: &TwistModel, fitted: &Fitted, friction: Option<&Friction>) -> Vec<f64> {
     let p = model.places;
     let of_twist = |column: usize| fitted.value(column) / fitted.value(p.torque());
@@ -159,7 +161,7 @@ pub(crate) fn spring_torque(model: &TwistModel, fitted: &Fitted, friction: Optio
         Some((coulomb_nm, f)) => [-coulomb_nm, -f.load_part.map_or(0.0, |part| part.value)],
         None => [of_twist(p.sense()), of_twist(p.load_sense())],
     };
-    // a fit without a law describes a part of the hysteresis loop as a filter of the torque
+    // in a fit without laws, the rate of the torque may describe a part of a hysteresis loop; it is then not used
     let has_laws = fitted.columns.iter().any(|c| *c >= p.further());
     let rate = if has_laws || coulomb_nm.is_none() { of_twist(p.rate()) } else { 0.0 };
     let inertia = of_twist(p.acceleration());
@@ -177,10 +179,10 @@ pub(crate) fn spring_torque(model: &TwistModel, fitted: &Fitted, friction: Optio
     out
 }
 
-/// Replaces the torque of the spring at rows where friction is not known. A hysteresis depends on these rows too, so
-/// errors there would remain in later rows. The torque of the load, which the gear carries, is known without friction.
-/// The rows get this torque plus its difference from the spring's torque, which is interpolated between the known rows
-/// before and after.
+/// Replaces the torque of the spring `spring_nm` \[N m\] at rows where friction is not known. Otherwise errors there
+/// would stay in the state of a hysteresis and reach later rows. The new value is the torque of the load, which is
+/// known without friction, plus an interpolated difference. It is the difference between spring torque and load torque
+/// at the nearest known rows before and after.
 fn bridge(model: &TwistModel, spring_nm: &mut [f64]) {
     let samples = &model.rows.samples;
     let mut row = 0;
@@ -193,7 +195,7 @@ fn bridge(model: &TwistModel, spring_nm: &mut [f64]) {
     }
 }
 
-/// Bridges the rows `gap`, none of which is known.
+/// Does what [`bridge`] says for the rows `gap`, none of which is known. Only known rows of the same record count.
 fn bridge_one(samples: &[Sample], gap: Range<usize>, spring_nm: &mut [f64]) {
     let more = |i: usize| spring_nm[i] - samples[i].load_nm;
     let before = gap.start.checked_sub(1).map(|i| (samples[i].record, more(i)));
@@ -211,8 +213,8 @@ fn bridge_one(samples: &[Sample], gap: Range<usize>, spring_nm: &mut [f64]) {
     }
 }
 
-/// Friction that the balance of torques determines with certainty: the Coulomb friction \[N m\], half of the width of
-/// its interval \[N m\], and the friction in proportion to the load, as a fraction of the load.
+/// Coulomb friction \[N m\], half of the width of its interval \[N m\], and friction torque for each newton metre of
+/// load \[-\], all from the balance of torques.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Held {
     coulomb_nm: f64,
@@ -220,10 +222,9 @@ pub(crate) struct Held {
     load_part: f64,
 }
 
-/// The friction that has a known value in all fits with a law, or `None` if these fits find the friction themselves.
-/// Friction on the motor's side cannot exceed the friction of the balance of torques. If the fit of the twist gives
-/// more, it has taken the loop of a hysteresis for friction. All friction of the balance is then put on the motor's
-/// side.
+/// Friction that is held at the value of the balance of torques in all fits with a law. It is held if the linear fit of
+/// the twist gives more friction on the motor's side than there is in all, because this fit then takes the loop of a
+/// hysteresis for friction. `None` otherwise, also if the balance does not determine the friction.
 fn held(model: &TwistModel, friction: Option<&Friction>) -> Option<Held> {
     let f = friction.filter(|f| f.clearly[0] && is_positive(&f.coulomb_nm))?;
     let out = Held {
@@ -239,8 +240,8 @@ fn held(model: &TwistModel, friction: Option<&Friction>) -> Option<Held> {
     (asked_nm > out.coulomb_nm + out.load_part * mean_load_nm).then_some(out)
 }
 
-/// Finds up to two torsion laws beyond a single compliance, one after the other, that predict held-out blocks clearly
-/// better. `None` if a fit is impossible.
+/// Finds up to two torsion laws beyond a single compliance, one after the other, each of which predicts held-out blocks
+/// clearly better. The result has no laws if there are none. `None` if a fit is impossible.
 pub(crate) fn curve(model: &TwistModel, friction: Option<&Friction>) -> Option<Curve> {
     let spring_nm = spring_torque(model, &model.fitted, friction);
     let (p, held) = (model.places, held(model, friction));
@@ -279,7 +280,7 @@ pub(crate) fn curve(model: &TwistModel, friction: Option<&Friction>) -> Option<C
             out.refused.push((best.0.what(), reason));
             break;
         }
-        // a law is judged at its best torques and with the rotor's inertia that follows, not at those of the grid
+        // laws are compared after their torques and the rotor's inertia have been improved
         let possible = clear.iter().filter(|law| reason(law).is_none()).map(|(law, _)| *law);
         let mut with: Vec<Curve> = possible.filter_map(|law| out.with(model, &own, law, friction)).collect();
         with.sort_by(|a, b| a.fitted.held_out_rms().total_cmp(&b.fitted.held_out_rms()));
@@ -292,8 +293,8 @@ pub(crate) fn curve(model: &TwistModel, friction: Option<&Friction>) -> Option<C
     Some(out)
 }
 
-/// Whether a law changes the twist by more than [`LEAST_TWIST_CHANGE`] of the twist's root mean square. `at` is the first
-/// column of the law, and `torque` the column whose coefficient is the compliance.
+/// Whether a law changes the twist by more than [`LEAST_TWIST_CHANGE`] of the twist's root mean square. `at` is the
+/// first column of the law, and `torque` the column whose coefficient is the compliance.
 fn is_material(fit: &Fitted, law: Law, at: usize, spring_nm: &[f64], torque: usize) -> bool {
     let squares: f64 = spring_nm.iter().map(|t| t * t).sum();
     let twist_rad = fit.value(torque).abs() * (squares / spring_nm.len() as f64).sqrt();
@@ -305,9 +306,9 @@ fn is_material(fit: &Fitted, law: Law, at: usize, spring_nm: &[f64], torque: usi
     size_rad > LEAST_TWIST_CHANGE * twist_rad
 }
 
-/// Reason why the fitted coefficients of a law are physically impossible; `None` if they are possible. `first` is the
-/// column at which the laws begin, and `before` the number of laws that stand before this one. `torque` is the column
-/// whose coefficient is the compliance.
+/// Reason why the fitted coefficients of `law` are physically impossible; `None` if they are possible. `first` is the
+/// index of the first column of all laws, and `before` the number of laws in front of `law`. `torque` is the index of
+/// the column whose coefficient is the compliance.
 fn impossible(fit: &Fitted, law: Law, first: usize, before: usize, torque: usize) -> Option<&'static str> {
     let size = fit.value(first + 4 * before);
     let second = fit.value(first + 4 * before + 1);
@@ -327,9 +328,9 @@ fn impossible(fit: &Fitted, law: Law, first: usize, before: usize, torque: usize
 }
 
 impl Curve {
-    /// For each kind of law that was not found yet, the law of its grid that predicts held-out blocks best, fitted
-    /// together with the laws found before. `own` are the columns of the linear model, and `largest_nm` is the
-    /// largest spring torque. The results are sorted by the error on held-out blocks, the smallest first.
+    /// For each kind of law that was not found yet, the law of its grid that predicts held-out blocks best. Each is
+    /// fitted together with the laws found before. `own` are the columns of the linear model, and `largest_nm` is the
+    /// largest spring torque \[N m\]. The results are sorted by the error on held-out blocks, the smallest first.
     fn best_of_grids(
         &self,
         model: &TwistModel,
@@ -361,11 +362,9 @@ impl Curve {
                 let new = self.shapes_of(*law, known, &single);
                 Some((*law, fitted(&[own, &old, &new].concat(), &sums, target)?))
             });
-            // refitted with this law alone on the grid, so that its columns follow directly behind those of the laws
-            // found before
             let torque = model.places.torque();
-            // a fit without the curve may have a wrong rotor inertia, with which the best segments soften; with the
-            // inertia that follows from the curve they do not, so segments that stiffen are preferred
+            // segments that stiffen as the torque grows are preferred: with the wrong rotor inertia of a fit without
+            // the curve, the best segments may soften
             let softens = |(law, fit): &(Law, Fitted)| {
                 let at = self.shapes_of(*law, known, &single);
                 matches!(law, Law::Segments(..))
@@ -375,6 +374,7 @@ impl Curve {
             let best =
                 tried.min_by(|a, b| order(a).0.cmp(&order(b).0).then(order(a).1.total_cmp(&order(b).1)));
             let Some((law, _)) = best else { continue };
+            // fitted again without the rest of the grid: the columns of the law then follow those of the earlier laws
             let laws = [self.laws.as_slice(), &[law]].concat();
             let (sums, target) = self.sums(model, &laws);
             let new = &self.law_columns(known, law)[..law.torques()];
@@ -384,8 +384,8 @@ impl Curve {
         Some(out)
     }
 
-    /// The laws of a grid, with every torque once. A pair of break points is replaced by a law for each of them, so
-    /// that pairs share the columns of their single torques.
+    /// The laws of `grid`, so divided that each has a single torque, without repetitions. A pair of break points
+    /// becomes one law for each break point. All pairs of the grid then share these columns.
     fn singles(&self, grid: &[Law]) -> Vec<Law> {
         let mut out: Vec<Law> = Vec::new();
         for law in grid {
@@ -402,8 +402,8 @@ impl Curve {
         out
     }
 
-    /// Indices of the columns of the shapes of `law`. In the table of columns, the laws `singles` come after `known`
-    /// earlier laws.
+    /// Indices of the columns of the shapes of `law` in the sums that contain `known` earlier laws and then the laws
+    /// `singles`.
     fn shapes_of(&self, law: Law, known: usize, singles: &[Law]) -> Vec<usize> {
         let place = |law: Law| singles.iter().position(|s| *s == law).map(|i| self.first + 4 * (known + i));
         match law {
@@ -422,8 +422,8 @@ impl Curve {
         (at..at + n).chain(at + 2..at + 2 + n).collect()
     }
 
-    /// Sums of the products of all columns, block by block, with four columns for each of the `laws`. The second
-    /// value is the index of the target column, the twist.
+    /// Sums of the products of every two columns, block by block, with four columns for each of the `laws`. The second
+    /// value is the index of the column of the recorded twist.
     fn sums(&self, model: &TwistModel, laws: &[Law]) -> (Blocks, usize) {
         let record = |i: usize| model.rows.samples[i].record;
         let plays: Vec<Option<[Vec<f64>; 2]>> = laws
@@ -452,14 +452,13 @@ impl Curve {
         (sums, target)
     }
 
-    /// Name of the law that was found last.
+    /// Name of the law that was found last; `None` if there is none.
     fn last(&self) -> Option<&'static str> {
         self.laws.last().map(|law| law.what())
     }
 
-    /// These laws and the law `law`, all at their best torques. The rotor's inertia of the earlier fit was wrong if
-    /// that fit lacked a law that the twist needs. So the spring torque is computed again with the inertia of the new
-    /// fit. `None` if a fit is impossible.
+    /// The laws of this curve and `law`, with all torques improved. The spring torque is computed again while the fit
+    /// improves, because a fit that lacks a law has a wrong rotor inertia. `None` if a fit is impossible.
     fn with(
         &self,
         model: &TwistModel,
@@ -484,9 +483,8 @@ impl Curve {
         Some(out)
     }
 
-    /// Improves the torques of all `laws` together by [`ROUNDS`] Gauss-Newton steps. Returns the laws with the
-    /// smallest sum of squared errors, and their fit, which contains the columns of the derivatives. `own` are the
-    /// columns of the linear model.
+    /// Improves the torques of all `laws` together by [`ROUNDS`] Gauss-Newton steps. Returns the laws with the smallest
+    /// sum of squared errors, and their fit by the columns `own` of the linear model and by all columns of the laws.
     fn improved(&self, model: &TwistModel, own: &[usize], mut laws: Vec<Law>) -> Option<(Vec<Law>, Fitted)> {
         let mut best: Option<(Vec<Law>, Fitted)> = None;
         for _ in 0..ROUNDS {
@@ -531,7 +529,7 @@ impl Curve {
                 named("torque_nm", self.fitted.estimate(|c| closing + c(at + 2) / c(at))),
             ],
             Law::Play(width) => {
-                // friction that is held too large takes as much from the loop
+                // a friction that is held too large makes the hysteresis too narrow by as much
                 let by_friction = self.held.map_or(0.0, |h| h.spread_nm * self.fitted.value(torque));
                 let size = self.fitted.estimate(|c| c(at) * width + c(at + 2));
                 vec![named("half_width_rad", widened(size, libm::hypot(half(&size), by_friction)))]
@@ -539,22 +537,24 @@ impl Curve {
         }
     }
 
-    /// Estimates of both break points `torques_nm` of the three segments with the index `place` among the laws \[N m\].
+    /// Both break points of three segments with their 95 % intervals \[N m\]. `place` is the index of the law, and
+    /// `torques_nm` are its break points in the fit.
     fn breaks(&self, place: usize, torques_nm: [f64; 2]) -> [Estimate; 2] {
         let at = self.first + 4 * place;
         [0, 1].map(|k| self.fitted.estimate(|c| torques_nm[k] + c(at + 2 + k) / c(at + k)))
     }
 
-    /// Whether the intervals of the two break points meet within a margin, or one of them is open. The known rows do
-    /// not reach the third segment then, and show only one break point.
+    /// Whether only one break point can be told, because the interval of the first reaches the interval of the second
+    /// within a margin. The known rows then do not reach the third segment.
     fn has_one_break(&self, place: usize, torques_nm: [f64; 2]) -> bool {
         let [first, second] = self.breaks(place, torques_nm);
         let margin = ONE_BREAK * torques_nm[1];
         first.high.zip(second.low).is_none_or(|(high, low)| high + margin >= low)
     }
 
-    /// Parameters of a curve with three segments of which the record shows two. The third segment is at least as stiff
-    /// as the second, and begins at a torque beyond those of the record.
+    /// Parameters of a torsion curve whose third segment, at least as stiff as the second, begins beyond the largest
+    /// torque of the record. `t1` is the first break point \[N m\], and `place` and `torque` are the indices of the law
+    /// and of the column of the torque.
     fn one_break(&self, place: usize, t1: f64, torque: usize) -> Vec<(String, Vec<Estimate>)> {
         let at = self.first + 4 * place;
         let (Law::Segments(_, t2), known) = (self.laws[place], self.spring_nm.iter()) else {
@@ -574,7 +574,7 @@ impl Curve {
     }
 
     /// Twist of the spring according to the model, one per row \[rad\]: the compliance times the spring torque, plus
-    /// the shapes of all laws without the derivatives. `records` gives the record of a row.
+    /// the twist of all laws. `records` gives the index of the record of a row.
     pub(crate) fn spring_twist_rad(&self, places: Places, records: impl Fn(usize) -> usize) -> Vec<f64> {
         let compliance = self.fitted.value(places.torque());
         let mut out: Vec<f64> = self.spring_nm.iter().map(|t| compliance * t).collect();

@@ -1,4 +1,5 @@
-//! Judges the records of one joint: which effects are found, which are absent, and which the records cannot tell.
+//! Judges the records of one joint: which effects are found, which are absent, and about which the records say nothing.
+//! The errors of the models are those on held-out blocks, which are blocks of time that were left out of a fit.
 
 use super::blocks::Fitted;
 use super::compliance::{GRAVITY_OR_ERROR, compliance};
@@ -15,11 +16,13 @@ use crate::reconcile::model::estimate::Estimate;
 use crate::reconcile::readings::record::Record;
 use crate::reconcile::verdict::joint_record::{JointRecord, State, Stated, Step, Traced};
 
-/// Number of blocks of time into which the records of a joint are divided, if they are long enough.
+/// Number of blocks of time into which the records of a joint are divided if each block is then long enough (see
+/// [`LONG_BLOCK`]).
 const BLOCKS: usize = 30;
-/// Smallest number of blocks of time into which the records are divided.
+/// Smallest number of blocks of time into which the records of a joint are divided, even if the blocks are then short.
 const FEWEST_BLOCKS: usize = 10;
-/// A block of time lasts at least this many times the correlation time of the errors.
+/// The number of blocks is chosen so that a block lasts at least this many times the correlation time of the errors.
+/// [`FEWEST_BLOCKS`] goes first.
 const LONG_BLOCK: f64 = 3.0;
 /// Smallest half width of an interval of friction, as a fraction of the value, because the friction of a joint is
 /// never constant.
@@ -29,9 +32,10 @@ const LEAST_FRICTION_PART: f64 = 0.01;
 const LEAST_LAW_PART: f64 = 0.05;
 /// Smallest half width of the interval of a time shift, as a fraction of the time between rows.
 const LEAST_STEP_PART: f64 = 0.01;
-/// Approximate number of points of a picture.
+/// Approximate number of points in the picture of twist against torque.
 const POINTS: usize = 600;
-/// Smallest range of the joint's angle at which transmission errors once and twice a turn can be told apart \[rad\].
+/// Transmission errors once and twice a turn of the output can be told apart only if the joint turns through at least
+/// this angle \[rad\].
 const TELLING_RANGE_RAD: f64 = 2.0;
 
 /// Judges one joint from all records. `None` if no record has the angles on both sides of its gear, or a fit is
@@ -50,7 +54,8 @@ pub(crate) fn judge(records: &[Record], joint: &str) -> Option<JointRecord> {
     Some(Judged::new(&rows, &model, records).conclude())
 }
 
-/// Rows of the joint from all records, with the torque of the load.
+/// Rows of the joint from all records, with the torque of the load if the torque of the motor is recorded. `None` if no
+/// record has the angles on both sides of the gear.
 fn gathered(records: &[Record], joint: &str, blocks: usize, wave: &Wave) -> Option<JointRows> {
     let mut rows = JointRows::gather(records, joint, blocks, wave)?;
     if let Some(load_nm) = load_nm(&rows, records) {
@@ -59,16 +64,19 @@ fn gathered(records: &[Record], joint: &str, blocks: usize, wave: &Wave) -> Opti
     Some(rows)
 }
 
+/// Everything that the results for one joint are made of.
 struct Judged<'a> {
     rows: &'a JointRows,
     model: &'a TwistModel<'a>,
     records: &'a [Record],
     friction: Option<Friction>,
-    /// Smallest fraction of the true compliance that the fit may give (see [`TwistModel::least_attenuation`]).
+    /// Smallest possible ratio of the fitted compliance to the true one, from 0 to 1 (see
+    /// [`TwistModel::least_attenuation`]).
     least: f64,
     compliance: Stated,
     curve: Option<Curve>,
-    /// A cause that explains the records better than the transmission error of the output that the model has.
+    /// A cause outside the library that explains the records better than the transmission error of the output in the
+    /// model; `None` if there is no such error or cause.
     other_cause: Option<OtherCause>,
 }
 
@@ -88,12 +96,14 @@ impl<'a> Judged<'a> {
         self.curve.as_ref().map_or(&self.model.fitted, |c| &c.fitted)
     }
 
-    /// Stated compliance of the joint, given as a stiffness with its interval. If hysteresis or lost motion was found,
-    /// the compliance comes from the fit that includes it; the linear fit would take a part of that effect for
-    /// compliance. If a torsion curve was found, its segments have their own stiffnesses, and the compliance stated
-    /// here is that of the linear fit, a mean over the record. The linear fit is also taken where the interval of the
-    /// other fit does not exclude zero compliance. If a transmission error of the output, or a law that is not found,
-    /// could take a part of the compliance, the interval covers both fits.
+    /// Result for the compliance of the joint, given as a stiffness with its interval.
+    ///
+    /// If hysteresis or lost motion was found, the value comes from the fit with these laws. The linear fit would take
+    /// a part of them for compliance. The interval covers both fits if the model has a transmission error of the
+    /// output, or if a law is not certain.
+    ///
+    /// The value of the linear fit stays if a torsion curve was found, because the segments of the curve are stated
+    /// separately. It also stays if the compliance may be zero in the fit with laws.
     fn compliance_beside_laws(&self) -> Stated {
         let laws = self.curve.iter().flat_map(|c| &c.laws);
         let is_changed = !laws.clone().any(|l| matches!(l, Law::Segments(..))) && laws.count() > 0;
@@ -116,6 +126,7 @@ impl<'a> Judged<'a> {
         Stated { parameters, ..self.compliance.clone() }
     }
 
+    /// All results for the joint, as [`JointRecord`] lists them.
     fn conclude(self) -> JointRecord {
         let mut stated = vec![self.time_shift(), self.compliance_beside_laws()];
         stated.extend(self.laws());
@@ -148,16 +159,16 @@ impl<'a> Judged<'a> {
         }
     }
 
-    /// Root mean square error of the twist on held-out blocks with an offset as model, and with the time shift too if
-    /// it is in the model \[rad\].
+    /// Root mean square error of the twist on held-out blocks \[rad\], if only an offset and the time shift are fitted.
+    /// The time shift is left out if the model has none.
     fn unshifted_rad(&self) -> f64 {
         let shift: Vec<Group> = self.model.groups.iter().copied().filter(|g| *g == Group::Shift).collect();
         self.model.fit(&shift).map_or(0.0, |f| f.held_out_rms())
     }
 
-    /// Lower and upper limit of the fraction of Coulomb friction that acts on the motor's side of the spring, from 0
-    /// to 1. The width of the loop of twist against torque shows it: the fraction is 1 if the loop is as wide as all
-    /// of the friction makes it.
+    /// Lower and upper limit, from 0 to 1, of the fraction of Coulomb friction that acts on the motor's side of the
+    /// spring. Friction on this side makes a loop of twist against torque. The fraction is 1 if the loop is as wide as
+    /// the whole friction can make it. The limits are 0 and 1 if the friction is not determined.
     fn motor_part(&self) -> (f64, f64) {
         let p = self.model.places;
         let Some(f) = self.friction.filter(|f| f.clearly[0] && is_positive(&f.coulomb_nm)) else {
@@ -174,7 +185,8 @@ impl<'a> Judged<'a> {
     }
 
     /// Result for the time shift. Viscous friction between motor and spring has the same signal as a time shift: both
-    /// are proportional to the speed. The balance of torques tells how much of the coefficient is friction.
+    /// are proportional to the speed. The balance of torques tells how much of the fitted coefficient is due to
+    /// friction.
     fn time_shift(&self) -> Stated {
         let p = self.model.places;
         let fitted = self.fitted();
@@ -202,24 +214,25 @@ impl<'a> Judged<'a> {
         Stated::one(Group::Shift.what(), state, "seconds", shift, if is_clear { &words } else { absent })
     }
 
-    /// Whether a time shift of `shift_s` changes the twist by more than [`LEAST_TWIST_CHANGE`] of the twist. A smaller
-    /// time shift makes a small loop of twist against torque. Friction, hysteresis or lost motion that does not follow
-    /// its formula can make such a loop too.
+    /// Whether a time shift of `shift_s` \[s\] changes the twist by more than the fraction [`LEAST_TWIST_CHANGE`] of
+    /// its root mean square. A smaller change could have another cause: friction, hysteresis or lost motion that does
+    /// not follow its formula.
     fn is_material(&self, shift_s: f64) -> bool {
         let size_rad = shift_s.abs() * self.rows.rms_speed_rad_s();
         let before_rad = self.model.steps.first().map_or(0.0, |s| s.1);
         size_rad > LEAST_TWIST_CHANGE * before_rad
     }
 
-    /// The time shift \[s\] corrected for viscous friction, and a sentence on the correction. `plain` is the time
-    /// shift of the fit, which is too small by the effect of friction. If the compliance is not identified, the
-    /// interval covers the correction for every compliance that is possible. If the friction is refused too, the correction
-    /// may have either sign.
+    /// The time shift \[s\] corrected for viscous friction, and a sentence on the correction. `plain` is the time shift
+    /// of the fit, which is too small by the compliance times the viscous friction. The interval covers this correction
+    /// for every compliance within its interval. If the viscous friction is not determined, the value is not corrected,
+    /// and its interval is widened to both sides by the largest possible correction.
     fn with_friction(&self, plain: Estimate) -> (Estimate, String) {
         let c = self.bounded_compliance();
         let Some(f) = self.friction.filter(|f| f.is_possible && is_positive(&f.viscous_nms_per_rad)) else {
             let Some(f) = self.friction else { return (plain, String::new()) };
-            // a viscous friction that is refused may still have any value up to the largest torque of the motor
+            // a viscous friction that is not determined may have any value whose torque stays below the largest torque
+            // of the motor
             let most = |e: &Estimate| e.low.unwrap_or(0.0).abs().max(e.high.unwrap_or(0.0).abs());
             let reach = most(&c) * most(&f.viscous_nms_per_rad).min(f.most_viscous_nms_per_rad);
             let words = format!(
@@ -231,12 +244,13 @@ impl<'a> Judged<'a> {
         let is_known = is_positive(&c);
         let compliance = if is_known { c.value } else { 0.0 };
         let mut most_compliant = c.high.unwrap_or(0.0).max(0.0);
-        // a fit whose compliance is negative does not bound it
+        // a negative fitted compliance is no upper bound of the true one
         if self.compliance.state != State::Found && c.value <= 0.0 {
             most_compliant = most_compliant.max(self.model.largest_compliance());
         }
         let (least, most) = match self.motor_part() {
-            // where a part of Coulomb friction is certainly behind the spring, any part of viscous friction may be
+            // if a part of Coulomb friction is certainly behind the spring, any part of the viscous friction may be
+            // there too
             (least, most) if is_known && most >= 1.0 => (least, most),
             _ => (0.0, 1.0),
         };
@@ -261,8 +275,9 @@ impl<'a> Judged<'a> {
         (out, words)
     }
 
-    /// Compliance of the last fit \[rad/(N m)\], without the compliance of a torsion law. Its interval is widened for
-    /// the noise of the torque, but not beyond the largest compliance that the recorded twist allows.
+    /// Compliance of the last fit \[rad/(N m)\] without the twist of torsion laws. Its interval is widened because
+    /// noise of the torque makes the fitted value too small, but not beyond the largest compliance that the recorded
+    /// twist allows.
     fn bounded_compliance(&self) -> Estimate {
         let fitted = self.fitted().coefficient(self.model.places.torque());
         let bound = self.model.largest_compliance();
@@ -274,6 +289,7 @@ impl<'a> Judged<'a> {
         }
     }
 
+    /// Results for the torsion curve, hysteresis and lost motion.
     fn laws(&self) -> Vec<Stated> {
         let all = [TORSION_CURVE, hysteresis::KIND.name, lost_motion::KIND.name];
         let Some(curve) = &self.curve else {
@@ -293,6 +309,7 @@ impl<'a> Judged<'a> {
         all.map(state).to_vec()
     }
 
+    /// Results for Coulomb friction, viscous friction and load-dependent friction.
     fn frictions(&self) -> Vec<Stated> {
         let names = ["coulomb_friction", "viscous_friction", "load_friction"];
         let Some(f) = self.friction else {
@@ -327,8 +344,8 @@ impl<'a> Judged<'a> {
         ]
     }
 
-    /// Result for the transmission error of the output. The parameters of this effect are defined by the link's angle
-    /// less the motor's. The twist is the opposite, so the sign of the coefficients is changed.
+    /// Result for the transmission error of the output. This effect is defined as the link's angle minus the motor's
+    /// angle. The twist has the opposite sign, so the coefficients are negated.
     fn output_error(&self) -> Stated {
         let what = Group::Output.what();
         let beside = self.model.error_or_gravity.as_ref();
@@ -350,7 +367,8 @@ impl<'a> Judged<'a> {
                 .flatten()
                 .chain(&at_ends)
                 .collect();
-        // the compliance may be that of the fit without the error, so the error at that compliance is possible too
+        // the compliance of the fit without the transmission error may be the true one, so the interval covers the
+        // error fitted at this compliance too
         let both =
             |of: &dyn Fn(&Fitted) -> Estimate| fits[1..].iter().fold(of(fits[0]), |a, f| covering(a, of(f)));
         let size = both(&|fitted| error_size(fitted, columns, low, high, 1.0));
@@ -371,8 +389,8 @@ impl<'a> Judged<'a> {
     }
 
     /// Fits of the transmission error of the output at both ends of the interval of the compliance, if the rotor's
-    /// inertia is not stated. A larger compliance then leaves less of the twist by gravity for the error, and a smaller
-    /// one leaves more.
+    /// inertia is not stated. A larger compliance explains more of the twist that varies with the angle, and leaves
+    /// less for the transmission error. Empty if the inertia is stated or the compliance has no value.
     fn errors_at_ends(&self) -> Vec<Fitted> {
         let stiffness = self.compliance.parameters.first().and_then(|(_, list)| list.first());
         let Some(k) = stiffness.filter(|_| self.rows.rotor_inertia_kgm2.is_none()) else { return Vec::new() };
@@ -380,6 +398,7 @@ impl<'a> Judged<'a> {
         ends.filter_map(|k| self.model.with_compliance(1.0 / k)).collect()
     }
 
+    /// Result for the transmission error of the input, with the sign of [`Judged::output_error`].
     fn input_error(&self) -> Stated {
         let what = Group::Input.what();
         let Some(ratio) = self.rows.ratio.filter(|n| *n > 1.0) else {
@@ -397,6 +416,7 @@ impl<'a> Judged<'a> {
         Stated { what, state: State::Found, parameters, words: String::new() }
     }
 
+    /// Result for the frequency of free vibration while the motor stands still.
     fn first_mode(&self) -> Stated {
         let found = self.records.iter().flat_map(|r| {
             let own = r.joints.iter().filter(|j| j.joint == self.rows.joint && !j.link_rad.is_empty());
@@ -416,7 +436,8 @@ impl<'a> Judged<'a> {
         }
     }
 
-    /// What the records leave open, so that the joint is not explained although little error is left.
+    /// Sentences on what the records leave open. If there are any, the joint does not count as settled, even if little
+    /// error is left. Empty if nothing is open.
     fn undecided(&self) -> Vec<String> {
         let mut out = Vec::new();
         if self.model.error_or_gravity.as_ref().is_some_and(|b| b.is_doubtful) {
@@ -434,6 +455,8 @@ impl<'a> Judged<'a> {
         out
     }
 
+    /// Remarks for the reader: a law that predicts as well as the chosen one, and a torque that may have the wrong
+    /// sign.
     fn remarks(&self) -> Vec<String> {
         let mut out = Vec::new();
         if let Some(competing) = self.curve.as_ref().and_then(|c| c.competing) {
@@ -449,8 +472,8 @@ impl<'a> Judged<'a> {
         out
     }
 
-    /// Twist against torque of about [`POINTS`] rows, for the picture: as recorded, and corrected so that the
-    /// spring and its friction are left.
+    /// Points for the picture of twist against torque, from about [`POINTS`] rows. Each has the twist as recorded, the
+    /// twist with everything but the spring and its friction removed, and the twist of the model.
     fn trace(&self) -> Vec<Traced> {
         let model = self.model;
         let p = model.places;
@@ -483,6 +506,7 @@ impl<'a> Judged<'a> {
 
 /// Friction of a joint from the balance of torques, with the delay of the link's readings removed. The delay that the
 /// fit of the twist gives is too small by the effect of viscous friction, so friction and delay are improved in turn.
+/// `None` if the torque is not recorded or a fit is impossible.
 fn balanced(rows: &JointRows, model: &TwistModel, records: &[Record]) -> Option<Friction> {
     const ROUNDS: usize = 5;
     let compliance = model.fitted.value(model.places.torque()).max(0.0);
@@ -495,9 +519,9 @@ fn balanced(rows: &JointRows, model: &TwistModel, records: &[Record]) -> Option<
     Some(out)
 }
 
-/// Transmission error from peak to peak according to the fit `fitted` \[rad\], over the angles of the output from `low` to
-/// `high` \[rad\]. `columns` are the indices of sine and cosine, once and twice per turn, of the angle times `ratio` (1 for
-/// the output, the gear ratio for the input).
+/// Transmission error from peak to peak \[rad\] according to the fit `fitted`, over the angles of the output from `low`
+/// to `high` \[rad\]. `columns` are the indices of its columns: sine and cosine of the angle times `ratio`, then of
+/// twice that. `ratio` is 1 for the output and the gear ratio for the input.
 fn error_size(fitted: &Fitted, columns: [usize; 4], low: f64, high: f64, ratio: f64) -> Estimate {
     const STEPS: usize = 60;
     fitted.estimate(|c| {
@@ -513,9 +537,9 @@ fn error_size(fitted: &Fitted, columns: [usize; 4], low: f64, high: f64, ratio: 
 }
 
 /// Widens the interval of the size of a transmission error (from peak to peak) and the intervals of its amplitudes.
-/// Their half widths become at least [`LEAST_LAW_PART`] of the size, and of the largest amplitude. The reason is that
-/// no gear has waves of one order only, and that the link does not follow fast waves. A small error of the phase
-/// changes an amplitude by a fraction of the largest one.
+/// Their half widths become at least [`LEAST_LAW_PART`] of the size and of the largest amplitude. There are two
+/// reasons: no gear has waves of these orders only, and the link does not follow fast waves. Every amplitude is widened
+/// by the same amount, because a small error of the phase changes it by a fraction of the largest one.
 fn widen_error(size: Estimate, amplitudes: &mut [Estimate]) -> Estimate {
     let largest_rad = amplitudes.iter().fold(0.0f64, |m, e| m.max(e.value.abs()));
     for amplitude in amplitudes {
@@ -524,6 +548,8 @@ fn widen_error(size: Estimate, amplitudes: &mut [Estimate]) -> Estimate {
     widened(size, LEAST_LAW_PART * size.value)
 }
 
+/// Result for a torsion law that was found: its parameters with widened intervals. It is not identified if the interval
+/// of one of them contains zero.
 fn law_stated(curve: &Curve, law: Law, model: &TwistModel) -> Stated {
     let wide = |e: &Estimate| widened(*e, LEAST_LAW_PART * e.value.abs());
     let parameters: Vec<(String, Vec<Estimate>)> = curve
@@ -531,8 +557,7 @@ fn law_stated(curve: &Curve, law: Law, model: &TwistModel) -> Stated {
         .into_iter()
         .map(|(name, list)| (name, list.iter().map(wide).collect()))
         .collect();
-    // an effect whose interval of size contains zero is not found; neither is one at a torque that may be zero or of either
-    // sign, nor a stiffness whose interval reaches below zero
+    // every parameter (size, torque, stiffness) must be positive over its whole interval
     let is_bounded = parameters.iter().flat_map(|(_, list)| list).all(is_positive);
     let state = if is_bounded { State::Found } else { State::NotIdentified };
     let words = match (is_bounded, law) {

@@ -1,45 +1,46 @@
-//! Rows of a record at which torque or friction is not known, and which enter no fit of the twist.
+//! Rows of a record at which torque or friction is not known. These rows enter no fit of the twist.
 //!
-//! - While a joint rests, friction may hold any torque up to that of Coulomb friction.
-//! - While it reverses, friction changes its sign somewhere, and no formula says where.
-//! - Where the torque jumps between two rows, its average over a window is uncertain by the jump times half a row. A
-//!   motion that is planned with corners, such as a trapezoid of the speed, has such jumps. All of them are at the same
-//!   place between the rows, because the controller begins each piece at one of its cycles. The error then has one sign
-//!   and does not average out.
+//! - While a joint rests, friction may have any torque up to that of Coulomb friction.
+//! - While a joint reverses, friction changes its sign at a moment that is not known.
+//! - Where the torque jumps between two rows, its average over a window is uncertain by the jump times half a row. Such
+//!   jumps occur where a planned motion has corners, for example where a trapezoid of the speed begins to slow down.
+//!   They all lie at the same place between two rows, because the controller begins each piece of the motion at one of
+//!   its cycles. The error then has the same sign at all jumps and does not average out.
 
 use crate::reconcile::fit::stats::{MEDIAN_OF_NORMAL, median};
 
-/// A joint rests at rows where the magnitude of the smoothed sign of its speed stays below this for longer than the
-/// window of the torque. At a reversal it stays below this for about half of the window.
+/// A joint rests where the magnitude of the smoothed sign of its speed stays below this value for longer than one
+/// averaging window. At a reversal it stays below this value for only about half of a window.
 const RESTING: f64 = 0.5;
-/// A rest ends where the magnitude of the smoothed sign of the speed reaches this again.
+/// A rest begins and ends where the magnitude of the smoothed sign of the speed passes this value.
 const MOVING: f64 = 0.98;
-/// Rows at rest are left out only where at least this fraction of the record's rows is left.
+/// Rows at rest are left out of the fits only if at least this fraction of the rows of the record remains.
 const LEAST_MOVING_PART: f64 = 0.2;
 /// A joint reverses at rows where the magnitude of the smoothed sign of its speed differs from one by more than this.
-/// The smoothed sign changes slowly there and friction does not, so with these rows Coulomb friction would come out too
-/// large.
+/// At a reversal the smoothed sign changes slowly, but friction changes at once. With these rows a fit would give too
+/// large a Coulomb friction.
 pub(super) const TURNING: f64 = 0.05;
-/// Rows of reversals are left out only where at least this fraction of the moving rows is left.
+/// Rows at reversals are left out of the fits only if at least this fraction of the moving rows remains.
 const LEAST_KNOWN_PART: f64 = 0.6;
-/// Rows at jumps are left out only where at least this fraction of the rows is left. A planned motion has few jumps. A
-/// torque that jumps in more rows is noisy; its jumps have both signs and average out.
+/// Rows at jumps of the torque are left out of the fits only if at least this fraction of the rows remains. A planned
+/// motion has few jumps. A torque that jumps more often is noisy; its jumps have both signs and average out.
 const LEAST_STEADY_PART: f64 = 0.85;
 /// The torque jumps where a step from row to row differs from the mean of the steps before and after it by more than
-/// this many standard deviations of such differences. The standard deviation is estimated from their median.
+/// this many standard deviations of such differences. The standard deviation is estimated from the median of their
+/// magnitudes.
 const JUMP: f64 = 6.0;
-/// A jump below this fraction of the standard deviation of the torque is left in the fit.
+/// A jump of the torque below this fraction of the standard deviation of the torque is left in the fit.
 const LEAST_JUMP_PART: f64 = 0.02;
 
-/// Whether the joint rests, row by row. Friction is not known while the joint rests: it may hold any torque of either
-/// sign, up to that of Coulomb friction, whatever the sign of the speed is. `sense` is the smoothed sign of the speed,
-/// and `half` the half width of its window \[rows\]. A reversal is no rest. Nothing rests in a record that hardly
-/// moves.
+/// Whether the joint rests, row by row. While the joint rests, its friction may have any value of either sign up to the
+/// Coulomb friction, whatever the sign of the speed is. `sense` is the smoothed sign of the speed, and `half` the half
+/// width of its window \[rows\]. A reversal does not count as a rest. All `false` if the joint moves in fewer than
+/// [`LEAST_MOVING_PART`] of the rows.
 pub(super) fn rests(sense: &[f64], half: usize) -> Vec<bool> {
     let mut out = vec![false; sense.len()];
     let mut row = 0;
     while row < sense.len() {
-        // a value near an end or a gap is NaN and compares as neither
+        // a value near an end or a gap of the record is NaN, and every comparison with it is false
         let run = sense[row..].iter().take_while(|s| s.abs() < RESTING).count();
         if run > 2 * half + 1 {
             // the smoothed sign differs from the sign up to half a window before and after the rest
@@ -54,7 +55,8 @@ pub(super) fn rests(sense: &[f64], half: usize) -> Vec<bool> {
     if (moving as f64) < LEAST_MOVING_PART * sense.len() as f64 { vec![false; sense.len()] } else { out }
 }
 
-/// Whether the joint reverses, row by row; `rests` tells at which rows it rests. No row if too few would be left.
+/// Whether the joint reverses, row by row. `sense` is the smoothed sign of the speed, and `rests` tells at which rows
+/// the joint rests. All `false` if fewer than [`LEAST_KNOWN_PART`] of the moving rows would remain.
 pub(super) fn turning(sense: &[f64], rests: &[bool]) -> Vec<bool> {
     let turns = |s: &f64| (s.abs() - 1.0).abs() > TURNING;
     let moves = |s: &f64, rests: &bool| !*rests && !s.is_nan();
@@ -67,7 +69,8 @@ pub(super) fn turning(sense: &[f64], rests: &[bool]) -> Vec<bool> {
     }
 }
 
-/// Whether the window of a row, `half` rows to either side, has a jump of the torque. No row if too few would be left.
+/// Whether the torque jumps within the window of a row, which reaches `half` rows to either side, row by row. All
+/// `false` if fewer than [`LEAST_STEADY_PART`] of the rows would remain.
 pub(super) fn at_jumps(torque_nm: &[f64], half: usize) -> Vec<bool> {
     let mut out = vec![false; torque_nm.len()];
     let excess: Vec<f64> =
@@ -75,7 +78,7 @@ pub(super) fn at_jumps(torque_nm: &[f64], half: usize) -> Vec<bool> {
     let usual_nm = median(excess.iter().map(|e| e.abs()).collect()) / MEDIAN_OF_NORMAL;
     let least_nm = (JUMP * usual_nm).max(LEAST_JUMP_PART * deviation(torque_nm));
     for (i, _) in excess.iter().enumerate().filter(|(_, e)| e.abs() > least_nm) {
-        // between the rows i + 1 and i + 2; the slope of the average reaches one row further
+        // the jump is between the rows i + 1 and i + 2; the slope of the average uses one more row on either side
         let end = (i + half + 4).min(out.len());
         out[i.saturating_sub(half)..end].fill(true);
     }

@@ -1,16 +1,20 @@
-//! Records against time: angles on both sides of each gear and the motor's torque. Robots with a second encoder at the
-//! output of each gear write them.
+//! Records against time: tables of the angles on both sides of each gear and of the motor's torque, with one row for
+//! each time. Robots with a second encoder at the output of each gear write such records.
 //!
-//! - The rows come from [`readings::record`](super::readings::record).
-//! - `smooth` computes slopes and curvatures. `signals` gathers the rows of one joint and divides them into blocks of
-//!   time, and `known` says at which rows torque and friction are known. `wave` removes a transmission error within a turn
-//!   of the motor before signals are differentiated.
-//! - `blocks` fits columns to rows, with intervals and held-out errors by blocks.
-//! - `twist` chooses the terms of the twist, `friction` balances the torques, and `curve` looks for torsion laws beyond
-//!   a single compliance.
-//! - `other_cause` looks for causes that are no effect of the library, and `ringing` for free vibration.
-//! - `judge` says of each effect whether it is found, and `compliance` says this of the compliance. Both use `intervals`.
-//! - `outcome` reaches the verdict. [`joint_record`](super::verdict::joint_record) defines what it says of each joint.
+//! - [`readings::record`](super::readings::record) reads the rows of the files.
+//! - `smooth` computes slopes and curvatures of a signal. `signals` gathers the rows of one joint and divides them into
+//!   blocks of time. `known` says at which rows torque and friction are known. `wave` removes a transmission error
+//!   within a turn of the motor before the signals are differentiated.
+//! - `blocks` fits a linear model by least squares. It also gives 95 % intervals, and errors on blocks of time that
+//!   were left out of a fit (held-out blocks).
+//! - `twist` chooses the terms of the model of the twist, `friction` balances the torques, and `curve` looks for
+//!   torsion laws beyond a single compliance.
+//! - `other_cause` looks for causes of an error of the angles that are no effect of the library. `ringing` looks for
+//!   free vibration.
+//! - `compliance` says whether the compliance of a joint is found, and `judge` says the same of every other effect.
+//!   Both use `intervals`.
+//! - `outcome` reaches the verdict of the campaign. [`joint_record`](super::verdict::joint_record) defines the result
+//!   for one joint.
 
 pub(crate) mod blocks;
 pub(crate) mod compliance;

@@ -1,4 +1,4 @@
-//! Verdict from records: named effects, calibrated stiffnesses and the corrected arm.
+//! Verdict from records against time: named effects, calibrated stiffnesses and the corrected arm.
 
 use super::compliance::GRAVITY_OR_ERROR;
 use super::curve::TORSION_CURVE;
@@ -23,20 +23,21 @@ use crate::reconcile::verdict::outcome::{Calibrated, Located, NextTest, Outcome,
 use serde_json::json;
 
 /// A joint is explained if the root mean square error of its twist on held-out blocks is at most this fraction of the
-/// error with an offset and the time shift alone. The sum of squares is then at most 2.5 % of the sum with these alone.
+/// error of a fit by an offset and the time shift alone. Its square is then at most 2.5 % of the square of that error.
 const LEFT: f64 = 0.158;
 /// A joint is also explained if the root mean square error of its twist on held-out blocks is at most this many times
-/// the noise that the average over rows leaves in the twist. The errors are those of averages.
+/// the noise of the averaged twist. The model is fitted to averages over a window of rows, so its errors are compared
+/// with their noise.
 const NOISY: f64 = 1.5;
-/// Largest error \[rad\] with which a joint is explained if a time shift is most of its recorded twist: 20 seconds of
-/// arc. Encoders at the output are not more accurate. The error must also be at most [`LEFT`] of the error with an
-/// offset alone.
+/// A joint whose recorded twist is mostly a time shift is also explained if the root mean square error of its twist on
+/// held-out blocks is at most this angle \[rad\], 20 seconds of arc. Encoders at the output are not more accurate. The
+/// error must also be at most the fraction [`LEFT`] of the error of a fit by an offset alone.
 const ENCODER_RAD: f64 = 1e-4;
-/// If a joint is too stiff by about its ratio, or by the 57.3 degrees of a radian, a wrong unit is suspected. The
-/// logarithm of its factor may differ from that of the ratio, or of 57.3, by this much.
+/// A wrong unit is suspected if a joint is too stiff by about its gear ratio, or by about 57.3, the degrees of a
+/// radian. "About" means that the natural logarithms of the factors differ by less than this.
 const NEAR: f64 = 0.25;
-/// Effects that change how far a joint twists under torque. If other readings name one of them at a joint, the records
-/// add none of them at this joint.
+/// Effects that change how far a joint twists under torque. If displacements, frequencies, bench readings or positions
+/// name one of these effects at a joint, the records add none of them at this joint.
 const OF_TWIST: [&str; 5] = [
     joint_compliance::KIND.name,
     connection_compliance::KIND.name,
@@ -53,10 +54,12 @@ struct Stiffness {
     /// Factor by which the nominal stiffness is multiplied in the corrected arm; `None` if the nominal stiffness
     /// stays.
     factor: Option<f64>,
+    /// Sentence on a joint that is stiffer than the tolerance allows; `None` otherwise.
     remark: Option<String>,
 }
 
-/// Reconciles the records of a campaign with its arm, and reaches the verdict. Other readings are not used.
+/// Reconciles the records of a campaign with its arm, and reaches the verdict. Readings other than records are not
+/// used.
 pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let joints: Vec<JointRecord> =
         campaign.driven_joint_names().iter().filter_map(|joint| judge(&campaign.records, joint)).collect();
@@ -101,7 +104,8 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     }
 }
 
-/// Whether the error of a joint's twist on held-out blocks is noise, or a small part of the twist.
+/// Whether the model explains the twist of a joint: the error on held-out blocks is noise or a small part of the twist,
+/// and no cause outside the library explains the twist better.
 fn is_explained(joint: &JointRecord) -> bool {
     if joint.unnamed.is_some() {
         return false;
@@ -110,13 +114,14 @@ fn is_explained(joint: &JointRecord) -> bool {
     joint.after_rad <= (LEFT * joint.unshifted_rad).max(NOISY * joint.averaged_noise_rad).max(of_encoders)
 }
 
-/// Whether the joint is explained and the records leave nothing open.
+/// Whether the joint is explained and the records leave no question about it open. Only the results of such joints
+/// enter the corrected arm.
 fn is_settled(joint: &JointRecord) -> bool {
     is_explained(joint) && joint.undecided.is_empty()
 }
 
-/// Ending of a sentence on a joint whose error of the twist, although small, is more than noise; empty if it is
-/// noise.
+/// End of a sentence on the error of the twist of a joint: it says that this error is more than noise. Empty if the
+/// error is only noise.
 fn left_beyond_noise(joint: &JointRecord) -> String {
     match joint.after_rad > NOISY * joint.averaged_noise_rad {
         true => format!(
@@ -127,7 +132,7 @@ fn left_beyond_noise(joint: &JointRecord) -> String {
     }
 }
 
-/// Sentence on a joint without an effect: noise explains its twist, or its nominal compliance does and little is left.
+/// Sentence on a joint at which no effect was found.
 fn no_gap(joint: &JointRecord) -> String {
     format!(
         "{}: the nominal joint within its tolerance explains the records: {:.4} of {:.4} mrad of the twist are left on held-out \
@@ -139,6 +144,7 @@ fn no_gap(joint: &JointRecord) -> String {
     )
 }
 
+/// The verdict from the results for all joints, with sentences that give the reasons.
 fn verdict(
     joints: &[JointRecord],
     findings: &[Finding],
@@ -187,11 +193,12 @@ fn verdict(
     (Verdict::NoGap, joints.iter().map(no_gap).collect())
 }
 
-/// Effects of the library that the records show at a joint, as findings. The joint's single compliance is not among
-/// them.
+/// Effects of the library that the records show at a joint, as findings. The compliance of the joint is not among them;
+/// [`stiffness`] compares it with the nominal one.
 fn named(joint: &JointRecord) -> Vec<Finding> {
     let like = |what: &str| -> Vec<(String, String)> {
-        // a transmission error once a turn and gravity give the same twist if no other joint changes the torque
+        // gravity on a compliance gives the same twist as a transmission error once a turn, if no other joint changes
+        // the torque
         let is_alike = joint
             .of("compliance")
             .is_some_and(|s| s.state == State::Found || s.words.starts_with(GRAVITY_OR_ERROR));
@@ -223,9 +230,10 @@ fn named(joint: &JointRecord) -> Vec<Finding> {
     .collect()
 }
 
-/// Compares the recorded stiffness of a joint with the nominal stiffness. A joint that is more compliant than the
-/// tolerance allows gets an effect. Otherwise its stiffness is calibrated, with a remark if the joint is stiffer than
-/// the tolerance allows.
+/// Compares the recorded stiffness of a joint with the nominal stiffness. If the joint is certainly more compliant than
+/// the tolerance allows, the result is an effect. Otherwise the result is a factor on the stiffness (calibration), with
+/// a remark if the joint is certainly stiffer than the tolerance allows. Nothing is compared if the compliance is not
+/// identified, or if a torsion curve was found.
 fn stiffness(campaign: &Campaign, joint: &JointRecord) -> Stiffness {
     let nothing = Stiffness { finding: None, calibrated: None, factor: None, remark: None };
     // a torsion curve that was found replaces the single stiffness
@@ -286,8 +294,9 @@ fn stiffness(campaign: &Campaign, joint: &JointRecord) -> Stiffness {
     Stiffness { calibrated: Some(calibrated), factor, remark, finding: None }
 }
 
-/// Hint at a wrong unit of torques or angles, if the joint is too stiff by about its ratio or by about 57.3 (the
-/// degrees of a radian). If both are near, the nearer one is named.
+/// Hint at a wrong unit of torques or angles, if the stiffness of the joint is about its gear ratio or about 57.3 (the
+/// degrees of a radian) times the nominal one. `factor` is the stiffness over the nominal stiffness. If both causes are
+/// near, the nearer one is named; `None` if neither is.
 fn stiff_by_unit(campaign: &Campaign, joint: &str, factor: f64) -> Option<String> {
     let own = campaign.records.iter().flat_map(|r| &r.joints).find(|j| j.joint == joint);
     let of_ratio = own.and_then(|j| j.ratio).filter(|n| *n > 2.0).map(|ratio| {
@@ -300,24 +309,24 @@ fn stiff_by_unit(campaign: &Campaign, joint: &str, factor: f64) -> Option<String
     nearest_cause(factor, of_ratio.into_iter().chain([(1f64.to_degrees(), of_radians.into())]))
 }
 
-/// Of the causes, each with the factor that it gives, the words of the one whose factor is nearest to `factor`; `None` if it is
-/// not within [`NEAR`].
+/// Words of the cause whose factor is nearest to `factor`. Each cause is the factor that it produces and its words.
+/// Distances are measured in natural logarithms. `None` if the nearest cause is not within [`NEAR`].
 fn nearest_cause(factor: f64, causes: impl Iterator<Item = (f64, String)>) -> Option<String> {
     let off = |by: f64| libm::log(factor / by).abs();
     let nearest = causes.min_by(|a, b| off(a.0).total_cmp(&off(b.0)))?;
     (off(nearest.0) < NEAR).then_some(nearest.1)
 }
 
-/// Compliance of the nominal joint, with the effects of its arm file, as twist over torque (secant) at `torque_nm`
-/// \[rad/(N m)\].
+/// Compliance of the nominal joint, including effects that the arm file states, as twist divided by torque at the
+/// torque `torque_nm` \[N m\] (secant) \[rad/(N m)\]. 0 if there is no such joint.
 fn nominal_compliance(campaign: &Campaign, joint: &str, torque_nm: f64) -> f64 {
     let mut subject = subject(&campaign.arm, &campaign.statement);
     let law = subject.structure.joint_mut(joint).map(|j| j.law);
     law.map_or(0.0, |law| law.angle_rad(torque_nm) / torque_nm.max(1e-9))
 }
 
-/// The corrected arm. The effects and the stiffness of a joint that is explained are written into it even if another
-/// joint is not explained.
+/// The corrected arm. It has the effects and the calibrated stiffness of each joint that is settled, even if other
+/// joints are not explained.
 fn corrected(
     campaign: &Campaign,
     findings: &[Finding],
@@ -340,8 +349,8 @@ fn corrected(
     arm
 }
 
-/// The finding as an entry of the arm file. `None` for an effect that cannot be at a joint, such as the shift of a
-/// sensor's clock, because it belongs to the record and not to the arm.
+/// The finding as an entry of the arm file. `None` for an effect that cannot be at a joint. The time shift is one: it
+/// belongs to the record and not to the arm.
 fn as_effect(campaign: &Campaign, finding: &Finding) -> Option<Effect> {
     let kind = crate::arm::effect::catalogue::kind(&finding.effect)?;
     if !kind.places.contains(&Place::Joint) {
@@ -351,9 +360,9 @@ fn as_effect(campaign: &Campaign, finding: &Finding) -> Option<Effect> {
     Some(finding.as_effect(source))
 }
 
-/// Root mean square error of the twist on held-out blocks, with an offset alone (before) and with everything that was
-/// found (after). The errors of each joint are divided by the noise of its twist, and joints are weighted by their
-/// number of rows.
+/// Root mean square error of the twist on held-out blocks, of a fit by an offset alone (before) and of the last fit
+/// (after), over all joints. The errors of each joint are divided by the noise of its averaged twist, so the results
+/// have no unit. Joints are weighted by their number of rows. `None` if there are no rows.
 fn held_out(joints: &[JointRecord]) -> Option<HeldOut> {
     let count: usize = joints.iter().map(|j| j.rows).sum();
     let mean = |of: fn(&JointRecord) -> f64| {
@@ -370,6 +379,7 @@ fn held_out(joints: &[JointRecord]) -> Option<HeldOut> {
     })
 }
 
+/// Errors before and after the fit, for all joints together and for each joint, as multiples of the noise.
 fn located(joints: &[JointRecord]) -> Vec<Located> {
     let all = held_out(joints).map(|h| Located {
         part: "record".into(),
@@ -386,9 +396,9 @@ fn located(joints: &[JointRecord]) -> Vec<Located> {
     all.into_iter().chain(each).collect()
 }
 
-/// Recommends at most two tests. One is for the joints whose compliance the records do not show, because the torque is
-/// nearly all acceleration and friction of the joint itself. The other is for joints at which a transmission error
-/// explains the same twist as the compliance.
+/// Recommends tests for joints whose compliance is not identified, at most one test for each of three cases. In the
+/// first two, the torque is nearly all acceleration and friction of the joint itself, and the rotor's inertia is not
+/// stated or is stated. In the third, a transmission error explains the same twist as the compliance.
 fn next_tests(joints: &[JointRecord]) -> Vec<NextTest> {
     let named = |start: &str, wanted: fn(&JointRecord) -> bool| -> Vec<&str> {
         let has = |j: &&JointRecord| {
@@ -413,8 +423,9 @@ fn next_tests(joints: &[JointRecord]) -> Vec<NextTest> {
         .collect()
 }
 
-/// Joins the outcome of the records, `records`, with the outcome of the other readings, `other`. Each is judged by
-/// itself, and the verdict is the less favourable of the two.
+/// Joins the outcome of the records, `records`, with the outcome of the other readings, `other`. Each was judged
+/// without the other, and the common verdict is the less favourable of the two. Effects of the records are added to the
+/// corrected arm only if the common verdict is `Explained`.
 pub(crate) fn joined(mut other: Outcome, records: Outcome) -> Outcome {
     let verdict = Verdict::on_all(&[other.verdict, records.verdict]);
     let words = |what: &str, outcome: &Outcome| -> Vec<String> {
@@ -463,7 +474,7 @@ mod tests {
             let causes = [(ratio, "ratio".to_string()), (1f64.to_degrees(), "radians".to_string())];
             nearest_cause(factor, causes.into_iter())
         };
-        // the ratio of 50 is within the margin of 57.3 too
+        // the ratio of 50 is within the margin of 57 too, but 57.3 is nearer
         assert_eq!(hint(57.0, 50.0).as_deref(), Some("radians"));
         assert_eq!(hint(51.0, 50.0).as_deref(), Some("ratio"));
         assert_eq!(hint(3.0, 100.0), None);

@@ -1,9 +1,9 @@
 //! Free vibration after a stop: the motor stands still, and the link vibrates in the lowest mode of the arm with locked
 //! motors.
 //!
-//! A stretch in which the motor stands still is fitted by a straight line and one damped oscillation, `a + b t + exp(-d
-//! t) (C cos 2 pi f t + S sin 2 pi f t)`. The frequency starts at the peak of the spectrum and is improved by
-//! Gauss-Newton together with the decay rate.
+//! A stretch is a run of rows in which the motor stands still. A straight line and one damped oscillation, `a + b t +
+//! exp(-d t) (C cos 2 pi f t + S sin 2 pi f t)`, are fitted to the twist in a stretch. The frequency `f` starts at the
+//! peak of the spectrum. Gauss-Newton steps improve it together with the decay rate `d`.
 
 use super::blocks::{rows_per_reading, student_quantile};
 use super::smooth::{half_width, noise, slope_noise, smooth};
@@ -14,19 +14,20 @@ use std::f64::consts::TAU;
 
 /// The motor is taken as standing still if its speed is below this fraction of its largest speed in the record.
 const AT_REST: f64 = 0.02;
-/// Smallest number of rows of a stretch (rows in which the motor stands still) that is fitted.
+/// A stretch with fewer rows than this is not fitted.
 const FEWEST_ROWS: usize = 60;
-/// Largest number of rows after a stop that are used. The vibration has decayed by then.
+/// Only this many rows of a stretch are fitted, because the vibration has decayed by then.
 const MOST_ROWS: usize = 4000;
-/// Smallest number of periods of the vibration in a stretch.
+/// A stretch must contain at least this many periods of the vibration.
 const FEWEST_PERIODS: f64 = 4.0;
-/// Highest frequency that is sought, as a fraction of the sampling rate.
+/// Highest frequency of a vibration that is sought, as a fraction of the sampling rate of the record.
 const HIGHEST_PART: f64 = 0.2;
-/// The oscillation must explain at least this fraction of the sum of squares that the straight line leaves.
+/// The oscillation must explain at least this fraction of the sum of squares that a straight line alone leaves.
 const TELLING: f64 = 0.6;
-/// Smallest amplitude of the oscillation of the twist, as a multiple of the noise of the twist from row to row.
+/// The root mean square of the oscillation of the twist must be at least this multiple of the noise of the twist from
+/// row to row.
 const LOUD: f64 = 4.0;
-/// Largest number of Gauss-Newton steps over frequency and decay rate.
+/// Largest number of Gauss-Newton steps that improve frequency and decay rate.
 const ROUNDS: usize = 30;
 
 /// Frequency and damping of the free vibration of a joint.
@@ -34,9 +35,10 @@ const ROUNDS: usize = 30;
 pub(crate) struct Ringing {
     /// Frequency of the damped vibration \[Hz\].
     pub frequency_hz: Estimate,
-    /// Damping ratio: the damping as a fraction of critical damping.
+    /// Damping ratio: the damping as a fraction of critical damping \[-\].
     pub damping: f64,
-    /// Number of stretches (times in which the motor stands still) in which the vibration was found.
+    /// Number of stretches in which the vibration was found. A stretch is a run of rows in which the motor stands
+    /// still.
     pub stretches: usize,
 }
 
@@ -58,7 +60,7 @@ pub(crate) fn swings(t_s: &[f64], motor_rad: &[f64], link_rad: &[f64]) -> Vec<(f
     let level = libm::hypot(noise(t_s, motor_rad), noise(t_s, link_rad));
     let mut out = Vec::new();
     let mut begin = 0usize;
-    // the end of the record also ends a stretch
+    // the last value stands for the end of the record, which ends a stretch
     let moves = speed.iter().map(|w| w.is_nan() || w.abs() > slow).chain([true]);
     for (i, _) in moves.enumerate().filter(|(_, moves)| *moves) {
         if i.saturating_sub(begin) >= FEWEST_ROWS {
@@ -66,15 +68,15 @@ pub(crate) fn swings(t_s: &[f64], motor_rad: &[f64], link_rad: &[f64]) -> Vec<(f
             let twist: Vec<f64> = (begin..end).map(|k| motor_rad[k] - link_rad[k]).collect();
             out.extend(swing(&t_s[begin..end], &twist, level));
         }
-        // the smoothing window of these rows still contains motion
+        // for the next `half` rows the smoothing window still contains motion, so the stretch begins behind them
         begin = i + 1 + half;
     }
     out.into_iter().map(|s| (s.frequency_hz, s.decay_per_s, s.deviation_hz)).collect()
 }
 
-/// Joins the vibrations of all stretches (frequency, decay rate, standard deviation of the frequency) into one
-/// frequency and damping. `None` if fewer than half of the stretches agree on a frequency. If there are several
-/// stretches, the interval is at least as wide as the scatter of their frequencies requires.
+/// Joins the vibrations of all stretches, as [`swings`] gives them, into one frequency and damping ratio. Only
+/// frequencies within 20 % of the median are used. `None` if these are fewer than half of the stretches, or none. The
+/// interval of the frequency is at least as wide as the scatter of the frequencies requires.
 pub(crate) fn joined(swings: &[(f64, f64, f64)]) -> Option<Ringing> {
     let median = crate::reconcile::fit::stats::median(swings.iter().map(|s| s.0).collect());
     let alike: Vec<_> = swings.iter().filter(|s| (s.0 / median - 1.0).abs() < 0.2).collect();
@@ -98,8 +100,8 @@ pub(crate) fn joined(swings: &[(f64, f64, f64)]) -> Option<Ringing> {
     })
 }
 
-/// Fits the vibration of one stretch; `None` if the oscillation is too short, too small, or explains too little.
-/// `noise_rad` is the noise of the twist from row to row \[rad\].
+/// Fits the vibration of one stretch. `noise_rad` is the standard deviation of the noise of the twist from row to row
+/// \[rad\]. `None` if the oscillation is too short, too small, or explains too little of the twist.
 fn swing(t_s: &[f64], twist_rad: &[f64], noise_rad: f64) -> Option<Swing> {
     let step = usual_step_s(t_s);
     let t: Vec<f64> = t_s.iter().map(|t| t - t_s[0]).collect();
@@ -121,7 +123,7 @@ fn swing(t_s: &[f64], twist_rad: &[f64], noise_rad: f64) -> Option<Swing> {
     if !in_range || squares > (1.0 - TELLING) * straight || amplitude < LOUD * noise_rad {
         return None;
     }
-    // number of periods until the amplitude has fallen to a third
+    // number of periods before the amplitude has fallen to a third
     let periods = guess * duration.min(1.1 / decay.max(1e-9));
     (periods > 2.0).then(|| Swing {
         frequency_hz: guess,
@@ -130,14 +132,15 @@ fn swing(t_s: &[f64], twist_rad: &[f64], noise_rad: f64) -> Option<Swing> {
     })
 }
 
-/// Frequency between `low_hz` and `high_hz` at which the spectrum of the signal `x` is highest \[Hz\], after a
-/// straight line was removed from it; `None` if the spectrum is zero.
+/// Frequency between `low_hz` and `high_hz` at which the spectrum of the signal `x` has its maximum \[Hz\]. A straight
+/// line is removed from the signal first. `None` if the spectrum is zero.
 fn peak(t: &[f64], x: &[f64], low_hz: f64, high_hz: f64) -> Option<f64> {
     let (_, errors) = squares_of(t, x, &[]);
     let duration = t[t.len() - 1];
     let count = ((high_hz - low_hz) * duration * 2.0).max(0.0) as usize;
     let turn = |f: f64| t.iter().map(move |t| libm::sincos(TAU * f * t));
-    // rotates the sine and cosine of each row from one frequency to the next, instead of computing them anew
+    // rotates the sine and cosine of each row from one frequency to the next, which is faster than computing them for
+    // each frequency
     let mut now: Vec<(f64, f64)> = turn(low_hz).collect();
     let on: Vec<(f64, f64)> = turn(0.5 / duration).collect();
     let mut best = (0.0, None);
@@ -156,7 +159,7 @@ fn peak(t: &[f64], x: &[f64], low_hz: f64, high_hz: f64) -> Option<f64> {
 }
 
 /// Sum of squared errors of a least-squares fit of `x` by a straight line and the given columns, and the errors
-/// themselves.
+/// themselves, one per row.
 fn squares_of(t: &[f64], x: &[f64], columns: &[Vec<f64>]) -> (f64, Vec<f64>) {
     let (errors, _) = solved(t, x, columns);
     (errors.iter().map(|e| e * e).sum(), errors)
@@ -185,14 +188,16 @@ fn solved(t: &[f64], x: &[f64], columns: &[Vec<f64>]) -> (Vec<f64>, Vec<f64>) {
     (errors.as_slice().to_vec(), c.as_slice()[2..].to_vec())
 }
 
+/// Columns of a damped cosine and a damped sine with the frequency `f` \[Hz\] and the decay rate `d` \[1/s\] at the
+/// times `t` \[s\].
 fn swing_columns(t: &[f64], [f, d]: [f64; 2]) -> [Vec<f64>; 2] {
     let column = |part: fn(f64) -> f64| t.iter().map(|t| libm::exp(-d * t) * part(TAU * f * t)).collect();
     [column(libm::cos), column(libm::sin)]
 }
 
-/// Gauss-Newton iteration that starts at the frequency \[Hz\] and decay rate \[1/s\] in `at`. The amplitudes are
-/// solved for at each step. Returns the smallest sum of squared errors, and the frequency and decay rate that give
-/// it.
+/// Improves frequency and decay rate by Gauss-Newton steps that start at the frequency \[Hz\] and decay rate \[1/s\] in
+/// `at`. The amplitudes are solved for at each step. Returns the smallest sum of squared errors, and the frequency and
+/// decay rate that give it.
 fn descend(t: &[f64], x: &[f64], mut at: [f64; 2]) -> (f64, [f64; 2]) {
     let squares = |at: [f64; 2]| squares_of(t, x, &swing_columns(t, at)).0;
     let mut now = squares(at);
@@ -228,8 +233,8 @@ fn tangents(t: &[f64], x: &[f64], at: [f64; 2]) -> [Vec<f64>; 4] {
     [cos, sin, by_frequency, by_decay]
 }
 
-/// Standard deviation of the fitted frequency \[Hz\]. It is larger than that for independent errors, because the
-/// errors are autocorrelated.
+/// Standard deviation of the fitted frequency \[Hz\]. The autocorrelation of the errors is taken into account, which
+/// makes it larger than for independent errors.
 fn deviation_hz(t: &[f64], x: &[f64], at: [f64; 2]) -> f64 {
     let columns = tangents(t, x, at);
     let (errors, _) = solved(t, x, &columns);

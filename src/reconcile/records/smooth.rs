@@ -1,24 +1,25 @@
-//! Value, slope and curvature of a sampled signal, from a cubic fitted to the rows around each row.
+//! Value, slope and curvature (second derivative) of a sampled signal. They come from a cubic polynomial that is fitted
+//! to the rows around each row (the window).
 //!
-//! The window is the widest one whose misfit is still the signal's own noise: a wider one would distort the signal, a
-//! narrower one would remove less noise. The noise is estimated from fourth divided differences, to which a smooth signal
-//! contributes nothing.
+//! The window is the widest one in which the errors of the cubic are still no larger than the noise of the signal. A
+//! wider window would distort the signal, and a narrower one would remove less noise. The noise is estimated from
+//! fourth divided differences, because a smooth signal adds almost nothing to them.
 //!
-//! The curvature of a fitted cubic is an average of the signal's true second derivative over the window, with the weights
-//! of [`averaged`] (the Peano kernel of the curvature). Columns that stand in one equation with an acceleration are
-//! averaged with the same weights. The equation then holds exactly however fast the acceleration changes within a window.
+//! The curvature of the fitted cubic is an average of the true second derivative over the window. [`averaged`] averages
+//! other signals with the same weights (the Peano kernel of the curvature). An equation between an acceleration and
+//! such signals then holds exactly, however fast the acceleration changes within a window.
 
 use crate::reconcile::readings::record::usual_step_s;
 use nalgebra::{Matrix4, Vector4};
 
 /// Half widths of the smoothing window that are tried \[rows\].
 const HALF_WIDTHS: [usize; 9] = [3, 4, 6, 8, 12, 16, 24, 32, 48];
-/// Largest misfit of a window (root mean square), as a multiple of the signal's noise. At this value the distortion
-/// by the window is a third of the noise.
+/// Largest root mean square error of the cubic in a window, as a multiple of the noise of the signal. At this value the
+/// distortion of the signal is a third of the noise, because `1.05² = 1 + 0.32²`.
 const STILL_NOISE: f64 = 1.05;
-/// A window that lasts this many times as long as its usual steps has a gap between its rows.
+/// A window counts as having a gap if it lasts more than this many times as long as the same number of usual steps.
 const LONGEST: f64 = 1.5;
-/// Number of rows of a fourth difference.
+/// Number of rows that enter a fourth divided difference.
 const FIVE: usize = 5;
 
 /// Smoothed value and derivatives of a signal, one per row. The entries of rows that are too near to an end or a gap
@@ -33,15 +34,16 @@ pub(crate) struct Smooth {
     pub curvature: Vec<f64>,
 }
 
-/// Standard deviation of the noise of a signal from row to row, in the unit of the signal. It is computed from fourth
-/// divided differences. Each difference of five rows is divided by the root of the sum of its squared weights, and then
-/// has the variance of the noise for any steps between the rows. Rows across a gap are left out.
+/// Standard deviation of the noise of a signal from row to row, in the unit of the signal. It is the root mean square
+/// of the fourth divided differences of the values `x` at the times `t_s` \[s\]. Each difference is first divided by
+/// the root of the sum of its squared weights, which gives it the variance of the noise for any steps between the rows.
+/// Differences across a gap are left out.
 pub(crate) fn noise(t_s: &[f64], x: &[f64]) -> f64 {
     let longest_s = LONGEST * (FIVE - 1) as f64 * usual_step_s(t_s);
     let windows = t_s.windows(FIVE).zip(x.windows(FIVE)).filter(|(t, _)| t[FIVE - 1] - t[0] <= longest_s);
     let (squares, count) = windows.fold((0.0, 0usize), |(sum, count), (t, x)| {
         let weights = divided_difference(t);
-        // less the middle, so that a large angle costs no digits
+        // the middle value is subtracted, so that a large angle loses no digits in the sum
         let difference: f64 = weights.iter().zip(x).map(|(w, value)| w * (value - x[2])).sum();
         let size: f64 = weights.iter().map(|w| w * w).sum();
         (sum + difference.powi(2) / size, count + 1)
@@ -49,8 +51,9 @@ pub(crate) fn noise(t_s: &[f64], x: &[f64]) -> f64 {
     (squares / count.max(1) as f64).sqrt()
 }
 
-/// Weights of the divided difference of the values at the times `t_s`, in units of their mean step. A polynomial of a lower
-/// degree than their number less one contributes nothing.
+/// Weights of the five values at the times `t_s` \[s\] in their fourth divided difference. The difference is the
+/// weighted sum of the values; it is zero for every polynomial of degree 3 or less. Time is measured in mean steps, so
+/// that the weights have no unit.
 fn divided_difference(t_s: &[f64]) -> [f64; FIVE] {
     let step_s = (t_s[FIVE - 1] - t_s[0]) / (FIVE - 1) as f64;
     std::array::from_fn(|i| {
@@ -59,25 +62,29 @@ fn divided_difference(t_s: &[f64]) -> [f64; FIVE] {
     })
 }
 
-/// Standard deviation of the slope that [`smooth`] finds, caused by the noise of the rows \[unit of the signal per s\].
-/// The slope of a cubic at the middle of its window scatters 2.5 times as much as that of a straight line.
+/// Standard deviation of the slope that [`smooth`] finds with windows of `half` rows to either side, caused by the
+/// noise of the signal `x` \[unit of the signal per s\]. The slope of a cubic at the middle of its window scatters 2.5
+/// times as much as that of a straight line.
 pub(crate) fn slope_noise(t_s: &[f64], x: &[f64], half: usize) -> f64 {
     2.5 * noise(t_s, x) * (12.0 / ((2 * half + 1) as f64).powi(3)).sqrt() / usual_step_s(t_s)
 }
 
-/// Standard deviation of the value that [`smooth`] finds in the middle of its window, as a part of the noise of the rows.
+/// Standard deviation of the value that [`smooth`] finds with windows of `half` rows to either side, as a fraction of
+/// the noise of single rows.
 pub(crate) fn value_noise(half: usize) -> f64 {
     (9.0 / (4.0 * (2 * half + 1) as f64)).sqrt()
 }
 
-/// Half width of the widest window whose misfit is still the signal's own noise \[rows\].
+/// Half width of the widest window of [`HALF_WIDTHS`] in which a cubic still fits the signal `x` up to its noise
+/// \[rows\]; at least the smallest of them.
 pub(crate) fn half_width(t_s: &[f64], x: &[f64]) -> usize {
     let noise = noise(t_s, x);
     let fits = |half: &&usize| {
         let smooth = smooth(t_s, x, **half);
         let left = x.iter().zip(&smooth.value).filter(|(_, v)| !v.is_nan());
         let (sum, count) = left.fold((0.0, 0usize), |(s, n), (x, v)| (s + (x - v).powi(2), n + 1));
-        // a cubic removes this fraction of the noise's variance from the residuals in the middle of its window
+        // the fit of a cubic takes this fraction of the noise's variance out of the residual in the middle of its
+        // window
         let taken = value_noise(**half).powi(2);
         count > x.len() / 2 && (sum / count as f64).sqrt() <= STILL_NOISE * noise * (1.0 - taken).sqrt()
     };
@@ -111,19 +118,21 @@ pub(crate) fn smooth(t_s: &[f64], x: &[f64], half: usize) -> Smooth {
     out
 }
 
+/// The powers 0 to 3 of `u`.
 fn powers(u: f64) -> Vector4<f64> {
     Vector4::new(1.0, u, u * u, u * u * u)
 }
 
-/// Rows whose window, from `half` rows before to `half` rows after, has no gap.
+/// Indices of the rows whose window, from `half` rows before to `half` rows after, is within the signal and has no gap.
 fn whole_windows(t_s: &[f64], half: usize) -> impl Iterator<Item = usize> {
     let longest_s = usual_step_s(t_s) * (2 * half) as f64 * LONGEST;
     (half..t_s.len().saturating_sub(half)).filter(move |i| t_s[i + half] - t_s[i - half] <= longest_s)
 }
 
-/// Averages of several signals around each row, with the weights by which the curvature that [`smooth`] finds averages the
-/// second derivative. Rows near an end or a gap are NaN. The second value is the gain of noise: the standard deviation that
-/// noise of single rows has after the average, `sqrt(sum w^2)`, as a root mean square over the rows.
+/// Averages of several signals over the window around each row, one list for each signal. The weights are those with
+/// which the curvature of [`smooth`] averages the second derivative. Rows near an end or a gap are NaN. The second
+/// result is the standard deviation of the noise after averaging, as a fraction of that before: `sqrt(sum w^2)` for the
+/// weights `w` of a window, as a root mean square over the windows.
 pub(crate) fn averaged<const N: usize>(
     t_s: &[f64],
     half: usize,
@@ -137,7 +146,7 @@ pub(crate) fn averaged<const N: usize>(
         count += 1;
         for (out, signal) in out.iter_mut().zip(signals) {
             let window = &signal[i - half..=i + half];
-            // less the middle, so that a large angle costs no digits
+            // the middle value is subtracted, so that a large angle loses no digits in the sum
             let sum: f64 = weights.iter().zip(window).map(|(w, x)| w * (x - window[half])).sum();
             out[i] = window[half] + sum;
         }
@@ -145,10 +154,10 @@ pub(crate) fn averaged<const N: usize>(
     (out, (squares / count.max(1) as f64).sqrt())
 }
 
-/// Weights of the rows at the times `t_s` with which the curvature of the cubic fitted to them averages the second
-/// derivative. The curvature at the row `middle` is `sum_j d_j x(t_j)`, and `sum_j d_j x(t_j)` is the integral of
-/// `k(t) x''(t)` with `k(t) = sum_j d_j max(t_j - t, 0)` (Peano). The integral over the rows is that of the trapezoidal rule.
-/// The sum of the weights is 1. `None` if no cubic is determined.
+/// Weights of the rows at the times `t_s` \[s\] of a window. With these weights, the curvature of the cubic fitted to
+/// the window averages the second derivative of the signal. The curvature at the row `middle` is `sum_j d_j x(t_j)`,
+/// and `sum_j d_j x(t_j)` is the integral of `k(t) x''(t)` with `k(t) = sum_j d_j max(t_j - t, 0)` (Peano). The
+/// integral is computed by the trapezoidal rule. The sum of the weights is 1. `None` if no cubic is determined.
 fn curvature_kernel(t_s: &[f64], middle: usize) -> Option<Vec<f64>> {
     let last = t_s.len() - 1;
     let scale = 0.5 * (t_s[last] - t_s[0]);
@@ -167,7 +176,8 @@ fn curvature_kernel(t_s: &[f64], middle: usize) -> Option<Vec<f64>> {
     Some(weights)
 }
 
-/// Slope of a signal at each row from the rows before and after it; NaN where one of them is.
+/// Slope of the signal `x` at each row, from the rows before and after it \[unit of the signal per s\]. NaN at the
+/// ends, and where the signal is NaN before or after the row.
 pub(crate) fn slope(t_s: &[f64], x: &[f64]) -> Vec<f64> {
     let mut out = vec![f64::NAN; x.len()];
     for i in 1..x.len().saturating_sub(1) {
@@ -212,7 +222,8 @@ mod tests {
         let curvature = smooth(&t, &x, 16).curvature;
         let ([average], _) = averaged(&t, 16, [&second]);
         let pairs = curvature.iter().zip(&average).filter(|(c, _)| !c.is_nan());
-        // the jump lies between two rows: half a row of a window of 32, times its largest weight
+        // the jump lies between two rows, which makes an error of half a row in a window of 32 rows, times the largest
+        // weight
         let worst = pairs.map(|(c, a)| (c - a).abs()).fold(0.0, f64::max);
         assert!(worst < 0.04, "{worst}");
     }

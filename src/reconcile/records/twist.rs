@@ -1,7 +1,9 @@
-//! Linear model of the twist of a joint, and the choice of its terms. The twist here is the torsion of the joint, an
-//! angle.
+//! Linear model of the twist of a joint, and the choice of its terms. The twist is the angle of torsion of the joint
+//! \[rad\]. Each term of the model is a column, which has one value for each row of the records. A fit finds the
+//! coefficients of the columns by least squares. A held-out block is a block of time that was left out of a fit, and is
+//! then predicted by it.
 //!
-//! The recorded twist is the motor's angle less the link's, `y = theta_m(t) - theta_l(t - s)`. Written as a sum,
+//! The recorded twist is the motor's angle minus the link's angle, `y = theta_m(t) - theta_l(t - s)`. Written as a sum,
 //!
 //! `y = offset + s w_l + c (T_m - J a - (F_c + f |T_l|) sgn w - F_v w) + e(q) + g(N q)`
 //!
@@ -12,15 +14,16 @@
 //! | `q`, `N` | angle of the motor at the output, gear ratio | rad, 1 |
 //! | `s` | time by which the link's reading is late | s |
 //! | `c` | compliance | rad/(N m) |
-//! | `T_m`, `T_l` | torque of the motor at the output; of the load, by the balance of torques | N m |
+//! | `T_m`, `T_l` | torque of the motor at the output; torque of the load, from the balance of torques | N m |
 //! | `J` | inertia on the motor's side of the spring | kg m² |
 //! | `F_c`, `f`, `F_v` | Coulomb, load-dependent and viscous friction on the motor's side | N m, 1, N m s/rad |
 //! | `e`, `g` | transmission error once and twice a turn of the output and of the input | rad |
 //!
 //! The coefficients of `a` and `sgn w` are free, because neither the rotor's inertia nor the side of the spring on
 //! which friction acts is known. The coefficient of the rate of `T_m` is also free: it represents a filter in the
-//! torque sensor and damping in the spring. The coefficient of `w` is `s - c F_v`. A time lag and viscous friction have
-//! the same signal in the twist, and only the balance of torques (`friction`) separates them.
+//! torque sensor and damping in the spring. The coefficient of the speed is `s - c F_v`, because `w` and `w_l` are
+//! nearly equal. A time shift and viscous friction therefore have the same signal in the twist. Only the balance of
+//! torques (`friction`) separates them.
 
 use super::blocks::{Blocks, Fitted, rows_per_reading};
 use super::signals::{JointRows, waves_of};
@@ -28,26 +31,28 @@ use crate::arm::effect::{time_shift, transmission_error};
 
 /// Prior standard deviation of each amplitude of a transmission error \[rad\].
 const USUAL_ERROR_RAD: f64 = 1.5e-3;
-/// A term with one column is named only if the model predicts held-out blocks better with it by more than this many
-/// standard errors.
+/// A time shift or a compliance is named only if the model predicts held-out blocks better with it by more than this
+/// many standard errors.
 pub(crate) const CLEARLY: f64 = 2.0;
-/// A term with four columns is named only if the model predicts held-out blocks better with it by more than this many
-/// standard errors.
+/// A transmission error, which has four columns, is named only if the model predicts held-out blocks better with it by
+/// more than this many standard errors.
 const CLEARLY_MANY: f64 = 2.5;
-/// A transmission error of the output is named only if it lowers the root mean square error on held-out blocks to
-/// less than this fraction.
+/// A transmission error of the output is named only if it lowers the root mean square error on held-out blocks to less
+/// than this fraction of the error without it.
 const LARGEST_ERROR_RATIO: f64 = 0.8;
-/// Errors up to this multiple of the noise of the sensors are noise.
+/// A transmission error is not named if the fit without it has errors on held-out blocks below this multiple of the
+/// noise of the sensors. Such errors count as noise.
 const STILL_NOISE: f64 = 1.15;
-/// Errors beyond this multiple of the noise of the sensors are certainly more than noise.
+/// Errors on held-out blocks at or above this multiple of the noise of the sensors are certainly more than noise.
 const SURELY_MORE: f64 = 2.0;
-/// Largest number of iterations by which the time shift is found.
+/// Largest number of iterations in the search for the time shift.
 const ROUNDS: usize = 12;
 
-/// Indices of the columns of the model of the twist. The offsets of the records, one per record, come first.
+/// Indices of the columns of the model of the twist. The first columns are the offsets of the records: column `k` is 1
+/// at the rows of record `k` and 0 elsewhere.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Places {
-    /// Number of records of the joint. Each has an offset of its own.
+    /// Number of records of the joint. Each record has one offset, a constant that is added to the twist.
     pub records: usize,
 }
 
@@ -56,25 +61,28 @@ impl Places {
     pub(crate) fn shift(self) -> usize {
         self.records
     }
-    /// Index of the column of the motor's torque. The torque that accelerates the rotor is subtracted if the rotor's
-    /// inertia is stated. The coefficient of this column is the compliance \[rad/(N m)\].
+    /// Index of the column of the motor's torque at the output \[N m\], less the torque that accelerates the rotor if
+    /// the rotor's inertia is stated. The coefficient of this column is the compliance \[rad/(N m)\].
     pub(crate) fn torque(self) -> usize {
         self.records + 1
     }
-    /// Index of the column of the motor's acceleration.
+    /// Index of the column of the motor's acceleration at the output \[rad/s²\]. The coefficient of this column is
+    /// minus the compliance times the rotor's inertia.
     pub(crate) fn acceleration(self) -> usize {
         self.records + 2
     }
-    /// Index of the column of the sign of the speed.
+    /// Index of the column of the sign of the motor's speed \[-\]. The coefficient of this column is minus the
+    /// compliance times the Coulomb friction on the motor's side \[rad\].
     pub(crate) fn sense(self) -> usize {
         self.records + 3
     }
-    /// Index of the column of the sign of the speed times the magnitude of the load's torque.
+    /// Index of the column of the sign of the motor's speed times the magnitude of the load's torque \[N m\]. This
+    /// column represents friction that grows with the load.
     pub(crate) fn load_sense(self) -> usize {
         self.records + 4
     }
-    /// Index of the column of the rate of change of the torque. It represents a filter of the torque sensor and
-    /// damping in the spring.
+    /// Index of the column of the rate of change of the motor's torque \[N m/s\]. This column represents a filter of
+    /// the torque sensor and damping in the spring.
     pub(crate) fn rate(self) -> usize {
         self.records + 5
     }
@@ -88,8 +96,8 @@ impl Places {
     pub(crate) fn input(self) -> [usize; 4] {
         std::array::from_fn(|i| self.records + 10 + i)
     }
-    /// Index of the first column after those of the linear model. This column is the target or, if torsion laws are
-    /// fitted, the first column of these laws.
+    /// Index of the first column behind the columns of the linear model. The recorded twist, which a fit explains,
+    /// stands there. If torsion laws are fitted, their columns begin there and the recorded twist follows them.
     pub(crate) fn further(self) -> usize {
         self.records + 14
     }
@@ -104,7 +112,7 @@ impl Places {
 pub(crate) enum Group {
     /// The time shift of the link's signal.
     Shift,
-    /// Compliance, together with friction and rotor inertia.
+    /// Compliance, together with friction, the rate of the torque, and the rotor's inertia if it is not stated.
     Compliance,
     /// Transmission error once and twice a turn of the output.
     Output,
@@ -123,7 +131,7 @@ impl Group {
         }
     }
 
-    /// Name of the group in the table of steps.
+    /// Name of the group in [`TwistModel::steps`], the table of errors after each step.
     fn step(self) -> &'static str {
         match self {
             Group::Shift => "time shift",
@@ -133,18 +141,19 @@ impl Group {
         }
     }
 
-    /// Whether the group is a transmission error.
+    /// Whether the group is a transmission error, of the output or of the input.
     fn is_of_gear(self) -> bool {
         matches!(self, Group::Output | Group::Input)
     }
 
-    /// Whether the group is to be named. `with` and `without` are the fits with and without its columns; the first
-    /// must predict held-out blocks clearly better than the second.
+    /// Whether the group predicts held-out blocks so much better that it may be named. `with` is the fit with the
+    /// columns of the group, and `without` is the fit without them.
     fn pays(self, with: &Fitted, without: &Fitted) -> bool {
         let clearly = with.better_than(without);
         match self {
             Group::Shift | Group::Compliance => clearly > CLEARLY,
-            // the four waves can also fit other small errors of the model under gravity, so more is asked of them
+            // the four sines and cosines can also fit small errors of the model of gravity, so a larger improvement is
+            // required
             Group::Output => {
                 clearly > CLEARLY_MANY && with.held_out_rms() < LARGEST_ERROR_RATIO * without.held_out_rms()
             }
@@ -159,51 +168,57 @@ pub(crate) struct TwistModel<'a> {
     pub rows: &'a JointRows,
     /// Indices of the model's columns.
     pub places: Places,
-    /// Time by which the link's signal is late \[s\]. The signal is read this much later than the motor's signal, and
-    /// is expanded into a Taylor series about the row nearest to this time.
+    /// Time by which the link's signal is late \[s\]. The link's angle that belongs to the time `t` is read at `t +
+    /// shift_s`. Between rows it comes from a Taylor series about the row nearest to this time.
     pub shift_s: f64,
-    /// Sums of the products of every two columns of the model, one matrix per block of time. The last column is the
+    /// Sums of the products of every two columns, one matrix for each block of time. The last column is the recorded
     /// twist.
     pub sums: Blocks,
-    /// Standard deviation that an independent reading would have \[rad\]. It is larger than that of a row, because rows
-    /// are autocorrelated.
+    /// Standard deviation of the error of an independent reading of the twist \[rad\]: the root mean square error of a
+    /// row times the root of `rows_per_reading`.
     pub sigma_rad: f64,
-    /// Groups of columns that the model contains.
+    /// Groups of columns that the model contains in addition to the offsets.
     pub groups: Vec<Group>,
-    /// Fit of the twist with the columns of these groups.
+    /// Fit of the twist by the offsets and the columns of `groups`.
     pub fitted: Fitted,
     /// Number of rows that together have as much information as one independent reading. It is more than 1 because
     /// errors are autocorrelated.
     pub rows_per_reading: f64,
-    /// Root mean square error of the twist on held-out blocks after each step \[rad\], with the name of the step.
+    /// Name of each step in the choice of groups, with the root mean square error of the twist on held-out blocks after
+    /// the step \[rad\].
     pub steps: Vec<(String, f64)>,
-    /// If the rotor's inertia is not stated: whether a transmission error of the output or gravity on the compliance
-    /// twists the joint, or both. `None` if neither that error nor a compliance shows.
+    /// Fits that tell whether a transmission error of the output, gravity on the compliance, or both twist the joint.
+    /// `None` if the rotor's inertia is stated, or if neither this error nor a compliance shows.
     pub error_or_gravity: Option<ErrorOrGravity>,
 }
 
-/// Fits that compare a transmission error of the output with the compliance. Both can explain the same twist: under
-/// gravity, a joint twists in proportion to waves of its angle, and the error has the same waves. The link's
-/// acceleration stands in for the rest of the torque. With the error, a compliance of nearly zero then fits as well as
-/// the true one, although the rotor's inertia that belongs to it is negative.
+/// Fits that compare a transmission error of the output with the compliance of the joint, where the rotor's inertia is
+/// not stated. Both can explain the same twist. Under gravity a compliant joint twists in proportion to sine and cosine
+/// of its angle, and a transmission error once a turn has the same form.
+///
+/// A fit with the transmission error can therefore give a compliance near zero, and still predict as well as a fit with
+/// the true compliance. Such a fit is recognised by its negative rotor inertia.
 pub(crate) struct ErrorOrGravity {
-    /// Fit without the error.
+    /// Fit without the transmission error of the output.
     pub without: Fitted,
-    /// Fit of the error, with compliance, friction and rotor inertia held at the values of the fit without the error.
+    /// Fit with the transmission error, in which compliance, friction and rotor inertia have the values of the fit
+    /// `without`.
     pub at_compliance: Fitted,
-    /// Fit with the error in which the rotor's inertia is not negative.
+    /// Fit with the transmission error. If the best rotor inertia is negative, it is held at zero.
     pub with: Fitted,
-    /// Whether the compliance is needed in the fit without the error.
+    /// Whether the fit `without` predicts held-out blocks clearly better with a compliance than without one.
     pub shows: bool,
-    /// Whether the rotor's inertia must be held at zero in the fit with the error, because its best value is negative.
-    /// If the compliance is not needed without the error, the value must be clearly negative.
+    /// Whether the rotor's inertia is negative in the best fit with the transmission error. If `shows` is `false`, the
+    /// whole 95 % interval of the inertia must be negative.
     pub is_held: bool,
-    /// Whether the error lowers the error on held-out blocks enough to be named, but only with another compliance.
+    /// Whether the records leave it open that the joint has a transmission error. The chosen model does not have one,
+    /// but the fit `with` predicts held-out blocks clearly better than the fit `without`, whose errors are certainly
+    /// more than noise.
     pub is_doubtful: bool,
 }
 
-/// Writes the columns of the row with index `i` into `row`, with the link's signal read as late by `shift_s` \[s\].
-/// Returns `false` if the link has no reading at the later time.
+/// Writes the columns of the sample with index `i`, and last the recorded twist, into `row`. The link's signal is read
+/// as late by `shift_s` \[s\]. Returns `false` if the link has no reading at the later time.
 pub(crate) fn fill(rows: &JointRows, i: usize, shift_s: f64, row: &mut [f64]) -> bool {
     let sample = &rows.samples[i];
     let (Some(twist), Some([acceleration, _])) =
@@ -222,13 +237,15 @@ pub(crate) fn fill(rows: &JointRows, i: usize, shift_s: f64, row: &mut [f64]) ->
     row[places.rate()] = sample.torque_rate_nm_s;
     row[places.output()[0]..][..4].copy_from_slice(&waves_of(sample.angle_rad));
     row[places.input()[0]..][..4].copy_from_slice(&sample.input_waves);
-    // adds the shift of the Taylor series back, so that the coefficient of the speed is the whole time shift
+    // the time shift is already removed from the twist; this line adds it again, so that the coefficient of the speed
+    // is the whole time shift
     let last = row.len() - 1;
     row[last] = twist.twist_rad + shift_s * twist.link_speed_rad_s;
     true
 }
 
-/// Writes the columns of the row with index `i` as [`fill`] does. Returns `false` also where torque or friction is not known.
+/// Writes the columns of the sample with index `i` as [`fill`] does. Returns `false` also where torque or friction is
+/// not known.
 pub(crate) fn fill_known(rows: &JointRows, i: usize, shift_s: f64, row: &mut [f64]) -> bool {
     rows.samples[i].is_known() && fill(rows, i, shift_s, row)
 }
@@ -243,7 +260,7 @@ pub(crate) fn columns(rows: &JointRows, groups: &[Group]) -> Vec<usize> {
             Group::Shift => out.push(places.shift()),
             Group::Compliance => {
                 out.extend([places.torque(), places.sense(), places.load_sense(), places.rate()]);
-                // the torque of a rotor of known inertia is already subtracted from the torque
+                // if the inertia of the rotor is stated, its torque is already subtracted in the column of the torque
                 out.extend(rows.rotor_inertia_kgm2.is_none().then_some(places.acceleration()));
             }
             Group::Output => out.extend(places.output()),
@@ -282,7 +299,7 @@ impl<'a> TwistModel<'a> {
         Some(out)
     }
 
-    /// Errors of the present fit (recorded minus modelled twist), one per known row \[rad\].
+    /// Errors of the fit `self.fitted` (recorded minus modelled twist), one per known row \[rad\].
     pub(crate) fn errors(&self) -> Vec<f64> {
         let mut row = vec![0.0; self.places.further() + 1];
         let error = |i: usize| {
@@ -295,10 +312,11 @@ impl<'a> TwistModel<'a> {
         (0..self.rows.samples.len()).filter_map(error).collect()
     }
 
-    /// Fits the chosen groups again. The prior of a transmission error is relative to the error that a fit leaves. In
-    /// the search it comes from a fit without transmission errors. Such a fit leaves more, so that the prior is too
-    /// narrow and the amplitudes are too small. Here each round takes the error that the fit before leaves, and also
-    /// judges again what belongs to the error and what to gravity.
+    /// Fits the chosen groups again, and decides again between transmission error and gravity. `None` if a fit is
+    /// impossible. The reason for repeating the fit is the prior of a transmission error, which depends on the standard
+    /// deviation `sigma_rad` of the fit before. During the choice of groups, `sigma_rad` comes from a fit without
+    /// transmission errors. It is then too large, which makes the prior too narrow and the amplitudes too small. Each
+    /// round uses the `sigma_rad` of the round before.
     fn settle(&mut self) -> Option<()> {
         const ROUNDS: usize = 3;
         for _ in 0..ROUNDS {
@@ -317,8 +335,8 @@ impl<'a> TwistModel<'a> {
         Some(())
     }
 
-    /// Fraction of the variance of the motor's torque that no other column of the fit explains. Only this part of the
-    /// torque determines the compliance (Frisch and Waugh 1933).
+    /// Fraction of the variance of the motor's torque, from 0 to 1, that no other column of the fit explains. Only this
+    /// part of the torque determines the compliance (Frisch and Waugh 1933).
     fn own_share_in_fit(&self) -> f64 {
         let p = self.places;
         let is_other = |c: &usize| *c != p.torque() && *c >= p.records;
@@ -326,12 +344,14 @@ impl<'a> TwistModel<'a> {
         self.sums.own_share(p.torque(), &p.offsets(), &others)
     }
 
-    /// Smallest possible ratio of the fitted compliance to the true one. The torque that the fit uses is not only that
-    /// of the spring, and errors of a regressor make its coefficient too small. `left_share` is the fraction of the
-    /// torque's variance that the balance of torques leaves unexplained. The ratio is at least one minus `left_share`
-    /// over the fraction of the variance that determines the compliance. It is also at least the square of the partial
-    /// correlation of torque and twist, because the true coefficient lies between those of the regression and of the
-    /// reverse regression (Frisch 1934).
+    /// Lower bound of the ratio of the fitted compliance to the true compliance, from 0 to 1. The recorded torque
+    /// differs from the torque of the spring, and errors of a regressor make its coefficient too small. The result is
+    /// the larger of two bounds:
+    ///
+    /// - one minus `left_share` divided by [`Self::own_share_in_fit`]. `left_share` is the fraction of the torque's
+    ///   variance that the balance of torques leaves unexplained.
+    /// - the square of the partial correlation of torque and twist. It is a bound because the true coefficient lies
+    ///   between the coefficients of the regression and of the reverse regression (Frisch 1934).
     pub(crate) fn least_attenuation(&self, left_share: f64) -> f64 {
         let torque = self.places.torque();
         let others: Vec<usize> = self.fitted.columns.iter().copied().filter(|c| *c != torque).collect();
@@ -341,31 +361,34 @@ impl<'a> TwistModel<'a> {
         by_twist.max(by_balance).clamp(0.0, 1.0)
     }
 
+    /// Computes `rows_per_reading` and `sigma_rad` from the errors of the fit `self.fitted`.
     fn judge_errors(&mut self) {
         self.rows_per_reading = rows_per_reading(&self.errors());
         let variance = self.fitted.squares / self.fitted.rows as f64;
         self.sigma_rad = (variance * self.rows_per_reading).sqrt();
     }
 
-    /// Fits the twist by the offsets and the groups `groups`, with the prior for transmission errors. `None` if the
-    /// fit is impossible.
+    /// Fits the twist by the offsets and the groups `groups`. Amplitudes of transmission errors have a prior. `None` if
+    /// the fit is impossible.
     pub(crate) fn fit(&self, groups: &[Group]) -> Option<Fitted> {
         self.fit_with(&columns(self.rows, groups))
     }
 
-    /// Fits the twist by the columns `columns`, with the prior for transmission errors. `None` if the fit is
-    /// impossible.
+    /// Fits the twist by the columns with the indices `columns`. Amplitudes of transmission errors have a prior. `None`
+    /// if the fit is impossible.
     pub(crate) fn fit_with(&self, columns: &[usize]) -> Option<Fitted> {
         self.sums.fit(columns, self.places.further(), |c| self.prior(c))
     }
 
     /// Prior standard deviation of the coefficient of the column `column`, as a multiple of the standard deviation of
-    /// an independent reading; `None` if nothing is known before. Only transmission errors have a prior.
+    /// an independent reading. `None` if the column has no prior. Only the columns of transmission errors have one.
     pub(crate) fn prior(&self, column: usize) -> Option<f64> {
         let errors = [self.places.output(), self.places.input()].concat();
         errors.contains(&column).then_some(USUAL_ERROR_RAD / self.sigma_rad.max(1e-12))
     }
 
+    /// Groups that the records of this joint can show: the compliance needs a recorded torque, and the transmission
+    /// error of the input needs a gear ratio above 1.
     fn candidates(&self) -> Vec<Group> {
         let all = [
             (Group::Shift, true),
@@ -376,9 +399,10 @@ impl<'a> TwistModel<'a> {
         all.into_iter().filter(|(_, possible)| *possible).map(|(group, _)| group).collect()
     }
 
-    /// Adds the groups with which the model predicts held-out blocks better, the best first. Then it removes groups
-    /// that the others have made unnecessary. The compliance is always in the model if the torque is recorded, so
-    /// that its uncertainty is part of the intervals. `None` if a fit is impossible.
+    /// Chooses `groups` and fits them. In each step, the group with the best prediction of held-out blocks is added, as
+    /// long as one predicts them clearly better. Then groups that have become unnecessary are removed. The compliance
+    /// is always in the model if the torque is recorded, so that its uncertainty is part of the intervals. `None` if a
+    /// fit is impossible.
     fn select(&mut self) -> Option<()> {
         let mut groups: Vec<Group> = Vec::new();
         let mut best = self.fit(&groups)?;
@@ -387,8 +411,8 @@ impl<'a> TwistModel<'a> {
             let left = self.candidates().into_iter().filter(|g| !groups.contains(g));
             let tried = left.filter_map(|g| Some((g, self.fit(&[groups.as_slice(), &[g]].concat())?)));
             let better = tried.filter(|(g, fit)| self.pays(*g, &groups, fit, &best));
-            // a transmission error and gravity both vary with the joint's angle; compliance goes first where it is
-            // enough
+            // gravity on a compliance has the same form as a transmission error, so groups without a transmission error
+            // are tried first
             let order = |(group, fit): &(Group, Fitted)| (group.is_of_gear(), fit.held_out_rms());
             let next =
                 better.min_by(|a, b| order(a).0.cmp(&order(b).0).then(order(a).1.total_cmp(&order(b).1)));
@@ -411,11 +435,12 @@ impl<'a> TwistModel<'a> {
         Some(())
     }
 
-    /// Whether the group is to be named. A transmission error is not named if the fit without it leaves no more than
-    /// the noise of the sensors. The waves are known without noise, so they would replace a noisy torque that varies
-    /// with the angle, such as that of gravity. If the fit without a transmission error of the output shows the
-    /// compliance, the error must also be worth its columns at that compliance. `others` are the groups of the fit
-    /// without the error.
+    /// Whether the group is to be named. `others` are the groups of the model without this group. `with` and `without`
+    /// are the fits with and without it. A transmission error is not named if the fit without it leaves only the noise
+    /// of the sensors. The reason is that its sines and cosines have no noise, so a fit prefers them to a noisy torque
+    /// that varies with the angle, such as that of gravity. If the fit without a transmission error of the output shows
+    /// the compliance, that error must also predict held-out blocks clearly better with the compliance held at this
+    /// value.
     fn pays(&self, group: Group, others: &[Group], with: &Fitted, without: &Fitted) -> bool {
         if !group.pays(with, without) || (group.is_of_gear() && self.leaves_noise_only(without, STILL_NOISE))
         {
@@ -427,14 +452,15 @@ impl<'a> TwistModel<'a> {
         self.at_compliance(others, without).is_some_and(|fit| group.pays(&fit, without))
     }
 
-    /// Whether the errors of a fit on held-out blocks are below `times` the noise that the average leaves of the angles and of
-    /// the torque.
+    /// Whether the root mean square error of a fit on held-out blocks is below `times` the noise of the averaged twist.
+    /// The noise of the torque counts too, as a twist: multiplied by the compliance of the fit.
     fn leaves_noise_only(&self, fitted: &Fitted, times: f64) -> bool {
         let by_torque_rad = fitted.value(self.places.torque()) * self.rows.averaged_torque_noise_nm();
         fitted.held_out_rms() < times * libm::hypot(self.rows.averaged_noise_rad(), by_torque_rad)
     }
 
-    /// Whether the fit `fitted` by the groups `groups` needs the compliance, and the rotor's inertia is not stated.
+    /// Whether the fit `fitted` by the groups `groups` predicts held-out blocks clearly better than a fit without the
+    /// compliance. Always `false` if the rotor's inertia is stated.
     fn shows_compliance(&self, groups: &[Group], fitted: &Fitted) -> bool {
         let others: Vec<Group> = groups.iter().copied().filter(|g| *g != Group::Compliance).collect();
         self.rows.rotor_inertia_kgm2.is_none()
@@ -459,8 +485,8 @@ impl<'a> TwistModel<'a> {
         sums.fit(&columns(self.rows, &free), target, |c| self.prior(c))
     }
 
-    /// Fit of the twist in which the compliance is `rad_per_nm` \[rad/(N m)\] and all other coefficients are free. `None` if a fit
-    /// is impossible.
+    /// Fit of the twist in which the compliance is `rad_per_nm` \[rad/(N m)\] and all other coefficients are free.
+    /// `None` if a fit is impossible.
     pub(crate) fn with_compliance(&self, rad_per_nm: f64) -> Option<Fitted> {
         let (torque, target) = (self.places.torque(), self.places.further());
         let sums = self.rows.sums(target + 1, |i, _, row| {
@@ -501,8 +527,9 @@ impl<'a> TwistModel<'a> {
         Some(ErrorOrGravity { without, at_compliance, with, shows, is_held, is_doubtful })
     }
 
-    /// A compliance that the record's twist does not exceed, whatever friction is \[rad/(N m)\]: the twist that a time shift
-    /// leaves, over the torque that is not friction, both as root mean squares, with a margin. Zero if a fit is impossible.
+    /// Upper bound of the compliance, whatever the friction is \[rad/(N m)\]. It is the twist that a time shift does
+    /// not explain, divided by the torque that speed and Coulomb friction do not explain. Both are root mean squares,
+    /// and the quotient is multiplied by a margin. Zero if a fit is impossible.
     pub(crate) fn largest_compliance(&self) -> f64 {
         const MARGIN: f64 = 1.5;
         let p = self.places;
@@ -512,8 +539,8 @@ impl<'a> TwistModel<'a> {
         if loaded > 0.0 { MARGIN * (twisted / loaded).sqrt() } else { 0.0 }
     }
 
-    /// Removes those of the `groups` without which the model predicts held-out blocks about as well, and returns the
-    /// rest. `best` becomes the fit with the rest.
+    /// Removes a transmission error or the time shift from `groups` if the model without it predicts held-out blocks
+    /// about as well. Returns the remaining groups, and stores their fit in `best`.
     fn thinned(&mut self, mut groups: Vec<Group>, best: &mut Fitted) -> Vec<Group> {
         for group in [Group::Input, Group::Output, Group::Shift] {
             let without: Vec<Group> = groups.iter().copied().filter(|g| *g != group).collect();
@@ -528,7 +555,8 @@ impl<'a> TwistModel<'a> {
         groups
     }
 
-    /// How clearly the model predicts held-out blocks better with the group than without it, in standard errors.
+    /// How clearly the model predicts held-out blocks better with the group than without it, in standard errors (see
+    /// [`Fitted::better_than`]). 0 if a fit is impossible.
     pub(crate) fn gain(&self, group: Group) -> f64 {
         let others: Vec<Group> = self.groups.iter().copied().filter(|g| *g != group).collect();
         let all: Vec<Group> = others.iter().copied().chain([group]).collect();
@@ -538,8 +566,9 @@ impl<'a> TwistModel<'a> {
         }
     }
 
-    /// Fraction of the variance of the motor's torque that neither the joint's own motion (speed, its sign, and acceleration)
-    /// nor the other columns of the fit explain.
+    /// Fraction of the variance of the motor's torque, from 0 to 1, that is independent of other columns. It is the
+    /// smaller of two fractions: the one that the joint's own motion (speed, its sign, and acceleration) does not
+    /// explain, and the one that the other columns of the fit do not explain.
     pub(crate) fn own_share_of_torque(&self) -> f64 {
         let p = self.places;
         let mut own = vec![p.shift(), p.sense()];
@@ -548,8 +577,8 @@ impl<'a> TwistModel<'a> {
     }
 }
 
-/// Time by which the link's signal is late \[s\], by iteration: each fit reads the link's signal at the delay found
-/// so far and gives a correction of the delay. `None` if a fit is impossible.
+/// Time by which the link's signal is late \[s\], found by iteration: each fit reads the link's signal at the delay
+/// found so far and gives a correction of the delay. `None` if a fit is impossible.
 fn time_shift_s(rows: &JointRows) -> Option<f64> {
     let places = Places { records: rows.record_count() };
     let groups = if rows.has_torque { vec![Group::Shift, Group::Compliance] } else { vec![Group::Shift] };

@@ -1,8 +1,9 @@
-//! Transmission error within a turn of the motor, which is removed from the signals before they are differentiated.
+//! Transmission error that repeats once and twice a turn of the motor. It is removed from the signals before they are
+//! differentiated.
 //!
-//! Such an error varies fast: its acceleration is as large as that of the motion and would be taken for inertia. It is
-//! found in the fast part of the twist, `y - smooth(y)`. The sines and cosines are filtered in the same way, so that
-//! slow torque and inertia have no influence.
+//! Such an error varies fast. Its second derivative is as large as the acceleration of the motion and would be taken
+//! for inertia. The error is found in the fast part of the twist `y`, which is `y - smooth(y)`. The sines and cosines
+//! that are fitted to the twist are filtered in the same way, so that slow torque and inertia have no influence.
 
 use super::smooth::smooth;
 use crate::reconcile::readings::record::{JointSignals, Record};
@@ -10,8 +11,8 @@ use nalgebra::{Matrix4, Vector4};
 
 /// Half width of the window that separates the fast from the slow part of a signal \[rows\].
 const HALF: usize = 16;
-/// A transmission error is removed only if it explains at least this fraction of the sum of squares of the fast part
-/// of the twist.
+/// A transmission error is removed only if it explains at least this fraction of the sum of squares of the fast part of
+/// the twist (see [`fast`]).
 const TELLING: f64 = 0.1;
 
 /// Transmission error of a joint's gear once and twice a turn of the motor.
@@ -20,16 +21,18 @@ pub(crate) struct Wave {
     /// Amplitudes of sine and cosine once a turn, then twice a turn, at the output \[rad\]. All zero if there is no
     /// error.
     waves_rad: [f64; 4],
-    /// Whether the error is in the motor's signal. If not, it is in the link's signal.
+    /// Whether the error appears in the motor's recorded angle (`true`) or in the link's (`false`).
     is_of_motor: bool,
 }
 
+/// Sine and cosine of the angle `phase` \[rad\], then of twice this angle.
 fn shapes(phase: f64) -> [f64; 4] {
     let (sin, cos) = libm::sincos(phase);
     [sin, cos, 2.0 * sin * cos, cos * cos - sin * sin]
 }
 
-/// Fast part of the signal `x`: the signal less its smoothed value, in its unit; zero near ends and gaps.
+/// Fast part of the signal `x`, which is sampled at the times `t_s` \[s\]: the signal minus its smoothed value, in its
+/// own unit. Zero near ends and gaps, where there is no smoothed value.
 fn fast(t_s: &[f64], x: &[f64]) -> Vec<f64> {
     let slow = smooth(t_s, x, HALF).value;
     x.iter().zip(slow).map(|(x, slow)| if slow.is_nan() { 0.0 } else { x - slow }).collect()
@@ -68,8 +71,8 @@ impl Wave {
         Self { waves_rad, is_of_motor: calmed[0] < calmed[1] }
     }
 
-    /// How much the signal on the side that has the error is calmed by removing the error: the sum of squares of its
-    /// acceleration after the removal, divided by the same sum before.
+    /// Ratio by which removing the error reduces the acceleration of the signal that has it: the sum of squares of the
+    /// acceleration after the removal, divided by the sum before. 1 if the acceleration is zero.
     fn calms(&self, own: &[(&[f64], &JointSignals)]) -> f64 {
         let size = |t_s: &[f64], x: &[f64]| -> f64 {
             smooth(t_s, x, HALF).curvature.iter().filter(|a| !a.is_nan()).map(|a| a * a).sum()

@@ -1,4 +1,4 @@
-//! What is special about tests: masses at the tip, servos that yield, links that warm up.
+//! Special conditions of the tests of a campaign: masses at the tip, servos that are compliant, links that warm up.
 
 use super::three;
 use serde_json::{Value, json};

@@ -1,4 +1,4 @@
-//! Random numbers that are the same everywhere.
+//! Random numbers that are the same on every machine.
 
 /// A small generator of random numbers (splitmix64).
 pub struct Dice(pub u64);

@@ -1,4 +1,4 @@
-//! Which effects are hidden, where, and how large they are.
+//! Chooses the effects that a made campaign hides, their places and their sizes.
 
 use super::Dice;
 use super::specimen::{Specimen, stiffness_nm_per_rad};

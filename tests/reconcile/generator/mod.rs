@@ -1,8 +1,8 @@
-//! Makes campaigns with a hidden effect from the independent witness: fresh seeds, parameters scattered
-//! within tolerance, noise, gross errors, in the files that `reconcile` reads.
+//! Makes campaigns with a hidden effect from the independent model, in the files that `reconcile` reads. Seeds are new,
+//! parameters scatter within their tolerance, and readings have noise and gross errors.
 //!
-//! Friction play, which the witness lacks, is added here from its torques and from kinematics written
-//! for this file.
+//! Friction with play, which the independent model lacks, is added here. It is computed from the torques of that model
+//! and from kinematics that were written for this file.
 
 mod conditions;
 mod dice;

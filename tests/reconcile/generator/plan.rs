@@ -1,4 +1,4 @@
-//! How many readings a campaign has, and how clean they are.
+//! The number of readings of a made campaign, and how large their noise and gross errors are.
 
 use super::Dice;
 

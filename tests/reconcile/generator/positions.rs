@@ -1,4 +1,4 @@
-//! Absolute positions of the tip of an arm that stands askew and whose lengths are off.
+//! Makes absolute positions of the tip of an arm that stands at an angle and whose lengths differ from its arm file.
 
 use super::{Built, Dice, LoadCase, Payload, Plan, list, three, torque, witness};
 use nalgebra::{Rotation3, Vector3};

@@ -1,4 +1,4 @@
-//! Arms, and what they are measured with.
+//! Makes arms, and the loads and instruments with which they are measured.
 
 use super::{Dice, three};
 use nalgebra::{Rotation3, Vector3};

@@ -1,4 +1,4 @@
-//! Physics that no effect of the library has, for campaigns that must end as unexplained.
+//! Physics for which the library has no effect. Campaigns with it must get the verdict that they are not explained.
 
 use super::specimen::stiffness_nm_per_rad;
 use super::{Dice, Specimen, three};

@@ -1,4 +1,5 @@
-//! How well a hidden effect could be seen at all, whoever looks.
+//! How many standard deviations a hidden effect changes the readings by, so that one knows whether any method could
+//! find it.
 
 use armwright::reconcile::Campaign;
 use armwright::reconcile::fit::descent::{Effort, fit};

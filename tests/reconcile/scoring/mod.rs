@@ -1,4 +1,5 @@
-//! Scores verdicts against answer keys: a confusion table, coverage of the intervals, kept-out residuals.
+//! Scores verdicts against answer keys: a table of confusions, the coverage of the intervals, and the residuals of
+//! held-out readings.
 
 use serde_json::Value;
 use std::collections::BTreeMap;
