@@ -15,6 +15,8 @@ struct Overloaded<'t> {
     gear: &'t str,
     /// The failed check of this gear's bearing. If several checks fail, it is the check with the smallest margin.
     check: Check,
+    /// All checks of gear and bearing that fail.
+    failed: Vec<Check>,
     /// Whether the bearing is the only reason why the gear is rejected.
     is_alone: bool,
 }
@@ -57,7 +59,7 @@ impl DriveTable<'_> {
         let alone = overloaded.iter().filter(|o| o.is_alone).count();
         let nearness = |o: &&Overloaded| (o.is_alone, o.check.torque_margin().unwrap_or(0.0));
         let nearest = overloaded.iter().reduce(|a, b| if nearness(&b) > nearness(&a) { b } else { a })?;
-        let own = bearing_that_holds(&nearest.check).map_or(String::new(), |own| format!(", or {own}"));
+        let own = bearing_that_holds(&nearest.failed).map_or(String::new(), |own| format!(", or {own}"));
         Some(format!(
             "joint {}: output bearings reject {} of {} gears, {alone} for no other reason; nearest {}: {}. What helps: less \
              mass, payload or reach outboard, slower ramps and stops of every joint, a link that attaches closer to the \
@@ -78,7 +80,7 @@ impl DriveTable<'_> {
         let failed = not_holding(checks);
         let check = *failed.iter().find(|check| check.kind.is_bearing())?;
         let is_alone = failed.iter().all(|check| check.kind.is_bearing());
-        Some(Overloaded { gear: &gear.id, check, is_alone })
+        Some(Overloaded { gear: &gear.id, check, failed, is_alone })
     }
 
     /// The bearings that cannot be checked in full, one line each. A bearing that the study states is the same with

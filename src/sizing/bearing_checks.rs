@@ -148,19 +148,27 @@ impl RigidBearing {
     }
 }
 
-/// The rating that a separate output bearing needs so that it passes the failed check `check`, in words. `None` for
-/// checks of other parts.
-pub(super) fn bearing_that_holds(check: &Check) -> Option<String> {
-    let times = check.torque_margin().map(|margin| (100.0 / margin).ceil() / 100.0);
-    let rating = match check.kind {
-        CheckKind::BearingMoment => {
-            format!("permissible_moment_nm of at least {}", check.needed?.ceil())
-        }
-        CheckKind::BearingRest | CheckKind::BearingStop => {
-            format!("static_load_rating_n at least {} times as large", times?)
-        }
-        CheckKind::BearingLife => format!("dynamic_load_rating_n at least {} times as large", times?),
-        _ => return None,
+/// The ratings that a separate output bearing needs so that it passes the checks `failed`, in words: of static and of
+/// dynamic load, how many times as large as those of the bearing that fails. `None` if checks of other parts fail too,
+/// which another bearing does not help.
+pub(super) fn bearing_that_holds(failed: &[Check]) -> Option<String> {
+    if failed.is_empty() || failed.iter().any(|check| !check.kind.is_bearing()) {
+        return None;
+    }
+    let of = |kinds: &[CheckKind]| {
+        let margins =
+            failed.iter().filter(|check| kinds.contains(&check.kind)).filter_map(Check::torque_margin);
+        margins.reduce(f64::min).map(|margin| (100.0 / margin).ceil() / 100.0)
     };
-    Some(format!("a bearing of the joint's own (\"bearing\") with {rating}"))
+    let moment = failed.iter().find(|check| check.kind == CheckKind::BearingMoment);
+    let moment = moment
+        .and_then(|check| check.needed)
+        .map(|nm| format!("permissible_moment_nm of at least {}", nm.ceil()));
+    let statically = of(&[CheckKind::BearingRest, CheckKind::BearingStop])
+        .map(|times| format!("static_load_rating_n at least {times} times as large"));
+    let life = of(&[CheckKind::BearingLife])
+        .map(|times| format!("dynamic_load_rating_n at least {times} times as large"));
+    let ratings: Vec<String> = [moment, statically, life].into_iter().flatten().collect();
+    (!ratings.is_empty())
+        .then(|| format!("a bearing of the joint's own (\"bearing\") with {}", ratings.join(", ")))
 }

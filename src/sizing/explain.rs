@@ -1,7 +1,7 @@
 //! Explanations: why a part was rejected, and how far torque or speed must be reduced if no drive meets the demand.
 
 use super::bearing_checks::bearing_that_holds;
-use super::check::{Check, CheckState, digits_of};
+use super::check::{Check, CheckKind, CheckState, digits_of};
 use super::checks::{binding, checks, gear_checks, motor_checks, torsion_checks};
 use super::demand::{JointDemand, JointMotion};
 use super::drive::Drive;
@@ -132,6 +132,8 @@ pub struct Relaxation {
     pub factor: f64,
     /// Whether the study states torques of the joint in a duty. No lighter arm reduces these.
     pub has_duty: bool,
+    /// Whether the joint slides, so that it has a force in place of a torque.
+    pub slides: bool,
     /// Name of the lightest drive that meets the reduced demand.
     pub drive: String,
 }
@@ -152,10 +154,13 @@ impl fmt::Display for Relaxation {
         match self.kind {
             RelaxationKind::Torque => {
                 let of_duty = if self.has_duty { ", and the torques of its duty" } else { "" };
-                write!(
-                    f,
-                    "torque on the joint (payload, outboard mass, reach{of_duty}) down to {percent:.0} %"
-                )?
+                match self.slides {
+                    true => write!(f, "force on the rail (payload, outboard mass) down to {percent:.0} %")?,
+                    false => write!(
+                        f,
+                        "torque on the joint (payload, outboard mass, reach{of_duty}) down to {percent:.0} %"
+                    )?,
+                }
             }
             RelaxationKind::Speed => {
                 write!(f, "speed, acceleration and emergency deceleration down to {percent:.0} %")?
@@ -175,6 +180,8 @@ pub struct Shortfall {
     pub drive: String,
     /// The check of this drive that has the smallest margin.
     pub check: Check,
+    /// All checks that this drive fails.
+    pub failed: Vec<Check>,
     /// Reductions of torque or speed that help, the smallest reduction first. Empty if neither helps alone.
     pub relaxations: Vec<Relaxation>,
 }
@@ -182,7 +189,9 @@ pub struct Shortfall {
 impl fmt::Display for Shortfall {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "joint {}: no drive holds; nearest {}: {}", self.joint, self.drive, self.check)?;
-        if let Some(missing) = self.check.shortfall() {
+        // a difference of safety factors says nothing
+        let is_factor = matches!(self.check.kind, CheckKind::BearingRest | CheckKind::BearingStop);
+        if let Some(missing) = self.check.shortfall().filter(|_| !is_factor) {
             let (digits, unit) = (digits_of(missing), self.check.unit());
             write!(f, " (short by {missing:.digits$} {unit})")?;
         }
@@ -194,7 +203,7 @@ impl fmt::Display for Shortfall {
             true => f.write_str("; neither less torque nor less speed alone lets one hold"),
             false => write!(f, "; smallest relaxation that helps: {}", steps.join("; or ")),
         }?;
-        match bearing_that_holds(&self.check) {
+        match bearing_that_holds(&self.failed) {
             Some(bearing) => write!(f, "; or {bearing}"),
             None => Ok(()),
         }
@@ -242,13 +251,15 @@ impl<'c> DriveTable<'c> {
         if self.first_fit(demand).is_some() {
             return None;
         }
-        let (drive, check) = self.nearest(demand)?;
+        let (drive, checks) = self.nearest(demand)?;
+        let check = *binding(&checks)?;
         let mut relaxations: Vec<_> = [RelaxationKind::Torque, RelaxationKind::Speed]
             .into_iter()
             .filter_map(|kind| self.relaxation(kind, demand))
             .collect();
         relaxations.sort_by(|a, b| b.factor.total_cmp(&a.factor));
-        Some(Shortfall { joint: self.joint().to_string(), drive: drive.name(), check, relaxations })
+        let (joint, failed) = (self.joint().to_string(), not_holding(checks));
+        Some(Shortfall { joint, drive: drive.name(), check, failed, relaxations })
     }
 
     /// The checks of a gear, and its blank torsion ratings if the deflection of the joint is to be computed.
@@ -264,7 +275,7 @@ impl<'c> DriveTable<'c> {
     /// The smallest margin of the nearest drive, as a factor on torque, for a demand that no drive meets. The nearest
     /// drive is the drive whose smallest margin is the largest. 0 if no drive could be checked.
     pub(crate) fn nearest_margin(&self, demand: &JointDemand) -> f64 {
-        self.nearest(demand).and_then(|(_, check)| check.torque_margin()).unwrap_or(0.0)
+        self.nearest(demand).and_then(|(_, checks)| binding(&checks)?.torque_margin()).unwrap_or(0.0)
     }
 
     /// Every gear that passes its own checks, combined with every motor that goes with it.
@@ -354,10 +365,10 @@ impl<'c> DriveTable<'c> {
         figures.filter(|figure| !named.iter().any(|name| name.ends_with(figure))).collect()
     }
 
-    /// The nearest drive and its check with the smallest margin. It is the drive whose smallest margin is the largest,
-    /// among the drives for which every check could be made. `None` if there is no such drive.
-    fn nearest(&self, demand: &JointDemand) -> Option<(Drive<'c>, Check)> {
-        let mut best: Option<(f64, Drive<'c>, Check)> = None;
+    /// The nearest drive and its checks. It is the drive whose smallest margin is the largest, among the drives for which
+    /// every check could be made. `None` if there is no such drive.
+    fn nearest(&self, demand: &JointDemand) -> Option<(Drive<'c>, Vec<Check>)> {
+        let mut best: Option<(f64, Drive<'c>, Vec<Check>)> = None;
         for drive in self.all_drives().filter(|drive| self.knows_torsion(drive.gear)) {
             let checks = checks(&drive, self.motion(), demand);
             if checks.iter().any(|c| !c.holds() && matches!(c.state, CheckState::NotChecked(_))) {
@@ -366,10 +377,10 @@ impl<'c> DriveTable<'c> {
             let Some(worst) = binding(&checks) else { continue };
             let margin = worst.torque_margin().unwrap_or(0.0);
             if best.as_ref().is_none_or(|(most, ..)| margin > *most) {
-                best = Some((margin, drive, *worst));
+                best = Some((margin, drive, checks));
             }
         }
-        best.map(|(_, drive, check)| (drive, check))
+        best.map(|(_, drive, checks)| (drive, checks))
     }
 
     /// The largest factor below 1, in whole percents, such that some drive meets `demand` with its torque or its speed
@@ -382,8 +393,8 @@ impl<'c> DriveTable<'c> {
                 RelaxationKind::Speed => self.slowed(factor, demand),
             };
             let drive = self.lightest(&motion, &relaxed)?;
-            let has_duty = demand.stated_peak_nm > 0.0;
-            Some(Relaxation { kind, factor, has_duty, drive: drive.name() })
+            let (has_duty, slides) = (demand.stated_peak_nm > 0.0, drive.gear.kind.slides());
+            Some(Relaxation { kind, factor, has_duty, slides, drive: drive.name() })
         })
     }
 

@@ -4,7 +4,6 @@ use super::super::testing::{char_lynn_j_8_2, f11_10, hfuc_40_100, hfuc_58_100, m
 use super::*;
 use crate::catalog::gear::GearMass;
 use crate::catalog::motor::Motor;
-use crate::sizing::check::CheckKind;
 use crate::sizing::demand::JointMotion;
 use crate::sizing::requirement::MotionRequirement;
 use crate::sizing::select::DriveFilter;
@@ -189,8 +188,13 @@ fn less_speed_takes_its_share_off_the_linear_torque() {
 
 #[test]
 fn a_shortfall_of_torque_is_a_larger_one_of_the_payload_alone() {
-    let step =
-        Relaxation { kind: RelaxationKind::Torque, factor: 0.9, has_duty: false, drive: String::new() };
+    let step = Relaxation {
+        kind: RelaxationKind::Torque,
+        factor: 0.9,
+        has_duty: false,
+        slides: false,
+        drive: String::new(),
+    };
     assert!(step.to_string().starts_with("torque on the joint (payload, outboard mass, reach) down to 90 %"));
     let of_duty = Relaxation { has_duty: true, ..step.clone() };
     assert!(of_duty.to_string().contains("reach, and the torques of its duty)"));
