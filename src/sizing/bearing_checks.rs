@@ -79,6 +79,15 @@ impl BlankRatings {
         Self::under(&RATINGS[1], bearing)
     }
 
+    /// The blank ratings of a bearing that a file states, or of the bearing of the gear that the file names, and the name
+    /// of the gear if the bearing is the gear's. `None` if all are known.
+    pub(crate) fn of_given<'g>(bearing: &Bearing, gear: Option<&'g Gear>) -> Option<(Self, Option<&'g str>)> {
+        match gear.filter(|gear| is_of(bearing, gear)) {
+            Some(gear) => Some((Self::under(&RATINGS[0], *bearing)?, Some(&gear.id))),
+            None => Some((Self::of_stated(*bearing)?, None)),
+        }
+    }
+
     /// The blank ratings of a bearing. `names` are the names under which its four ratings are reported, in the order of
     /// [`RATINGS`]. `None` if all four are known.
     fn under(names: &[&'static str; 4], bearing: Bearing) -> Option<Self> {
@@ -99,6 +108,11 @@ impl BlankRatings {
         let lack = if whose.len() > 1 { "lack" } else { "lacks" };
         format!("bearing not checked{how_far}: {} {lack} {}", whose.join(", "), self.names.join(", "))
     }
+}
+
+/// Whether `bearing` is the output bearing of `gear` as a housed unit.
+fn is_of(bearing: &Bearing, gear: &Gear) -> bool {
+    Bearing::of_gear(gear, GearMass::HousedUnit).as_ref() == Some(bearing)
 }
 
 /// Names of the tilting stiffness: a column of the catalog of gears, and a key of a bearing that a file states.
@@ -129,8 +143,7 @@ impl RigidBearing {
         if bearing.tilt_stiffness_nm_per_rad.is_some() {
             return None;
         }
-        let is_of = |gear: &&Gear| Bearing::of_gear(gear, GearMass::HousedUnit).as_ref() == Some(bearing);
-        match gear.filter(is_of) {
+        match gear.filter(|gear| is_of(bearing, gear)) {
             Some(gear) => Some((Self { lacks: STIFFNESS[0] }, Some(&gear.id))),
             None => Some((Self { lacks: STIFFNESS[1] }, None)),
         }

@@ -204,14 +204,24 @@ pub(crate) fn with_part(check: &Check) -> String {
 fn not_checked(drive: &Drive, checks: &[Check]) -> Vec<String> {
     let open = |c: &&Check| matches!(c.state, CheckState::NotChecked(_)) && !c.kind.is_bearing();
     let mut out = remarks(checks.iter().filter(open));
-    let whose = match drive.bearing {
-        BearingSource::OfGear => drive.gear.id.as_str(),
-        BearingSource::Stated(_) => "the stated bearing",
+    let (blank, rigid) = match drive.bearing {
+        BearingSource::OfGear => {
+            let (source, gear, which) = (&drive.bearing, drive.gear, drive.gear_mass);
+            let of_gear = Some(gear.id.as_str());
+            (
+                BlankRatings::of(source, gear, which).map(|blank| (blank, of_gear)),
+                RigidBearing::of(source, gear, which).map(|rigid| (rigid, of_gear)),
+            )
+        }
+        // the bearing of a gear that the file names is stated in the arm too
+        BearingSource::Stated(bearing) => (
+            bearing.and_then(|bearing| BlankRatings::of_given(&bearing, Some(drive.gear))),
+            bearing.and_then(|bearing| RigidBearing::of_given(&bearing, Some(drive.gear))),
+        ),
     };
-    let blank = BlankRatings::of(&drive.bearing, drive.gear, drive.gear_mass);
-    out.extend(blank.map(|blank| blank.words(&[whose])));
-    let rigid = RigidBearing::of(&drive.bearing, drive.gear, drive.gear_mass);
-    out.extend(rigid.map(|rigid| rigid.words(&[whose])));
+    let whose = |gear: Option<&str>| gear.unwrap_or("the stated bearing").to_string();
+    out.extend(blank.map(|(blank, gear)| blank.words(&[&whose(gear)])));
+    out.extend(rigid.map(|(rigid, gear)| rigid.words(&[&whose(gear)])));
     out
 }
 

@@ -84,9 +84,12 @@ fn unchecked<'s>(
                     }
                 }
             }
-            DriveChoice::Given { .. } => {
-                let blank = joint.bearing.stated().and_then(BlankRatings::of_stated);
-                blank.into_iter().for_each(|blank| unchecked.add(blank, bearing_of(joint)));
+            DriveChoice::Given { gear, .. } => {
+                let gear = gear.as_ref().and_then(|gear| catalogs.gear(gear).ok());
+                let blank = joint.bearing.stated().and_then(|bearing| BlankRatings::of_given(&bearing, gear));
+                if let Some((blank, whose)) = blank {
+                    unchecked.add(blank, whose.map_or_else(|| bearing_of(joint), String::from));
+                }
             }
         }
     }

@@ -35,7 +35,7 @@ pub fn why_infeasible(
     let limited = Limited { space: &study.space, catalogs, joints, stop, deadline };
     let without_limits = DesignSpace { constraints: Constraints::default(), ..study.space.clone() };
     let reasons = match study.space.beyond_exact() {
-        Some(unknown) => obstacles_alone(&without_limits, catalogs, &unknown),
+        Some(unknown) => obstacles_alone(&study.space, &without_limits, catalogs, &unknown),
         None => reasons(&limited, &without_limits),
     };
     let head = match designs {
@@ -49,11 +49,18 @@ pub fn why_infeasible(
 /// The joints at which no drive meets the demand, in words, and a note that the limits were not examined. It stands in
 /// the place of [`reasons`] for a space that the exact search does not cover; `unknown` names the property of the study
 /// that it does not cover.
-fn obstacles_alone(without_limits: &DesignSpace, catalogs: &Catalogs, unknown: &str) -> Vec<String> {
+fn obstacles_alone(
+    space: &DesignSpace,
+    without_limits: &DesignSpace,
+    catalogs: &Catalogs,
+    unknown: &str,
+) -> Vec<String> {
     let mut reasons = joint_obstacles(without_limits, catalogs);
-    reasons.push(format!(
-        "which limits stand in the way is not looked for in a study with {unknown}: leave limits away one by one"
-    ));
+    if space.constraints != Constraints::default() {
+        reasons.push(format!(
+            "which limits stand in the way is not looked for in a study with {unknown}: leave limits away one by one"
+        ));
+    }
     reasons
 }
 

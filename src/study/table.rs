@@ -129,6 +129,8 @@ pub(super) struct DrivenJoint<'c> {
     pub demand: JointDemand,
     /// Torque at the joint divided by torque at the output of the gear; 1 unless stages are behind the gear.
     pub gain_after_gear: f64,
+    /// Mass of the drive that the study states \[kg\]; `None` if the drive is chosen.
+    stated_mass_kg: Option<f64>,
     /// Mass of the arm outboard of the joint plus mass of the joint's drive \[kg\].
     inward_kg: f64,
 }
@@ -152,14 +154,33 @@ pub(super) fn driven_joints<'c>(
     let options: Vec<u32> = problem.options(&complete).collect();
     let inward_kg = problem.masses_inward_kg(&complete);
     let driven = |(piece, demand): (usize, JointDemand)| {
-        let (drive, motion, gain_after_gear) = match problem.sized_joint(piece) {
-            Some(sized) => (sized.table.drive(options[piece] as usize), *sized.table.motion(), 1.0),
+        let inward_kg = inward_kg[piece];
+        Some(match problem.sized_joint(piece) {
+            Some(sized) => {
+                let (drive, motion) = (sized.table.drive(options[piece] as usize), *sized.table.motion());
+                DrivenJoint {
+                    piece,
+                    drive,
+                    motion,
+                    demand,
+                    gain_after_gear: 1.0,
+                    stated_mass_kg: None,
+                    inward_kg,
+                }
+            }
             None => {
                 let fixed = problem.fixed_drive(piece, catalogs)?;
-                (fixed.drive, fixed.motion, fixed.gain_after_gear())
+                DrivenJoint {
+                    piece,
+                    drive: fixed.drive,
+                    motion: fixed.motion,
+                    demand,
+                    gain_after_gear: fixed.gain_after_gear(),
+                    stated_mass_kg: Some(fixed.mass_kg),
+                    inward_kg,
+                }
             }
-        };
-        Some(DrivenJoint { piece, drive, motion, demand, gain_after_gear, inward_kg: inward_kg[piece] })
+        })
     };
     Ok(demands.into_iter().filter_map(driven).collect())
 }
@@ -176,6 +197,7 @@ pub(crate) fn sizing_rows(
         let DrivenJoint { piece, drive, motion, demand, inward_kg, .. } = joint;
         let name = problem.space().pieces[*piece].name();
         let row = JointSizingRow::new(name, drive, motion, demand, *inward_kg);
+        let row = JointSizingRow { mass_kg: joint.stated_mass_kg.or(row.mass_kg), ..row };
         at_cycle_efficiency(row, catalogs, drive, motion, demand)
     };
     Ok(driven_joints(problem, catalogs, chosen)?.iter().map(row).collect())

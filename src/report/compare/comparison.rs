@@ -151,7 +151,10 @@ fn sentence(question: Question, limit: f64, answers: &[Answer]) -> String {
             a.label,
             sought.amount(sought.of(second))
         ),
-        None if winners.len() == 1 && answers.iter().filter(|a| !a.reference).count() > 1 => {
+        // a front without designs does not compete
+        None if winners.len() == 1
+            && answers.iter().filter(|a| !a.reference && a.design.is_some()).count() > 1 =>
+        {
             ", the only one that reaches it".to_string()
         }
         None => String::new(),

@@ -285,16 +285,11 @@ fn out_of_reach(row: &Row, labels: &[String]) -> String {
         .iter()
         .zip(labels)
         .filter(|(a, _)| !a.reached && !a.reference)
-        .map(|(a, label)| match &a.design {
-            Some(d) => {
-                format!(
-                    "{label} ({} {}, design {})",
-                    significant(limited.of(d), 4),
-                    limited.unit(),
-                    d.design_id
-                )
-            }
-            None => format!("{label} (no design)"),
+        .filter_map(|(a, label)| {
+            // an empty front is a matter of what the study offers, and not of this limit; its cells say "none"
+            let d = a.design.as_ref()?;
+            let value = significant(limited.of(d), 4);
+            Some(format!("{label} ({value} {}, design {})", limited.unit(), d.design_id))
         })
         .collect();
     if missed.is_empty() {
