@@ -155,6 +155,10 @@ fn what_a_joint_holds_while_another_one_ramps_is_said() {
     let text = said(&railed);
     let held_nm: f64 = 25.0 * 0.1 * 10.0;
     assert!(text.contains(&format!("w must hold {held_nm:.1} N m while rail ramps")), "{text}");
+    railed["chain"][0]["max_speed_m_s"] = json!(3);
+    let text = said(&railed);
+    let faster_nm = 25.0 * 0.1 * 3.0 / 0.2;
+    assert!(text.contains(&format!("w must hold {faster_nm:.1} N m while rail ramps")), "{text}");
     // a wrist that turns faster needs a stronger drive, which holds the reaction too
     let mut strong = study.clone();
     strong["chain"][2]["drives"] = json!({"gears": ["CSG-40-100"], "motor_models": ["ILM85x26"]});

@@ -139,7 +139,11 @@ pub fn add_prismatic(study: &mut Value, seed: u64) {
     let chain = study["chain"].as_array_mut().expect("a chain");
     for i in 0..1 + dice.below(2) {
         let place = dice.below(chain.len() as u64 + 1) as usize;
-        chain.insert(place, random_prismatic(dice, &format!("slide{i}")));
+        let mut rail = random_prismatic(dice, &format!("slide{i}"));
+        if (seed + i) % 3 == 0 {
+            rail["max_speed_m_s"] = json!(0.2 + 0.4 * (seed % 5) as f64);
+        }
+        chain.insert(place, rail);
     }
     let driven: Vec<(String, bool)> = chain
         .iter()

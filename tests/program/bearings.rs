@@ -365,7 +365,7 @@ fn a_stated_bearing_that_lacks_ratings_is_named_by_the_keys_of_the_file() {
 }
 
 #[test]
-fn a_bearing_of_a_given_drive_without_names_is_said_not_to_be_checked() {
+fn a_bearing_of_a_given_drive_is_checked_with_and_without_names() {
     let mut given = study(6.0, json!({}));
     given["chain"][0] =
         json!({"type": "joint", "name": "j1", "axis": [0, 0, 1], "gear": "CSG-20-100", "mass_kg": 3});
@@ -373,12 +373,16 @@ fn a_bearing_of_a_given_drive_without_names_is_said_not_to_be_checked() {
         "materials": ["Aluminium 6061-T6"],
         "sections": [{"shape": "rectangular_tube", "width_mm": [60, 80], "wall_mm": [2, 3]}]}});
     let words = |study: &Value| run(study, &[]).0.split_whitespace().collect::<Vec<_>>().join(" ");
-    let sentence = "Output bearing not checked in j1: the drive is given without the names of gear and motor, or its gear sits at the motor.";
+    let sentence = "Output bearings of joints whose drives are given hold in the sizing cases of the picks, as far as they are rated: j1 (margin";
     let said = words(&given);
     assert!(said.contains(sentence) && said.contains("The drive of j1 is not checked"), "{said}");
+    given["payload"]["mass_kg"] = json!(30);
+    let said = words(&given);
+    assert!(said.contains("carry too much in the sizing cases of the picks: j1 ("), "{said}");
+    given["payload"]["mass_kg"] = json!(6);
     given["chain"][0]["motor"] = json!("F11-5");
     let holds = words(&given);
-    assert!(!holds.contains("Output bearing not checked") && !holds.contains("carries too much"), "{holds}");
+    assert!(!holds.contains("whose drives are given") && !holds.contains("carries too much"), "{holds}");
     given["payload"]["mass_kg"] = json!(30);
     let too_much = "The output bearing of j1 carries too much in";
     assert!(words(&given).contains(too_much));

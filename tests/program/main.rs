@@ -8,6 +8,7 @@ mod bearings;
 mod book;
 mod browser;
 mod capacity;
+mod capacity_of_supports;
 mod catalog;
 mod catalog_cli;
 mod cli;
