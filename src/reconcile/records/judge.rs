@@ -383,9 +383,7 @@ impl<'a> Judged<'a> {
                 (high - low).to_degrees()
             );
         }
-        let parameters =
-            vec![("peak_to_peak_rad".into(), vec![size]), ("sin_cos_sin2_cos2_rad".into(), each)];
-        Stated { what, state: State::Found, parameters, words }
+        error_stated(what, size, each, words)
     }
 
     /// Fits of the transmission error of the output at both ends of the interval of the compliance, if the rotor's
@@ -411,9 +409,7 @@ impl<'a> Judged<'a> {
         let size = error_size(&self.model.fitted, columns, 0.0, std::f64::consts::TAU / ratio, ratio);
         let mut each = columns.map(|c| self.model.fitted.estimate(|of| -of(c))).to_vec();
         let size = widen_error(size, &mut each);
-        let parameters =
-            vec![("peak_to_peak_rad".into(), vec![size]), ("sin_cos_sin2_cos2_rad".into(), each)];
-        Stated { what, state: State::Found, parameters, words: String::new() }
+        error_stated(what, size, each, String::new())
     }
 
     /// Result for the frequency of free vibration while the motor stands still.
@@ -536,6 +532,20 @@ fn error_size(fitted: &Fitted, columns: [usize; 4], low: f64, high: f64, ratio: 
     })
 }
 
+/// Result for a transmission error named `what`: its size from peak to peak and its four amplitudes. It is not
+/// identified if the interval of its size contains zero: the records then do not tell it from its absence.
+fn error_stated(what: &'static str, size: Estimate, each: Vec<Estimate>, words: String) -> Stated {
+    let is_shown = is_positive(&size);
+    let parameters = vec![("peak_to_peak_rad".into(), vec![size]), ("sin_cos_sin2_cos2_rad".into(), each)];
+    match is_shown {
+        true => Stated { what, state: State::Found, parameters, words },
+        false => {
+            let words = "the interval of its size contains zero".into();
+            Stated { what, state: State::NotIdentified, parameters, words }
+        }
+    }
+}
+
 /// Widens the interval of the size of a transmission error (from peak to peak) and the intervals of its amplitudes.
 /// Their half widths become at least [`LEAST_LAW_PART`] of the size and of the largest amplitude. There are two
 /// reasons: no gear has waves of these orders only, and the link does not follow fast waves. Every amplitude is widened
@@ -566,4 +576,16 @@ fn law_stated(curve: &Curve, law: Law, model: &TwistModel) -> Stated {
         (false, _) => "the interval of its size or of its torque contains zero",
     };
     Stated { what: law.what(), state, parameters, words: words.into() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_whose_size_may_be_zero_is_not_found() {
+        let of = |low| Estimate { value: 1.78e-4, low: Some(low), high: Some(2.19e-2) };
+        let state = |low| error_stated("transmission_error", of(low), Vec::new(), String::new()).state;
+        assert_eq!([state(-2.46e-4), state(6.3e-5)], [State::NotIdentified, State::Found]);
+    }
 }
