@@ -1,8 +1,9 @@
 //! Bodies: rigid parts on a link or a joint, with mass, centre of gravity and inertia as CAD programs give them.
 //!
 //! The centre of gravity is measured from the start of the element, and the inertia is taken about it. Both are written
-//! in the carried frame, which turns with the joints inboard. The vector of a link is written in it too. The mass of
-//! bodies is added to everything else that an element weighs.
+//! in the frame that carries the body: it turns with the joints inboard, and for a body that rotates or travels with its
+//! own joint it moves with that joint too. The vector of a link is written in the frame of its joints inboard. The mass
+//! of bodies is added to everything else that an element weighs.
 
 use super::keys::{JOINT_BODY, LINK_BODY};
 use super::prismatic_keys::PRISMATIC_BODY;
@@ -19,9 +20,9 @@ const ROUNDING: f64 = 1e-6;
 pub struct RigidBody {
     /// Mass of the body \[kg\].
     pub mass_kg: f64,
-    /// Position of the centre of gravity from the start of the element, in the carried frame \[m\].
+    /// Position of the centre of gravity from the start of the element, in the frame that carries the body \[m\].
     pub cg_m: Vector3<f64>,
-    /// Inertia about the centre of gravity, in axes of the carried frame \[kg m²\].
+    /// Inertia about the centre of gravity, in axes of the frame that carries the body \[kg m²\].
     pub inertia_kgm2: Matrix3<f64>,
 }
 

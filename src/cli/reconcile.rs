@@ -125,8 +125,8 @@ fn kept_before(out: &Path, campaign: &Campaign, hash_of_catalogs: &str) -> Optio
     let is_there = |(name, listed): (&String, &String)| {
         std::fs::read(out.join(name)).is_ok_and(|bytes| hash(&bytes) == *listed)
     };
-    // the page is written last, so a verdict with a page is complete
-    let is_whole = |files: &BTreeMap<String, String>| files.contains_key(PAGE) && files.iter().all(is_there);
+    let has_all = verdict[NOT_WRITTEN].as_array().is_some_and(Vec::is_empty);
+    let is_whole = |files: &BTreeMap<String, String>| has_all && files.iter().all(is_there);
     let files = listed(&verdict).filter(|files| same && is_whole(files))?;
     let text = files.contains_key(TEXT).then(|| std::fs::read_to_string(out.join(TEXT)).ok())??;
     let out = out.display();
@@ -181,7 +181,10 @@ fn keep(
             files.extend(of_page);
             left_out = names;
         }
-        Err(e) => extra.missing.push(format!("the page: {e}")),
+        Err(e) => {
+            extra.missing.push(format!("the page: {e}"));
+            change_verdict(&mut files, NOT_WRITTEN, json!(extra.missing));
+        }
     }
     say_missing(&extra.missing_with(&left_out), log);
     Ok((files, terminal))

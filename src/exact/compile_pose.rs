@@ -34,7 +34,7 @@ pub(super) struct JointNeeds {
     pub tilts: bool,
     /// Whether the output bearing of some drive has a limit that must be checked.
     pub is_checked: bool,
-    /// Angular acceleration of the joint in a ramp \[rad/s²\].
+    /// Acceleration of the joint in a ramp \[rad/s²\], or of a rail \[m/s²\].
     pub acceleration_rad_s2: f64,
     /// Ratio of the deceleration of the joint in its emergency stop to `acceleration_rad_s2`, at least 1.
     pub stop_factor: f64,

@@ -79,8 +79,8 @@ pub(super) struct LinkBox {
     /// Least ratio of stress to strength: per axial force \[1/N\], per moment about y, per moment about z and per
     /// torsional moment \[1/(N m)\]. Zero if the strength of a member is unknown.
     pub stress: [f64; 4],
-    /// Whether some member is a round tube. Its bending stresses about two axes add as a vector, which is
-    /// less than their sum.
+    /// Whether some member is a round tube or bar, or has no known strength. Bending stresses of a round section about two
+    /// axes add as a vector, which is less than their sum.
     pub round: bool,
     /// Least cost of the material \[EUR/m\].
     pub cost_eur_per_m: f64,

@@ -71,7 +71,8 @@ pub(super) struct Pose {
     /// Inertia of the payload about the world's origin.
     pub payload_inertia: Matrix6<f64>,
     /// The rows of this case, tip first. A row gives the generalized force on one strain coordinate. There is a row for
-    /// each coordinate that some load deflects, and in any case for the torsion of each joint.
+    /// each coordinate that moves the end of its piece and that some load strains, and in any case for the torsion of
+    /// each joint.
     pub rows: Vec<Row>,
     /// Loads on the end sections of the tubes whose section is chosen, tip first.
     pub stress: Vec<StressRow>,

@@ -177,7 +177,7 @@ pub fn all_hold(checks: &[Check]) -> bool {
     checks.iter().all(Check::holds)
 }
 
-/// The binding check: the check with the smallest torque margin (allowed over needed torque) among the checks that
+/// The binding check: the check with the smallest torque margin ([`Check::torque_margin`]) among the checks that
 /// could be made. `None` if no check could be made.
 pub fn binding(checks: &[Check]) -> Option<&Check> {
     let made = checks.iter().filter_map(|c| Some((c.torque_margin()?, c)));

@@ -275,7 +275,7 @@ impl DriveTable<'_> {
         let ladder = self.ladder();
         let reach = ladder.reach;
         let mut start = (*step).min(reach.len());
-        // `reach[step]` has the weakest value of each limit up to this step, so it only grows along the ladder. The
+        // `reach[step]` has the most permissive value of each limit up to this step, so it only grows along the ladder. The
         // first step that may meet the demand of some lane can therefore be found from either side.
         while start > 0 && demands.held_by(&reach[start - 1], wanted) != 0 {
             start -= 1;

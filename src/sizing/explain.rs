@@ -388,14 +388,26 @@ impl<'c> DriveTable<'c> {
     fn relaxation(&self, kind: RelaxationKind, demand: &JointDemand) -> Option<Relaxation> {
         (1..100).rev().find_map(|percent| {
             let factor = f64::from(percent) / 100.0;
-            let (motion, relaxed) = match kind {
-                RelaxationKind::Torque => (self.motion().with_torques_times(factor), demand.scaled(factor)),
-                RelaxationKind::Speed => self.slowed(factor, demand),
-            };
-            let drive = self.lightest(&motion, &relaxed)?;
+            let drive = match kind {
+                RelaxationKind::Torque => self.relieved(factor, demand),
+                RelaxationKind::Speed => {
+                    let (motion, slower) = self.slowed(factor, demand);
+                    self.lightest(&motion, &slower)
+                }
+            }?;
             let (has_duty, slides) = (demand.stated_peak_nm > 0.0, drive.gear.kind.slides());
             Some(Relaxation { kind, factor, has_duty, slides, drive: drive.name() })
         })
+    }
+
+    /// The lightest drive that meets `demand` if every torque is multiplied by `factor`; `None` if no drive does. The
+    /// torques of a duty that the study states are part of the motion, so that the limits of the drives change with them.
+    fn relieved(&self, factor: f64, demand: &JointDemand) -> Option<Drive<'c>> {
+        let relieved = demand.scaled(factor);
+        match self.motion().stated {
+            None => self.first_fit(&relieved).map(|i| self.drive(i)),
+            Some(_) => self.lightest(&self.motion().with_torques_times(factor), &relieved),
+        }
     }
 
     /// The motion of the joint, and `demand`, if speed and acceleration are multiplied by `factor`.

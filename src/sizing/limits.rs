@@ -257,7 +257,7 @@ fn gear_stop_nm(gear: &Gear) -> Rating {
 
 /// Largest torque at the joint in an emergency stop that an actuator can brake \[N m\]: T_peak - s J_out α. T_peak is
 /// the peak torque of the actuator. The factor s of the stop is the emergency deceleration over the acceleration α of a
-/// ramp. J_out is the inertia of the rotor at the output, which the motor must brake too. Infinite for other drives,
+/// ramp, but at least 1. J_out is the inertia of the rotor at the output, which the motor must brake too. Infinite for other drives,
 /// whose rotor does not load the gear.
 pub(super) fn actuator_stop_nm(drive: &Drive, motion: &JointMotion) -> Rating {
     if drive.gear.kind != GearKind::Actuator {

@@ -15,7 +15,8 @@ pub struct MotionRequirement {
     /// Deceleration of the tip in an emergency stop \[m/s²\]; `None` means twice the normal acceleration v / t_a.
     pub emergency_deceleration_m_s2: Option<f64>,
     /// Smallest distance from axis to tip that is used to convert tip speed to joint speed \[m\]. Without it a roll
-    /// joint would have to turn infinitely fast; with 0.05 m it would need 191 rpm.
+    /// joint would have to turn infinitely fast; with 0.05 m it needs 191 rpm for a
+    /// tip speed of 1 m/s.
     pub min_lever_m: f64,
     /// The duty cycle over which mean torque, mean speed and motor heat are taken.
     pub duty_cycle: DutyCycle,

@@ -127,16 +127,17 @@ pub struct DriveTable<'c> {
     /// lighter one has no stricter limit.
     ladder: Vec<u32>,
     ladder_limits: Vec<DriveLimits>,
-    /// The weakest value of each limit among the drives up to a step of the ladder, for each step. If these limits do
-    /// not meet a demand, no drive up to this step does, so the search for the lightest drive starts after it.
+    /// For each step of the ladder, the most permissive value of each limit among the drives up to this step (the largest
+    /// torque, the least heat, and so on). If a demand exceeds one of these values, no drive up to this step meets it, so
+    /// the search for the lightest drive starts after it.
     ladder_reach: Vec<DriveLimits>,
-    /// The weakest value of each limit among the steps of a flight, for each flight. A flight is [`STEPS_OF_FLIGHT`]
+    /// For each flight, the most permissive value of each limit among its steps. A flight is [`STEPS_OF_FLIGHT`]
     /// successive steps of the ladder.
     ladder_flights: Vec<DriveLimits>,
 }
 
-/// Number of successive steps of the ladder that form a flight. They are skipped together if even the weakest of their
-/// limits do not meet a demand.
+/// Number of successive steps of the ladder that form a flight. They are skipped together if even the most
+/// permissive of their limits do not meet a demand.
 const STEPS_OF_FLIGHT: usize = 8;
 
 /// The ladder: the drives that can be the lightest for some demand, lightest first.
@@ -149,8 +150,8 @@ pub(super) struct Ladder<'t> {
 }
 
 impl<'t> Ladder<'t> {
-    /// The steps of the ladder from `start` on, in flights of [`STEPS_OF_FLIGHT`] steps: the weakest limits of each
-    /// flight, and the range of its steps.
+    /// The steps of the ladder from `start` on, in flights of [`STEPS_OF_FLIGHT`] steps: the most permissive limits
+    /// of each flight, and the range of its steps.
     #[inline(always)]
     pub(super) fn flights_from(self, start: usize) -> impl Iterator<Item = (&'t DriveLimits, Range<usize>)> {
         let flights = self.flights.iter().enumerate().skip(start / STEPS_OF_FLIGHT);
@@ -257,7 +258,7 @@ impl<'c> DriveTable<'c> {
     }
 
     /// Whether some step of the ladder covers `limits`: none of its limits is stricter than the same limit of `limits`.
-    /// If the weakest limits of a flight do not cover `limits`, no step of the flight does, and the flight is skipped.
+    /// If the most permissive limits of a flight do not cover `limits`, no step of the flight does, and the flight is skipped.
     fn is_covered(&self, limits: &DriveLimits) -> bool {
         let flights = self.ladder_flights.iter().zip(self.ladder_limits.chunks(STEPS_OF_FLIGHT));
         let mut near = flights.filter(|(most, _)| most.cover(limits)).flat_map(|(_, flight)| flight);
@@ -350,7 +351,8 @@ impl<'c> DriveTable<'c> {
         self.pairs.get(index).map(|pair| self.drive_of(*pair)).or_else(|| self.all_drives().next())
     }
 
-    /// Mass of the drive with the index `index`, including extras \[kg\].
+    /// Mass of gear, motor and extras (housing, brake, encoders, flange, cables) of the drive with the index `index`
+    /// \[kg\].
     #[inline]
     pub fn mass_kg(&self, index: usize) -> f64 {
         self.masses_kg[index]

@@ -3,8 +3,8 @@
 //! A bearing transmits the force and the moment of everything outboard of it. These are due to gravity and load, and to
 //! the acceleration or emergency stop of one joint while the others are at rest. A joint may turn or slide (a rail). A
 //! joint *outboard* of the bearing accelerates only what is outboard of that joint. The joint of the bearing and the
-//! joints *inboard* of it accelerate everything outboard of the bearing. In this way the stop of a shoulder also loads the bearing of the waist, which is
-//! inboard of the shoulder.
+//! joints *inboard* of it accelerate everything outboard of the bearing. In this way the stop of a shoulder also loads
+//! the bearing of the waist, which is inboard of the shoulder.
 //!
 //! Forces are added as vectors before their norms are taken. The link attaches at some distance along the joint's axis
 //! from the face of the flange (the lever). The lever times the radial force is added to the moment, as in the vendor's

@@ -11,10 +11,12 @@ use crate::sizing::check::Check;
 
 impl SpaceJoint {
     /// Whether the study states an output bearing of this joint that is checked without a drive: the drive is given
-    /// without the names of gear and motor, or its gear sits at the motor.
+    /// without the names of gear and motor, or its gear sits at the motor. The bearing of a passive joint is not checked,
+    /// because its speed is that of other joints.
     pub(crate) fn has_bearing_of_its_own(&self, catalogs: &Catalogs) -> bool {
         let is_of_drive = self.drive.named_parts(catalogs).is_some() && self.stages.after == Stage::NONE;
-        !self.drive.is_sized() && !is_of_drive && self.bearing.stated().is_some()
+        let is_given = !self.drive.is_sized() && self.coupled.is_none();
+        is_given && !is_of_drive && self.bearing.stated().is_some()
     }
 }
 

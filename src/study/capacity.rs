@@ -12,7 +12,7 @@
 
 use super::chosen::{chosen_design, why_not_held};
 use super::definition::Study;
-use super::largest_speed::{LargestSpeed, largest_speed};
+use super::largest_speed::{LargestSpeed, largest_speed, with_these_drives};
 use super::overload::{Overload, overload};
 use super::reaction_remarks::reaction_remark_on;
 use super::refusal::Refusal;
@@ -114,12 +114,13 @@ pub fn capacity_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Resu
     found.largest_speed = largest_speed(&problem, arm.slot_options(), catalogs);
     found.remarks.extend(duty_remark(&space));
     found.remarks.extend(unjudged_remark(&problem, catalogs));
-    let loaded = loaded(&space, &study.own_payloads, found.window.most.payload_kg);
-    found.remarks.extend(loaded.and_then(|loaded| {
-        let problem = ArmProblem::new(&loaded, catalogs);
-        let whose = "in the sizing cases with the largest payload";
-        reaction_remark_on(&problem, catalogs, &chosen, whose)
-    }));
+    found.remarks.extend(reactions_remark(
+        &problem,
+        arm.slot_options(),
+        &study.own_payloads,
+        &found,
+        catalogs,
+    ));
     let built = problem.arm_of(&arm);
     found.remarks.extend(built.and_then(|built| limits_remark(&space, &built, &study.own_payloads)));
     Ok(found)
@@ -130,11 +131,10 @@ pub fn capacity_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Resu
 /// `own` state a payload of their own and keep it. If every sizing case is among them, the payload is varied in all of
 /// them, and is the same in all.
 fn capacity(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], own: &[usize]) -> Capacity {
-    let (kept, mut loaded): (Vec<usize>, Vec<usize>) =
-        space.sizing_cases.iter().partition(|case| own.contains(case));
+    let loaded = varied(space, own);
+    let kept: Vec<usize> = space.sizing_cases.iter().copied().filter(|case| own.contains(case)).collect();
     let mut remarks = Vec::new();
-    if loaded.is_empty() {
-        loaded.clone_from(&space.sizing_cases);
+    if !kept.is_empty() && kept.len() == space.sizing_cases.len() {
         remarks
             .push("Every pose states a payload of its own; all of them take the same payload here.".into());
     } else if !kept.is_empty() {
@@ -152,14 +152,35 @@ fn capacity(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], own: &[us
     Capacity::new(window(&space.sizing_cases, &loaded), table, remarks)
 }
 
-/// The space with this payload \[kg\] in all cases but those with the indices `own`, which state a payload of their own;
-/// in all cases if every one does. `None` if no payload is the largest.
-fn loaded(space: &DesignSpace, own: &[usize], payload_kg: f64) -> Option<DesignSpace> {
-    let mut loaded = space.clone();
-    let all_own = own.len() == loaded.cases.len();
-    let varied = loaded.cases.iter_mut().enumerate().filter(|(case, _)| all_own || !own.contains(case));
-    varied.for_each(|(_, case)| case.payload.mass_kg = payload_kg);
-    payload_kg.is_finite().then_some(loaded)
+/// A sentence on what the drives must hold while other joints move, with the largest payload of `found` in the cases in
+/// which the payload is varied. `options` are those of the design, one for each slot. `None` if there is nothing to say,
+/// or if no payload is the largest.
+fn reactions_remark(
+    problem: &ArmProblem,
+    options: &[u32],
+    own: &[usize],
+    found: &Capacity,
+    catalogs: &Catalogs,
+) -> Option<String> {
+    let most_kg = found.window.most.payload_kg;
+    if !found.window.holds() || !most_kg.is_finite() {
+        return None;
+    }
+    // with the drives that the design has, and not with those that first fit would take for the largest payload
+    let (mut space, options) = with_these_drives(problem, options);
+    for case in varied(&space, own) {
+        space.cases[case].payload.mass_kg = most_kg;
+    }
+    let loaded = ArmProblem::new(&space, catalogs);
+    let chosen: Vec<u32> = loaded.level_slots().iter().map(|&slot| options[slot]).collect();
+    reaction_remark_on(&loaded, catalogs, &chosen, "in the sizing cases with the largest payload")
+}
+
+/// The sizing cases in which the payload is varied: all but those with the indices `own`, which state a payload of their
+/// own. If every sizing case is among them, it is varied in all.
+fn varied(space: &DesignSpace, own: &[usize]) -> Vec<usize> {
+    let varied: Vec<usize> = space.sizing_cases.iter().copied().filter(|case| !own.contains(case)).collect();
+    if varied.is_empty() { space.sizing_cases.clone() } else { varied }
 }
 
 /// A sentence that names the drives that are not judged; `None` if there are none. A given drive is not judged if the
@@ -226,7 +247,7 @@ fn limits_remark(space: &DesignSpace, built: &Arm, own: &[usize]) -> Option<Stri
         (too_far || too_low).then(|| Overload { piece: "tip".into(), check })
     };
     let stated_kg = varied.iter().map(|&case| cases[case].payload.mass_kg).fold(0.0, f64::max);
-    let judged = "Drives, output bearings and the stress in links are judged.";
+    let judged = "Drives, output bearings, guides and the stress in links are judged.";
     Some(match breaks(stated_kg) {
         Some(broken) => format!(
             "{judged} The limits of the study are not met even at {} kg: {} in a judged pose.",

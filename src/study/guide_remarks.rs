@@ -54,7 +54,7 @@ struct OnGuide<'s> {
 }
 
 /// Sentences on the force across the travel and the moment on every guide: the largest of the picks of `front` in the
-/// judged cases.
+/// cases of the study.
 pub(super) fn guide_remarks(problem: &ArmProblem, front: &FrontTable) -> Vec<String> {
     let picks = picks(&designs(front));
     let picked: Option<Vec<Vec<u32>>> =
@@ -67,7 +67,7 @@ pub(super) fn guide_remarks_on(problem: &ArmProblem, chosen: &[u32]) -> Vec<Stri
     sentences(problem, &[chosen.to_vec()], "")
 }
 
-/// Sentences on the largest loads on every guide in these `designs`, given by their options, in the judged cases.
+/// Sentences on the largest loads on every guide in these `designs`, given by their options, in the cases of the study.
 /// `whose` are words that say which designs they are.
 fn sentences(problem: &ArmProblem, designs: &[Vec<u32>], whose: &str) -> Vec<String> {
     let mut guides = guides(problem);
@@ -82,7 +82,7 @@ fn sentences(problem: &ArmProblem, designs: &[Vec<u32>], whose: &str) -> Vec<Str
             guide.in_stop.words()
         )
     });
-    let bear = format!("Guides bear across their travel, at most in the judged cases{whose}");
+    let bear = format!("Guides bear across their travel, at most in all cases{whose}");
     let mut out = vec![format!("{bear}: {}.", words.collect::<Vec<_>>().join("; "))];
     let lacking: Vec<String> = guides.iter().filter_map(OnGuide::unknown).collect();
     if !lacking.is_empty() {
@@ -110,10 +110,14 @@ fn guides<'s>(problem: &'s ArmProblem) -> Vec<OnGuide<'s>> {
     problem.space().pieces.iter().filter_map(guide).collect()
 }
 
-/// Adds the loads of the designs with these options in the judged cases. `None` if one of them is no design of the
-/// problem.
+/// Adds the loads of the designs with these options in the judged cases and in the sizing cases. `None` if one of them
+/// is no design of the problem.
 fn load_by(guides: &mut [OnGuide], problem: &ArmProblem, designs: &[Vec<u32>]) -> Option<()> {
-    let cases = problem.load_cases();
+    let space = problem.space();
+    let cases: Vec<usize> = (0..space.cases.len())
+        .filter(|case| space.judged_cases.contains(case) || space.sizing_cases.contains(case))
+        .collect();
+    let cases: Vec<LoadCase> = cases.iter().map(|&case| space.load_case(&space.cases[case])).collect();
     for options in designs {
         let arm = problem.arm(options)?;
         for case in &cases {

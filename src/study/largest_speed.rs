@@ -7,6 +7,7 @@
 use super::overload::{Overload, overload};
 use super::window::largest_held;
 use crate::catalog::Catalogs;
+use crate::sizing::RAD_S_PER_RPM;
 use crate::space::design_space::{DesignSpace, DriveChoice, SpacePiece};
 use crate::space::problem::ArmProblem;
 use serde_json::{Value, json};
@@ -19,7 +20,7 @@ pub struct LargestSpeed {
     /// The study's speed of the tip times this ratio \[m/s\]. `None` if every joint has a speed of its own, so that none
     /// follows from the speed of the tip.
     pub tip_speed_m_s: Option<f64>,
-    /// The joints for which the study states a speed, base to tip, with this speed times the ratio.
+    /// The joints for which the study states a speed, base to tip, with their speeds at this ratio.
     pub own_speeds: Vec<OwnSpeed>,
     /// Name of the joint that fails beyond this speed.
     pub joint: String,
@@ -58,9 +59,8 @@ pub(super) fn largest_speed(
     catalogs: &Catalogs,
 ) -> Option<LargestSpeed> {
     let (space, options) = with_these_drives(problem, options);
-    let own_speeds: Vec<OwnSpeed> = space.pieces.iter().filter_map(own_speed).collect();
     let follows_the_tip = space.pieces.iter().any(follows_the_tip);
-    if own_speeds.is_empty() && !follows_the_tip {
+    if !follows_the_tip && space.pieces.iter().all(|piece| own_speed(piece).is_none()) {
         return None;
     }
     let too_fast = |factor: f64| overload(&hastened(&space, factor), catalogs, &options, &space.sizing_cases);
@@ -71,16 +71,20 @@ pub(super) fn largest_speed(
     Some(LargestSpeed {
         factor,
         tip_speed_m_s: follows_the_tip.then(|| factor * space.motion.tip_speed_m_s),
-        own_speeds: own_speeds.into_iter().map(|own| OwnSpeed { speed: factor * own.speed, ..own }).collect(),
+        own_speeds: hastened(&space, factor).pieces.iter().filter_map(own_speed).collect(),
         joint: piece,
         check,
     })
 }
 
-/// The speed that the study states for a joint or a rail; `None` if it states none, or for any other piece.
+/// The speed that the study states for a joint or a rail, or the fastest phase of the joint's duty if that is faster.
+/// `None` if the study states no speed, or for any other piece.
 fn own_speed(piece: &SpacePiece) -> Option<OwnSpeed> {
     let (speed, slides) = match piece {
-        SpacePiece::Joint(joint) => (joint.max_speed_rad_s?, false),
+        SpacePiece::Joint(joint) => {
+            let of_duty = joint.duty.as_ref().map_or(0.0, |duty| duty.fastest_rpm() * RAD_S_PER_RPM);
+            (joint.max_speed_rad_s?.max(of_duty), false)
+        }
         SpacePiece::Prismatic(rail) => (rail.max_speed_m_s?, true),
         SpacePiece::Link(_) | SpacePiece::Choice(_) => return None,
     };
@@ -102,7 +106,7 @@ fn follows_the_tip(piece: &SpacePiece) -> bool {
 /// A copy of the problem's space in which each joint may have only its drive in `options`, and the options of the same
 /// design in this copy. The number of a drive in its table changes with the speed, because the table leaves out drives
 /// that would turn too fast. In the copy each table has at most one drive, so its number does not change.
-fn with_these_drives(problem: &ArmProblem, options: &[u32]) -> (DesignSpace, Vec<u32>) {
+pub(super) fn with_these_drives(problem: &ArmProblem, options: &[u32]) -> (DesignSpace, Vec<u32>) {
     let (mut space, mut pinned) = (problem.space().clone(), options.to_vec());
     // slots of effects and bearings are left out, because they have no drive
     for (slot, &option) in

@@ -8,6 +8,7 @@ use crate::report::picks::{designs, picks};
 use crate::sizing::bearing_checks::bearing_margin;
 use crate::sizing::check::{Check, CheckState};
 use crate::space::design::number_of;
+use crate::space::design_space::SpaceJoint;
 use crate::space::problem::ArmProblem;
 
 /// An output bearing, with its checks in the design in which its margin is the smallest.
@@ -36,7 +37,9 @@ pub(super) fn stated_bearing_remarks_on(
     catalogs: &Catalogs,
     chosen: &[u32],
 ) -> Vec<String> {
-    sentences(in_design(problem, catalogs, chosen), "in the sizing cases")
+    let mut out = sentences(in_design(problem, catalogs, chosen), "in the sizing cases");
+    out.extend(of_passive_joints(problem));
+    out
 }
 
 /// Sentences on these bearings in the picks of a front.
@@ -51,7 +54,18 @@ pub(super) fn stated_bearing_remarks(
     };
     let picks = picks(&designs(front));
     let all = picks.iter().filter_map(|pick| of_pick(&pick.design.design_id)).flatten();
-    sentences(all.collect(), "in the sizing cases of the picks")
+    let mut out = sentences(all.collect(), "in the sizing cases of the picks");
+    out.extend(of_passive_joints(problem));
+    out
+}
+
+/// A sentence that names the passive joints whose stated bearings are not checked; `None` if there are none.
+fn of_passive_joints(problem: &ArmProblem) -> Option<String> {
+    let is_passive = |joint: &SpaceJoint| joint.coupled.is_some() && joint.bearing.stated().is_some();
+    let passive = problem.space().joints().filter(|(_, joint)| is_passive(joint));
+    let names: Vec<&str> = passive.map(|(_, joint)| joint.name.as_str()).collect();
+    (!names.is_empty())
+        .then(|| format!("Output bearing not checked in {}: the joint turns with others.", names.join(", ")))
 }
 
 fn in_design(problem: &ArmProblem, catalogs: &Catalogs, chosen: &[u32]) -> Vec<Worst> {

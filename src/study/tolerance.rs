@@ -38,7 +38,8 @@ use std::f64::consts::TAU;
 use std::str::FromStr;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Number of samples that are computed before they are counted.
+/// Number of samples that are evaluated in parallel and then added to the tally, so that only one batch is held in
+/// memory. The result does not depend on this number.
 const SAMPLES_PER_BATCH: u32 = 256;
 
 /// Names of the ratings that may scatter, each with the default scatter for a name without a value.

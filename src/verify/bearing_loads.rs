@@ -1,9 +1,9 @@
 //! Loads on the output bearings in a pose, as linear functions of the weights and inertias of parts.
 //!
 //! A bearing is loaded by the weight of everything outboard of its joint, and by inertia forces. These arise while one
-//! joint, or one rail, ramps (changes its speed) or stops and the other joints are at rest. By virtual work, the component of an
-//! inertia force or moment along a direction is the coupling `Σ m (v · w)` of two motions: the motion of the joint that
-//! accelerates, and a *probe*. A probe is a virtual motion that shifts or tilts everything outboard of the bearing
+//! joint, or one rail, ramps (changes its speed) or stops and the other joints are at rest. By virtual work, the
+//! component of an inertia force or moment along a direction is the coupling `Σ m (v · w)` of two motions: the motion of
+//! the joint that accelerates, and a *probe*. A probe is a virtual motion that shifts or tilts everything outboard of the bearing
 //! along that direction. Couplings are entries of the inertia matrix of [`super::pose`] with probes as further
 //! coordinates. Only mass outboard of both joints contributes, because all other mass is at rest in one of the two
 //! motions.

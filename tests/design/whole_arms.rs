@@ -51,7 +51,7 @@ fn whole_arm(seed: u64) -> (Value, Catalogs) {
     study["motion"]["tip_speed_m_s"] = json!(0.4);
     add_bearings(&mut study, seed);
     add_extras(&mut study, seed);
-    if seed % 4 == 0 {
+    if seed % 8 == 4 {
         add_prismatic(&mut study, seed);
     }
     change_bearings(&mut catalogs, seed);

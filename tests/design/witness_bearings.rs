@@ -16,6 +16,15 @@ use std::sync::atomic::AtomicBool;
 /// A waist that hardly twists, a shoulder and an elbow, each with a choice of gears; the waist carries the moment of the
 /// whole arm.
 fn study(motion: Value, waist: Value, catalogs: &Catalogs) -> Study {
+    read(&text(motion, waist), catalogs)
+}
+
+fn read(text: &Value, catalogs: &Catalogs) -> Study {
+    let document = Document::parse("bearings", &text.to_string()).expect("JSON");
+    read_study(document, catalogs).unwrap_or_else(|fault| panic!("{fault}"))
+}
+
+fn text(motion: Value, waist: Value) -> Value {
     let tubes = |diameters_mm: Value| {
         json!({"materials": ["Aluminium 6061-T6"],
             "sections": [{"shape": "round_tube", "diameter_mm": diameters_mm, "wall_mm": [3]}]})
@@ -37,8 +46,7 @@ fn study(motion: Value, waist: Value, catalogs: &Catalogs) -> Study {
     if let Some(fields) = waist.as_object() {
         text["chain"][0].as_object_mut().expect("a joint").extend(fields.clone());
     }
-    let document = Document::parse("bearings", &text.to_string()).expect("JSON");
-    read_study(document, catalogs).unwrap_or_else(|fault| panic!("{fault}"))
+    text
 }
 
 /// Swift ramps load bearings as they run, stops as they stop, long lives as they rest.
@@ -82,6 +90,30 @@ fn one_wrong_number_of_bearings_is_found_and_each_decides_somewhere() {
     let idle: Vec<&str> =
         NUMBERS.iter().zip(decides).filter(|(_, d)| !d).map(|((name, _), _)| *name).collect();
     assert!(idle.is_empty(), "no study depends on {idle:?}");
+}
+
+/// The ramp of a rail under the waist loads the waist's bearing: with a quicker rail the front changes, search and
+/// verifier agree on both fronts, and each finds fault with the other's.
+#[test]
+fn the_speed_of_a_rail_decides_and_a_front_of_another_speed_is_refused() {
+    let catalogs = Catalogs::builtin();
+    let at = |speed_m_s: f64| {
+        let mut text = text(json!({"ramp_time_s": 0.25, "emergency_deceleration_m_s2": 10}), Value::Null);
+        let rail = json!({"type": "prismatic", "name": "rail", "axis": [1, 0, 0], "stiffness_n_per_m": 1e8,
+            "max_speed_m_s": speed_m_s});
+        text["chain"].as_array_mut().expect("a chain").insert(0, rail);
+        text["poses"] = json!([{"pose": {"rail_mm": 0, "waist_deg": 0, "shoulder_deg": 0, "elbow_deg": 0}},
+            {"pose": {"rail_mm": 0, "waist_deg": 0, "shoulder_deg": -40, "elbow_deg": 90}}]);
+        read(&text, &catalogs)
+    };
+    let [slow, fast] = [at(0.1), at(12.0)];
+    let fronts = [&slow, &fast].map(|study| front(study, &catalogs, &catalogs));
+    assert_ne!(fronts[0], fronts[1], "the rail decides nothing");
+    for (study, rows) in [&slow, &fast].into_iter().zip(&fronts) {
+        assert_eq!(faults(study, &catalogs, rows), [0, 0]);
+    }
+    assert_ne!(faults(&fast, &catalogs, &fronts[0]), [0, 0]);
+    assert_ne!(faults(&slow, &catalogs, &fronts[1]), [0, 0]);
 }
 
 /// Search and verifier have the same formula of life: at no life of a ladder do they disagree, and the ladder is fine

@@ -292,6 +292,11 @@ fn verdict_json_names_a_plot_in_whose_place_someone_elses_file_stands() {
     let (code, text) = said(&mut command(here.path(), &["check", "out"]));
     assert!(code == 9 && text.contains("not written: plots/channels.svg"), "{code} {text}");
     assert_eq!(fs::read_to_string(at("out/plots/channels.svg")).expect("a file"), "mine");
+    // once the place is free, the same command makes the whole result
+    fs::remove_file(at("out/plots/channels.svg")).expect("removed");
+    succeeds(here.path(), &["reconcile", campaign.to_str().expect("text"), "--out", "out"]);
+    succeeds(here.path(), &["check", "out"]);
+    assert!(fs::read_to_string(at("out/plots/channels.svg")).expect("a file").starts_with("<svg"));
 }
 
 #[cfg(unix)]

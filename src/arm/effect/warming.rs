@@ -23,8 +23,8 @@ pub struct Softening {
     pub change: f64,
     /// Number of rows after which 63 % of this change is reached.
     pub rows: f64,
-    /// Part of the change that is already present when the reference of a displacement is read: 1 if the reference is
-    /// read just before the displacement, 0 if it was read before all tests.
+    /// Fraction of the change reached by a row that is already present when the reference of its displacement is read: 1
+    /// if the reference is read just before the displacement, 0 if it was read before all tests.
     pub reference: f64,
 }
 

@@ -134,8 +134,10 @@ fn check(row: &Row) {
 fn ratings_in_order(row: &Row) {
     let torques = "rated <= average limit <= repeated peak < momentary peak";
     // Makers of other kinds may rate one torque as both peaks, or leave the ratings in between blank.
+    let below_momentary = usual::TORQUES[..3].iter().rfind(|column| row.number(column).is_some());
+    let last_two = [below_momentary.copied().unwrap_or(usual::TORQUES[0]), usual::TORQUES[3]];
     let (not_falling, rising): (&[&str], &[&str]) = match kind(row) {
-        GearKind::StrainWave => (&usual::TORQUES[..3], &usual::TORQUES[2..]),
+        GearKind::StrainWave => (&usual::TORQUES[..3], &last_two),
         _ => (&usual::TORQUES, &[]),
     };
     let survives = "a gear survives its momentary peak torque";
@@ -272,6 +274,23 @@ mod tests {
         };
         assert_eq!(faults(10.0), ["momentary_peak_torque_nm"]);
         assert!(faults(20.0).is_empty());
+    }
+
+    #[test]
+    fn a_gear_whose_peak_is_not_above_its_rating_is_refused_where_the_ratings_between_are_blank() {
+        let faults = |momentary_nm: f64| {
+            let log = Log::default();
+            let text = format!(
+                "series,size,ratio,source,confidence,rated_torque_nm,momentary_peak_torque_nm\nA,25,100,a test,verified,369,{momentary_nm}\n"
+            );
+            rows(CatalogFile::Gears, "gears.csv", text.as_bytes(), &log).first().and_then(gear);
+            log.faults.borrow().iter().map(|fault| fault.field.clone()).collect::<Vec<_>>()
+        };
+        assert_eq!(
+            [faults(100.0), faults(369.0)],
+            [["momentary_peak_torque_nm"], ["momentary_peak_torque_nm"]]
+        );
+        assert!(faults(370.0).is_empty());
     }
 
     #[test]

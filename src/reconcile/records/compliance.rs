@@ -8,6 +8,10 @@ use super::twist::{CLEARLY, Group, TwistModel};
 use crate::reconcile::model::estimate::Estimate;
 use crate::reconcile::verdict::joint_record::{State, Stated};
 
+/// Words on a transmission error that held-out blocks ask for and whose size may be zero.
+pub(super) const ERROR_OF_UNKNOWN_SIZE: &str = "held-out blocks are predicted better with a transmission error whose size may be zero: a record over a larger range of \
+     angles, or the rotor's inertia, would tell";
+
 /// The compliance may be identified if at least this fraction of the torque's variance is independent of the joint's
 /// own motion (see [`TwistModel::own_share_of_torque`]). This part of the torque tells the compliance from rotor
 /// inertia and friction. See also [`WELL_BALANCED`].

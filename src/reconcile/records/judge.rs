@@ -2,7 +2,7 @@
 //! The errors of the models are those on held-out blocks, which are blocks of time that were left out of a fit.
 
 use super::blocks::Fitted;
-use super::compliance::{GRAVITY_OR_ERROR, compliance};
+use super::compliance::{ERROR_OF_UNKNOWN_SIZE, GRAVITY_OR_ERROR, compliance};
 use super::curve::{Curve, LEAST_TWIST_CHANGE, Law, TORSION_CURVE, curve};
 use super::friction::{Friction, friction, load_nm};
 use super::intervals::{attenuated, covering, excludes_zero, half, is_positive, widened};
@@ -131,7 +131,9 @@ impl<'a> Judged<'a> {
         let mut stated = vec![self.time_shift(), self.compliance_beside_laws()];
         stated.extend(self.laws());
         stated.extend(self.frictions());
-        stated.push(self.output_error());
+        let output_error = self.output_error();
+        let undecided = self.undecided(&output_error);
+        stated.push(output_error);
         stated.push(self.input_error());
         stated.push(self.first_mode());
         let fitted = self.fitted();
@@ -153,7 +155,7 @@ impl<'a> Judged<'a> {
             steps: steps.map(|(added, rad)| Step { added: added.clone(), held_out_rad: *rad }).collect(),
             trace: self.trace(),
             remarks: self.remarks(),
-            undecided: self.undecided(),
+            undecided,
             unnamed: self.other_cause.as_ref().map(|c| c.sentence(&self.model.fitted)),
             stated,
         }
@@ -433,9 +435,13 @@ impl<'a> Judged<'a> {
     }
 
     /// Sentences on what the records leave open. If there are any, the joint does not count as settled, even if little
-    /// error is left. Empty if nothing is open.
-    fn undecided(&self) -> Vec<String> {
+    /// error is left. `output_error` is the result for the transmission error of the output. Empty if nothing is open.
+    fn undecided(&self, output_error: &Stated) -> Vec<String> {
         let mut out = Vec::new();
+        let is_needed = self.model.groups.contains(&Group::Output) && self.other_cause.is_none();
+        if is_needed && output_error.state == State::NotIdentified {
+            out.push(ERROR_OF_UNKNOWN_SIZE.into());
+        }
         if self.model.error_or_gravity.as_ref().is_some_and(|b| b.is_doubtful) {
             out.push(GRAVITY_OR_ERROR.into());
         }

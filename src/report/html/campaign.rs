@@ -102,8 +102,9 @@ pub struct CampaignPage {
     pub explained: bool,
     /// The driven joints, base to tip.
     pub joints: Vec<DrivenJoint>,
-    /// Root mean squares of the residuals before and after the effects were added, for each part of the readings: by
-    /// channel, branch, load, mode and joint.
+    /// Root mean squares of the residuals \[declared standard deviations\], with calibration alone and with the effects,
+    /// for each part of the readings: by channel, branch, load, mode and joint of a bench, by point of absolute
+    /// positions, and for the poses with the largest errors. Gross errors are left out.
     pub parts: Vec<Compared>,
     /// All measured values.
     pub readings: Vec<Reading>,

@@ -19,7 +19,7 @@ pub(crate) struct FrontViews<'a> {
     pub picks: &'a [Pick],
     /// Static picture of both scatter views.
     pub scatter: Figure,
-    /// The property that colours show: `material`, `result`.
+    /// The property that colours show: `material` or `front`.
     pub coloured_by: &'a str,
     /// Whether some designs are only on the front of their own group.
     pub has_both: bool,

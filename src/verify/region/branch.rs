@@ -219,8 +219,11 @@ impl Rows<'_> {
         branchings.collect()
     }
 
-    /// By how much the gears of the mixture twist less than they would under `torque_nm`, the torque that the mixture's
-    /// own masses cause. The difference is given in units of the weighted row of the tip displacement.
+    /// What the rows of the case `case` miss of the twist of the gear of `joint`: the least twist that the mixed gears
+    /// have under `torque_nm` (the torque that the mixture's own masses cause), less the twist that the rows count, as a
+    /// mean over the mixture. It is stated as what it would add to the weighted sum of rows: times the coefficient of the
+    /// twist in the row of the tip displacement, times the weight of this row. It has no unit. 0 if the case has no such
+    /// row.
     fn less_twisted(&self, case: usize, joint: usize, torque_nm: f64, left: &Reduced) -> f64 {
         let Some(&(row, _, direction)) = self.tips.iter().find(|tip| tip.1 == case) else { return 0.0 };
         let sense = 1.0f64.copysign(self.pose(case).tip_m_per_rad[joint].dot(&direction));
