@@ -10,6 +10,7 @@
 
 use super::screening::{MOST_EFFECTS, Selection};
 use super::search::{Scored, Search};
+use crate::arm::effect::setup::Setup;
 use crate::arm::effect::subject::Subject;
 use crate::arm::structure::Piece;
 use crate::reconcile::fit::descent::{Effort, Fit, Weights, fit};
@@ -239,8 +240,8 @@ fn missing_mass(
     })
 }
 
-/// Whether the joints, bearings, links and base of `subject` have exactly the compliances of the arm file
-/// (`nominal`).
+/// Whether `subject` has exactly the compliances of the arm file (`nominal`): of joints, bearings, links and base, and
+/// those that the tests add (servos, moduli that change).
 fn is_as_stiff(subject: &Subject, nominal: &Subject) -> bool {
     let pieces = subject.structure.pieces.iter().zip(&nominal.structure.pieces);
     let same = |(a, b): (&Piece, &Piece)| match (a, b) {
@@ -250,11 +251,14 @@ fn is_as_stiff(subject: &Subject, nominal: &Subject) -> bool {
         (Piece::Prismatic(a), Piece::Prismatic(b)) => {
             a.m_per_n == b.m_per_n && a.guide_rad_per_nm == b.guide_rad_per_nm
         }
-        (Piece::Link(a), Piece::Link(b)) => a.beam == b.beam,
+        (Piece::Link(a), Piece::Link(b)) => a.beam == b.beam && a.root_frame == b.root_frame,
         _ => false,
     };
-    subject.structure.base_tilt_rad_per_nm == nominal.structure.base_tilt_rad_per_nm
-        && pieces.into_iter().all(same)
+    let base =
+        |s: &Subject| (s.structure.base_tilt_rad_per_nm, s.structure.base_lift, s.structure.base_frame);
+    let soft = |setup: &Setup| (setup.servo_rad_per_nm.clone(), setup.softening.clone());
+    let of_tests = |s: &Subject| (s.setups.each_ref().map(soft), s.warming.clone());
+    base(subject) == base(nominal) && of_tests(subject) == of_tests(nominal) && pieces.into_iter().all(same)
 }
 
 /// Mass of the joint with the name `joint` and of everything from it to the tip, without the payload \[kg\].
