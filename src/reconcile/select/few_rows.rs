@@ -417,3 +417,34 @@ fn suspect(
         indistinguishable_from: others,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::JointModel;
+    use crate::arm::file::read_arm_document;
+    use crate::catalog::Catalogs;
+    use crate::input::json::Document;
+
+    #[test]
+    fn an_arm_is_as_stiff_only_if_every_compliance_is_as_given() {
+        let text = r#"{"chain": [{"type": "joint", "name": "j", "axis": [0, 1, 0], "stiffness_nm_per_rad": 1e4},
+            {"type": "link", "name": "l", "vector_m": [1, 0, 0], "mass_kg": 2}]}"#;
+        let document = Document::parse("a", text).expect("JSON");
+        let arm = read_arm_document(document, &Catalogs::default()).expect("an arm");
+        let nominal = Subject::new(arm.structure(JointModel::default()));
+        let changed = |change: fn(&mut Subject)| {
+            let mut subject = nominal.clone();
+            change(&mut subject);
+            is_as_stiff(&subject, &nominal)
+        };
+        assert!(
+            changed(|_| {})
+                && changed(|s| s.payload_delta_kg = 1.0)
+                && changed(|s| s.setups[0].mass_kg = 1.0)
+        );
+        assert!(!changed(|s| s.structure.base_tilt_rad_per_nm = 1e-6));
+        assert!(!changed(|s| s.structure.base_frame.0[(0, 0)] = 1e-6));
+        assert!(!changed(|s| s.setups[0].servo_rad_per_nm.push(("j".into(), 1e-5))));
+    }
+}
