@@ -110,7 +110,7 @@ type Look = (&'static str, Result<(), Problem>);
 fn look_at_folder(folder: &Path, catalogs: &Catalogs) -> Look {
     let has = |name: &str| folder.join(name).is_file();
     if let Some(manifest) = MANIFESTS.into_iter().find(|name| has(name)) {
-        return (result_words(manifest), whole_result(folder, manifest));
+        return (result_words(manifest), whole_result(folder, manifest, catalogs));
     }
     if has("campaign.json") {
         return ("campaign", Campaign::read(folder, catalogs).map(drop).map_err(Problem::from));
@@ -262,10 +262,12 @@ fn unchanged(folder: &Path, manifest: &str) -> Result<Value, Problem> {
     if wrong.is_empty() { Ok(value) } else { Err(Problem::Changed(wrong.join("\n  "))) }
 }
 
-/// Checks that the files of a result are those that were written, and that nothing is missing in it or in the runs that
-/// are folders in it.
-fn whole_result(folder: &Path, manifest: &str) -> Result<(), Problem> {
-    whole(&unchanged(folder, manifest)?)?;
+/// Checks that the files of a result are those that were written, that its arms can be read, and that nothing is
+/// missing in it or in the runs that are folders in it.
+fn whole_result(folder: &Path, manifest: &str, catalogs: &Catalogs) -> Result<(), Problem> {
+    let written = unchanged(folder, manifest)?;
+    whole(&written)?;
+    arms_are_sound(folder, &written, catalogs)?;
     let mut folders = vec![folder.to_path_buf(), folder.join("study")];
     folders.retain(|folder| folder.is_dir());
     for outer in folders {
@@ -277,6 +279,21 @@ fn whole_result(folder: &Path, manifest: &str) -> Result<(), Problem> {
         }
     }
     Ok(())
+}
+
+/// Reads the arms among the files that the manifest `written` lists, as `analyze` reads them.
+fn arms_are_sound(folder: &Path, written: &Value, catalogs: &Catalogs) -> Result<(), Problem> {
+    let names = listed(written).unwrap_or_default();
+    let mut faults = Vec::new();
+    for name in names.keys().filter(|name| name.ends_with(".json")) {
+        let Ok(document) = Document::read(&folder.join(name)) else { continue };
+        if kind_of(document.root().value()) == Some("arm")
+            && let Err(Faults(found)) = read_arm_document(document, catalogs)
+        {
+            faults.extend(found);
+        }
+    }
+    if faults.is_empty() { Ok(()) } else { Err(Problem::Faulty(Faults(faults))) }
 }
 
 /// Checks that nothing is missing in the result of a study whose `run.json` is `written`.
@@ -337,5 +354,37 @@ impl Found {
             Err(Problem::Unreadable(why)) => ("unreadable", vec![json!({"problem": why})]),
         };
         json!({"path": self.place.display().to_string(), "kind": self.what, "state": state, "faults": faults})
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A result of a campaign whose corrected arm has play that closes over the torque `torque_nm`.
+    fn result_with(torque_nm: f64) -> tempfile::TempDir {
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let arm = json!({
+            "chain": [{"type": "joint", "name": "j1", "axis": [0, 1, 0], "stiffness_nm_per_rad": 50},
+                      {"type": "link", "name": "l1", "vector_m": [0.3, 0, 0], "mass_kg": 0.2}],
+            "effects": [{"effect": "lost_motion", "at": "j1",
+                         "parameters": {"half_width_rad": 0.01, "torque_nm": torque_nm}}],
+        });
+        let arm = arm.to_string();
+        std::fs::write(folder.path().join("arm.corrected.json"), &arm).expect("written");
+        let verdict = json!({"files": {"arm.corrected.json": hash(arm.as_bytes())}});
+        std::fs::write(folder.path().join("verdict.json"), verdict.to_string()).expect("written");
+        folder
+    }
+
+    #[test]
+    fn a_corrected_arm_is_read_as_analyze_reads_it() {
+        let check = |torque_nm: f64| {
+            let folder = result_with(torque_nm);
+            let file = unit_of(&folder.path().join("arm.corrected.json"));
+            look(file, &Catalogs::default()).to_text()
+        };
+        assert!(check(-1.0).contains("effects[0].parameters.torque_nm"), "{}", check(-1.0));
+        assert!(check(0.0107).contains("sound"), "a small arm: {}", check(0.0107));
     }
 }
