@@ -16,6 +16,7 @@ use crate::arm::joint_law::Curve;
 use crate::arm::structure::Piece;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::forward::statics::StaticPose;
+use std::ops::RangeInclusive;
 
 /// The candidates of a campaign: every effect at every place of the arm that the channels of the campaign could show.
 pub fn candidates(forward: &Forward) -> Vec<Candidate> {
@@ -318,6 +319,10 @@ pub(crate) fn largest_torque_nm(forward: &Forward, at: &str) -> f64 {
     statics.chain(modal).map(|t| t[j].abs()).chain(bench).fold(0.0, f64::max)
 }
 
+/// Factors in this range are no candidates. A missing compliance changes readings by such factors too, and as a unit has
+/// no free parameter it would be preferred to each of them. A gain that is near such a factor says so.
+const LIKE_A_STIFFNESS: RangeInclusive<f64> = 0.6..=1.0 / 0.6;
+
 /// Factors whose logarithms differ by less than this are one and the same.
 const ONE_FACTOR: f64 = 1e-9;
 
@@ -335,7 +340,8 @@ fn unit_slips(forward: &Forward) -> Vec<Candidate> {
     };
     channels
         .flat_map(|channel| {
-            let factors = unit_factors(&possible_slips(forward, channel));
+            let mut factors = unit_factors(&possible_slips(forward, channel));
+            factors.retain(|factor| !LIKE_A_STIFFNESS.contains(factor));
             factors.into_iter().map(move |factor| slip(channel, factor))
         })
         .collect()

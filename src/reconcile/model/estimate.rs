@@ -76,6 +76,16 @@ impl Finding {
         format!("{}@{}", self.effect, self.at)
     }
 
+    /// The finding with its estimates multiplied by `factor`, which is positive.
+    pub(crate) fn times(&self, factor: f64) -> Self {
+        let mut out = self.clone();
+        for estimate in out.parameters.iter_mut().flat_map(|(_, list)| list) {
+            let [low, high] = [estimate.low, estimate.high].map(|end| end.map(|x| x * factor));
+            *estimate = Estimate { value: estimate.value * factor, low, high };
+        }
+        out
+    }
+
     /// The finding as an entry of an arm file, with values that such a file may have. `source` says which readings it
     /// comes from.
     pub(crate) fn as_effect(&self, source: Value) -> Effect {
