@@ -5,7 +5,7 @@
 //! converted to numbers.
 
 use super::median::median;
-use super::record_spec::RecordSpec;
+use super::record_spec::{RecordSpec, SUFFIXES};
 use crate::input::json::{Fault, InputError, closest};
 use csv::{ReaderBuilder, Trim};
 use std::path::Path;
@@ -177,7 +177,10 @@ impl Reader<'_> {
 
     /// Name that the file gives to the column `column` of this program.
     fn name_of(&self, column: &str) -> String {
-        let mapped = self.spec.columns.iter().find(|(ours, _)| ours == column);
+        let own = self.spec.columns.iter().find(|(ours, _)| ours == column);
+        let mut common = self.spec.common_columns.iter();
+        let mapped =
+            own.or_else(|| common.find(|(ours, theirs)| ours == column && self.header.contains(theirs)));
         mapped.map_or(column, |(_, theirs)| theirs).to_string()
     }
 
@@ -206,19 +209,20 @@ impl Reader<'_> {
                 let problem = format!("campaign.json gives it for {ours}, but the file has no such column");
                 self.fault(Some(1), &theirs, problem, &hint);
             }
-            let suffixes = ["_motor_deg", "_motor_shaft_deg", "_link_deg", "_motor_torque_nm", "_current_a"];
+        }
+        let spec = self.spec;
+        for (ours, _) in spec.columns.iter().chain(&spec.common_columns) {
             let of_joint =
-                suffixes.iter().any(|s| ours.strip_suffix(s).is_some_and(|j| joints.iter().any(|k| k == j)));
+                SUFFIXES.iter().any(|s| ours.strip_suffix(s).is_some_and(|j| joints.iter().any(|k| k == j)));
             if ours != "t_s" && !of_joint {
                 let hint = format!(
                     "known are t_s and, for each joint ({}), the joint's name followed by one of: {}",
                     joints.join(", "),
-                    suffixes.join(", ")
+                    SUFFIXES.join(", ")
                 );
-                self.fault(None, &ours, "\"columns\" of campaign.json maps an unknown name".into(), &hint);
+                self.fault(None, ours, "\"columns\" of campaign.json maps an unknown name".into(), &hint);
             }
         }
-        let spec = self.spec;
         let stated = [&spec.ratio, &spec.torque_constant_nm_per_a, &spec.rotor_inertia_kgm2];
         for name in stated.iter().flat_map(|p| p.joints()).filter(|n| !joints.iter().any(|j| j == n)) {
             let hint = format!("joints of the arm: {}", joints.join(", "));

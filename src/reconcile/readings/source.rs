@@ -2,6 +2,7 @@
 //! have in it.
 
 use super::keys::{COLUMNS as COLUMN_NAMES, FILES, SHEET};
+use super::record_spec::record_columns;
 use crate::arm::effect::channel::Channel;
 use crate::arm::pose::DrivenJoint;
 use crate::input::json::{Node, Object, closest};
@@ -97,7 +98,10 @@ pub struct Source {
 /// nothing.
 pub(crate) fn read_sources(root: &Object) -> [Option<Source>; 4] {
     let files = root.optional("files").and_then(|n| n.shaped(&FILES));
-    let columns = root.optional("columns").and_then(|n| n.shaped(&COLUMN_NAMES));
+    let columns = root.optional("columns").and_then(|node| {
+        let of_records = record_columns(&node).into_iter().map(|(name, _)| name);
+        node.object(&COLUMN_NAMES.names().into_iter().chain(of_records).collect::<Vec<_>>())
+    });
     Channel::ALL.map(|channel| {
         let word = channel.word();
         let block = root.optional(word);
@@ -167,7 +171,7 @@ mod tests {
     fn columns_of(channel: Channel, text: &str) -> Result<usize, String> {
         let document = Document::parse("campaign.json", text).expect("JSON");
         let read = read_columns(&document.root(), channel).map(|columns| columns.len());
-        document.finish(read).map_err(|faults| faults.to_string())
+        document.finish(read).map_err(|faults| faults.0.iter().map(ToString::to_string).collect())
     }
 
     #[test]
