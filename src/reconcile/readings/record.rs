@@ -298,6 +298,9 @@ impl Reader<'_> {
 
     fn push(&mut self, out: &mut Record, columns: &[Columns], time: usize, cells: &csv::ByteRecord) {
         let line = cells.position().map(|p| p.line() as usize);
+        if cells.iter().all(<[u8]>::is_empty) {
+            return;
+        }
         if cells.len() != self.header.len() {
             let problem = format!("has {} cells, the header has {}", cells.len(), self.header.len());
             return self.fault(line, "", problem, "give every row a value for every column");

@@ -199,6 +199,10 @@ impl Table {
     }
 
     fn push(&mut self, Record { line, cells }: Record) {
+        // spreadsheets are often saved with rows of commas below their last row
+        if cells.iter().all(String::is_empty) {
+            return;
+        }
         if self.columns.is_empty() {
             self.header_line = line;
             self.columns = cells;

@@ -1,0 +1,70 @@
+//! Tests of the readers on whole folders of campaigns.
+
+use super::campaign::Campaign;
+use crate::catalog::Catalogs;
+use crate::input::json::InputError;
+use tempfile::TempDir;
+
+const ARM: &str = r#"{"name": "arm", "chain": [
+  {"type": "joint", "name": "sh", "axis": [0,1,0], "stiffness_nm_per_rad": 1e4, "mass_kg": 2},
+  {"type": "link", "name": "upper", "vector_m": [0.4,0,0], "mass_kg": 1},
+  {"type": "joint", "name": "el", "axis": [0,1,0], "stiffness_nm_per_rad": 5e3, "mass_kg": 1},
+  {"type": "link", "name": "fore", "vector_m": [0.3,0,0], "mass_kg": 1}]}"#;
+
+/// A folder with the arm, this statement, and these files.
+fn folder(statement: &str, files: &[(&str, &str)]) -> TempDir {
+    let folder = tempfile::tempdir().expect("temporary folder");
+    for (name, text) in [("arm.json", ARM), ("campaign.json", statement)].iter().chain(files) {
+        std::fs::write(folder.path().join(name), text).expect("written");
+    }
+    folder
+}
+
+/// The campaign with these files, or all of its faults in one text.
+fn read(statement: &str, files: &[(&str, &str)]) -> Result<Campaign, String> {
+    let folder = folder(statement, files);
+    Campaign::read(folder.path(), &Catalogs::default()).map_err(|error| match error {
+        InputError::Faulty(faults) => faults.0.iter().map(|fault| format!("{fault}\n")).collect(),
+        other => other.to_string(),
+    })
+}
+
+/// Two rows of displacements under a header.
+fn statics(header: &str) -> String {
+    format!("{header}\n1,10,20,1,-0.11,0.01\n2,30,-40,2,-0.13,0.01\n")
+}
+
+const STATIC: &str = "test,q_sh_deg,q_el_deg,payload_kg,dz_mm,sigma_mm";
+
+/// A record of 200 rows with these names of its columns.
+fn record(header: &str) -> String {
+    let row = |i: usize| format!("{},{},{},1\n", i as f64 * 0.004, i as f64 * 0.01, i as f64 * 0.01);
+    format!("{header}\n{}", (0..200).map(row).collect::<String>())
+}
+
+#[test]
+fn blank_rows_of_a_table_are_skipped_and_keep_the_numbers_of_the_others() {
+    let text = format!("{},,,,,\n \n,,,,,\n3,30,x,2,-0.1,0.01\n,,,,,\n", statics(STATIC));
+    let faults = read("{}", &[("static.csv", &text)]).expect_err("one cell is no number");
+    assert!(faults.lines().count() == 1 && faults.contains(":7: q_el_deg"), "{faults}");
+    let text = format!("\n,,,,,\n{},,,,,\n", statics(STATIC));
+    assert_eq!(read("{}", &[("static.csv", &text)]).expect("sound").statics.len(), 2);
+    let text = format!("{},,,\n\n", record("t_s,sh_motor_deg,sh_link_deg,sh_motor_torque_nm"));
+    assert_eq!(read("{}", &[("record.csv", &text)]).expect("sound").records[0].t_s.len(), 200);
+}
+
+#[test]
+fn columns_of_a_record_may_be_named_once_for_all_records() {
+    let statement = r#"{"columns": {"t_s": "Zeit", "sh_motor_deg": "Mot", "sh_link_deg": "Arm"}}"#;
+    let campaign = read(statement, &[("record.csv", &record("Zeit,Mot,Arm,M"))]).expect("sound");
+    assert_eq!(campaign.records[0].joints[0].link_rad.len(), 200);
+    // a record that calls a column otherwise says so itself
+    let own = statement.replace("}}", r#"}, "records": [{"columns": {"sh_link_deg": "M"}}]}"#);
+    let campaign = read(&own, &[("record.csv", &record("t_s,Mot,Arm,M"))]);
+    assert!(campaign.is_err_and(|faults| !faults.contains("missing")), "M is constant");
+    let wrong = statement.replace("sh_link_deg", "wrist_link_deg");
+    let faults = read(&wrong, &[("record.csv", &record("Zeit,Mot,Arm,M"))]).expect_err("no such joint");
+    assert!(faults.contains("maps an unknown name"), "{faults}");
+    let faults = read(r#"{"columns": {"statik": {}}}"#, &[]).expect_err("no such channel");
+    assert!(faults.contains("did you mean \"static\""), "{faults}");
+}
