@@ -7,6 +7,7 @@ use crate::input::csv::{Csv, Record, is_repeated, other_separators};
 use crate::input::json::{Fault, InputError, closest, read_text};
 use crate::input::names::{unfit_cell, unfit_name};
 use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// First character of a comment line.
@@ -33,6 +34,8 @@ pub struct Table {
     /// Letters of the columns of a spreadsheet; empty for a CSV file.
     letters: Vec<String>,
     faults: RefCell<Vec<Fault>>,
+    /// Names of the columns that the readers of the table know, whether or not it has them.
+    asked: RefCell<BTreeSet<String>>,
 }
 
 impl Table {
@@ -92,6 +95,7 @@ impl Table {
             shown: Vec::new(),
             letters: Vec::new(),
             faults: RefCell::default(),
+            asked: RefCell::default(),
         }
     }
 
@@ -266,10 +270,10 @@ impl Table {
             if !self.has_header() && !self.faults.borrow().is_empty() {
                 return None;
             }
-            let known: Vec<&str> = self.columns.iter().map(String::as_str).collect();
-            let hint = match closest(name, &known) {
-                Some(near) => format!("is it \"{near}\"? columns found: {}", known.join(", ")),
-                None => format!("columns found: {}", known.join(", ")),
+            let found = format!("columns found: {}", self.columns.join(", "));
+            let hint = match closest(name, &self.unasked()) {
+                Some(near) => format!("is it \"{near}\"? {}; {found}", renamed(name, near)),
+                None => found,
             };
             self.fault(Some(self.header_line), name, "the column is missing".into(), &hint);
             None
@@ -278,7 +282,14 @@ impl Table {
 
     /// Index of the column `name`; `None` if there is no such column.
     pub fn optional(&self, name: &str) -> Option<usize> {
+        self.asked.borrow_mut().insert(name.to_string());
         self.columns.iter().position(|c| c == name)
+    }
+
+    /// The columns for which no reader has asked.
+    fn unasked(&self) -> Vec<&str> {
+        let asked = self.asked.borrow();
+        self.columns.iter().map(String::as_str).filter(|c| !c.is_empty() && !asked.contains(*c)).collect()
     }
 
     /// Reports columns whose name begins with `beginning` and is not among the names in `family`, such as a misspelt
@@ -298,8 +309,8 @@ impl Table {
             self.columns.iter().map(String::as_str).filter(|column| !known.contains(column)).collect();
         let near = closest(name, &others);
         if let Some(near) = near {
-            let hint = "write the name of the column so, or remove it";
-            self.fault(Some(self.header_line), near, format!("is it {name}?"), hint);
+            let hint = format!("{}, or remove it", renamed(name, near));
+            self.fault(Some(self.header_line), near, format!("is it {name}?"), &hint);
         }
         near.is_some()
     }
@@ -361,5 +372,27 @@ impl Table {
         let hint = "remove the row, or give the value that was measured";
         self.row_fault(row, &self.columns[column], problem.into(), hint);
         None
+    }
+}
+
+/// Units with which names of columns end.
+const UNITS: [&str; 24] = [
+    "mm", "m", "um", "cm", "in", "mil", "deg", "rad", "mrad", "arcmin", "arcsec", "kg", "g", "lb", "n", "kn", "kgf", "lbf",
+    "nm", "hz", "rpm", "s", "ms", "us",
+];
+
+/// The unit with which the name of a column ends, in lower case.
+fn unit_of(column: &str) -> Option<&'static str> {
+    let (_, end) = column.rsplit_once('_')?;
+    UNITS.into_iter().find(|unit| end.eq_ignore_ascii_case(unit))
+}
+
+/// What to do if the column `column` is meant to be the one that this program calls `name`.
+fn renamed(name: &str, column: &str) -> String {
+    match (unit_of(name), unit_of(column)) {
+        (Some(unit), Some(other)) if unit != other => {
+            format!("convert its values from {other} to {unit}, and write the name of the column so")
+        }
+        _ => "write the name of the column so".into(),
     }
 }

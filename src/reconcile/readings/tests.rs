@@ -59,12 +59,26 @@ fn columns_of_a_record_may_be_named_once_for_all_records() {
     let campaign = read(statement, &[("record.csv", &record("Zeit,Mot,Arm,M"))]).expect("sound");
     assert_eq!(campaign.records[0].joints[0].link_rad.len(), 200);
     // a record that calls a column otherwise says so itself
-    let own = statement.replace("}}", r#"}, "records": [{"columns": {"sh_link_deg": "M"}}]}"#);
-    let campaign = read(&own, &[("record.csv", &record("t_s,Mot,Arm,M"))]);
-    assert!(campaign.is_err_and(|faults| !faults.contains("missing")), "M is constant");
+    let own = statement.replace("}}", r#"}, "records": [{"columns": {"sh_link_deg": "Link"}}]}"#);
+    let campaign = read(&own, &[("record.csv", &record("t_s,Mot,Link,M"))]).expect("sound");
+    assert_eq!(campaign.records[0].joints[0].link_rad.len(), 200);
     let wrong = statement.replace("sh_link_deg", "wrist_link_deg");
     let faults = read(&wrong, &[("record.csv", &record("Zeit,Mot,Arm,M"))]).expect_err("no such joint");
     assert!(faults.contains("maps an unknown name"), "{faults}");
     let faults = read(r#"{"columns": {"statik": {}}}"#, &[]).expect_err("no such channel");
     assert!(faults.contains("did you mean \"static\""), "{faults}");
+}
+
+#[test]
+fn a_column_in_another_unit_is_to_be_converted_and_that_of_another_joint_is_not_suggested() {
+    let of = |from: &str, to: &str| {
+        let text = statics(&STATIC.replace(from, to));
+        read("{}", &[("static.csv", &text)]).expect_err("a misspelt column")
+    };
+    let faults = of("dz_mm", "dz_um");
+    assert!(faults.contains("is it dz_mm?; convert its values from um to mm"), "{faults}");
+    let faults = of("q_sh_deg", "q_sh_rad");
+    assert!(faults.contains("is it \"q_sh_rad\"? convert its values from rad to deg"), "{faults}");
+    let faults = of("q_sh_deg", "sh");
+    assert!(faults.contains("q_sh_deg: the column is missing") && !faults.contains("is it"), "{faults}");
 }
