@@ -148,7 +148,9 @@ impl StateColumns {
             );
         }
         // all of them are asked for first, so that a missing one is not taken for the column of another joint
-        expected.iter().for_each(|name| drop(table.optional(name)));
+        for name in &expected {
+            table.optional(name);
+        }
         let pose: Vec<Option<usize>> = expected.iter().map(|name| table.required(name)).collect();
         const CG: [&str; 3] = ["payload_cg_x_m", "payload_cg_y_m", "payload_cg_z_m"];
         const MASS: &str = "payload_kg";

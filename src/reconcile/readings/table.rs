@@ -292,6 +292,25 @@ impl Table {
         self.columns.iter().map(String::as_str).filter(|c| !c.is_empty() && !asked.contains(*c)).collect()
     }
 
+    /// Sentence on the columns that no reader asked for, each with the columns that it may be meant for; `None` if there
+    /// are none. It is known after the rows were read.
+    pub(crate) fn unused(&self) -> Option<String> {
+        let asked = self.asked.borrow();
+        let lacks = |name: &&String| !self.columns.contains(name);
+        let words = |column: &str| {
+            let is_meant = |name: &&String| unit_of(name).is_some() && unit_of(name) == unit_of(column);
+            let meant: Vec<&str> =
+                asked.iter().filter(lacks).filter(is_meant).filter(not_of_sigma).map(String::as_str).collect();
+            match meant.is_empty() {
+                true => column.to_string(),
+                false => format!("{column} (is it {}?)", meant.join(" or ")),
+            }
+        };
+        let unused: Vec<String> = self.unasked().into_iter().map(words).collect();
+        (!unused.is_empty())
+            .then(|| format!("{}: columns that are not used: {}", self.short_name(), unused.join(", ")))
+    }
+
     /// Reports columns whose name begins with `beginning` and is not among the names in `family`, such as a misspelt
     /// `sigma_...`.
     pub(crate) fn check_family(&self, beginning: &str, family: &[&str]) {
@@ -385,6 +404,11 @@ const UNITS: [&str; 24] = [
 fn unit_of(column: &str) -> Option<&'static str> {
     let (_, end) = column.rsplit_once('_')?;
     UNITS.into_iter().find(|unit| end.eq_ignore_ascii_case(unit))
+}
+
+/// Whether a column is none of standard deviations. Those are known by the beginning of their names.
+fn not_of_sigma(name: &&String) -> bool {
+    !name.starts_with("sigma_")
 }
 
 /// What to do if the column `column` is meant to be the one that this program calls `name`.

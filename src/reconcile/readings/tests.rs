@@ -82,3 +82,22 @@ fn a_column_in_another_unit_is_to_be_converted_and_that_of_another_joint_is_not_
     let faults = of("q_sh_deg", "sh");
     assert!(faults.contains("q_sh_deg: the column is missing") && !faults.contains("is it"), "{faults}");
 }
+
+#[test]
+fn columns_that_nobody_reads_are_named_with_the_ones_they_may_be() {
+    let remark = |file: &str, text: &str| read("{}", &[(file, text)]).expect("sound").remarks.join("\n");
+    let modal = "q_sh_deg,q_el_deg,mass_kg,mode,frequency_hz,sigma_hz,operator\n10,20,8,1,4.5,0.01,A\n";
+    let said = remark("modal.csv", modal);
+    assert_eq!(said, "modal.csv: columns that are not used: mass_kg (is it payload_kg?), operator");
+    let forces = statics(&STATIC.replace("dz_mm,sigma_mm", "fz_n,dz_mm,sigma_mm")).replace(",-0.1", ",-40,-0.1");
+    let said = remark("static.csv", &forces);
+    assert!(said.contains("fz_n (is it force_x_n or force_y_n or force_z_n?)"), "{said}");
+    let said = remark("static.csv", &statics("test,q_sh_deg,q_el_deg,payload_kg,dx_mm,sigma_mm"));
+    assert_eq!(said, "");
+    let other = "test,q_sh_deg,q_el_deg,payload_kg,dx_mm,sigma_mm,delta_z_mm\n1,10,20,1,-0.1,0.01,-0.4\n";
+    let said = remark("static.csv", other);
+    assert_eq!(said, "static.csv: columns that are not used: delta_z_mm (is it dy_mm or dz_mm?)");
+    let other = "test,q_sh_deg,q_el_deg,payload_kg,dx_mm,dz_mm,sigma_mm\n1,10,20,1,,-0.1,0.01\n";
+    let said = remark("static.csv", other);
+    assert_eq!(said, "static.csv: columns without any reading, taken as not measured: dx_mm");
+}
