@@ -101,3 +101,15 @@ fn columns_that_nobody_reads_are_named_with_the_ones_they_may_be() {
     let said = remark("static.csv", other);
     assert_eq!(said, "static.csv: columns without any reading, taken as not measured: dx_mm");
 }
+
+#[test]
+fn a_formula_without_a_value_is_no_blank_cell() {
+    let statement = r#"{"files": {"static": {"file": "formula.xlsx"}}}"#;
+    let folder = folder(statement, &[]);
+    let data = format!("{}/tests/data/spreadsheets/formula.xlsx", env!("CARGO_MANIFEST_DIR"));
+    std::fs::copy(data, folder.path().join("formula.xlsx")).expect("copied");
+    let error = Campaign::read(folder.path(), &Catalogs::default()).expect_err("a cell without a value");
+    let InputError::Faulty(faults) = error else { panic!("{error}") };
+    let said = faults.0[0].to_string();
+    assert!(faults.0.len() == 1 && said.contains("cell E2") && said.contains("a formula without a value"), "{said}");
+}
