@@ -12,6 +12,7 @@ use crate::input::json::{Document, Fault, Faults, InputError};
 use crate::interchange::given::{MovingJoint, read_given};
 use crate::interchange::urdf_file::UrdfTree;
 use crate::reconcile::Campaign;
+use crate::reconcile::readings::record_spec::DEFAULT_FILE as DEFAULT_RECORD;
 use crate::reconcile::readings::source::DEFAULT_FILES;
 use crate::report::whole_file::folder_of;
 use crate::study::load_limits::check_limits;
@@ -77,7 +78,9 @@ fn unit_of(file: &Path) -> PathBuf {
     let name = file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let folder = folder_of(file);
     let is_catalog = CatalogFile::ALL.iter().any(|catalog| catalog.file_name() == name);
-    let is_reading = DEFAULT_FILES.contains(&name.as_str()) && folder.join("campaign.json").is_file();
+    let is_usual = DEFAULT_FILES.contains(&name.as_str()) || name == DEFAULT_RECORD;
+    let statement = read_json(&folder.join("campaign.json"));
+    let is_reading = statement.is_some_and(|statement| is_usual || is_named(&statement, &name));
     let is_result = MANIFESTS.iter().any(|manifest| {
         name == *manifest
             || read_json(&folder.join(manifest))
@@ -86,6 +89,16 @@ fn unit_of(file: &Path) -> PathBuf {
     });
     let of_folder = is_catalog || is_reading || is_result || name == "campaign.json";
     if of_folder && file.is_file() { folder } else { file.to_path_buf() }
+}
+
+/// Whether the statement of a campaign names the file `name` anywhere.
+fn is_named(statement: &Value, name: &str) -> bool {
+    match statement {
+        Value::String(text) => text == name,
+        Value::Array(list) => list.iter().any(|value| is_named(value, name)),
+        Value::Object(keys) => keys.values().any(|value| is_named(value, name)),
+        _ => false,
+    }
 }
 
 fn read_json(path: &Path) -> Option<Value> {
@@ -386,5 +399,17 @@ mod tests {
         };
         assert!(check(-1.0).contains("effects[0].parameters.torque_nm"), "{}", check(-1.0));
         assert!(check(0.0107).contains("sound"), "a small arm: {}", check(0.0107));
+    }
+
+    #[test]
+    fn a_record_is_checked_with_its_campaign() {
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).expect("written");
+        write("campaign.json", r#"{"records": [{"file": "axis2.csv"}]}"#);
+        for name in ["record.csv", "axis2.csv", "notes.csv"] {
+            write(name, "t_s,j1_motor_deg\n");
+            let unit = unit_of(&folder.path().join(name));
+            assert_eq!(unit == folder.path(), name != "notes.csv", "{name}");
+        }
     }
 }

@@ -6,6 +6,8 @@
 
 use super::median::median;
 use super::record_spec::{RecordSpec, SUFFIXES};
+use super::spreadsheet::is_spreadsheet;
+use crate::input::csv::other_separators;
 use crate::input::json::{Fault, InputError, closest};
 use csv::{ReaderBuilder, Trim};
 use std::path::Path;
@@ -109,7 +111,13 @@ fn read_record(
     let file = path.display().to_string();
     let text = std::fs::read(path).map_err(|source| InputError::Unreadable { file: file.clone(), source })?;
     let mut reader = Reader { file, spec, header: Vec::new(), faults: Vec::new() };
-    let record = reader.read(&text, joints);
+    let record = match no_csv(path, &text) {
+        Some((problem, hint)) => {
+            reader.fault(None, "", problem.into(), hint);
+            None
+        }
+        None => reader.read(&text, joints),
+    };
     let is_sound = reader.faults.is_empty();
     let listed = reader.faults.len();
     faults.extend(reader.faults.into_iter().take(MOST_FAULTS));
@@ -126,6 +134,17 @@ fn read_record(
     Ok(record.filter(|_| is_sound))
 }
 
+/// Why the content `text` of a file cannot be the CSV of a record, and what to do; `None` if it can be.
+fn no_csv(path: &Path, text: &[u8]) -> Option<(&'static str, &'static str)> {
+    const HINT: &str = "records are read as CSV: save the sheet as CSV, with commas between the columns";
+    match () {
+        () if is_spreadsheet(path) => Some(("is a spreadsheet", HINT)),
+        // a text has no zero bytes, and a file that is none must not be shown in messages
+        () if text.contains(&0) => Some(("is no text", HINT)),
+        () => None,
+    }
+}
+
 impl Reader<'_> {
     fn read(&mut self, text: &[u8], joints: &[String]) -> Option<Record> {
         let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
@@ -139,6 +158,13 @@ impl Reader<'_> {
         let first = records.next().and_then(Result::ok);
         let as_text = |cell: &[u8]| String::from_utf8_lossy(cell).into_owned();
         self.header = first.iter().flatten().map(as_text).collect();
+        let separators: Vec<&str> = other_separators(&self.header, 2).collect();
+        if !separators.is_empty() {
+            let problem = format!("its columns are separated by {}", separators.join(" and "));
+            let hint = "separate columns with commas, write decimals with a point, and name the columns in the first row";
+            self.fault(Some(1), "", problem, hint);
+            return None;
+        }
         self.check_names(joints);
         let time = self.required("t_s");
         let columns: Vec<Columns> = joints.iter().filter_map(|j| self.columns_of(j)).collect();

@@ -113,3 +113,15 @@ fn a_formula_without_a_value_is_no_blank_cell() {
     let said = faults.0[0].to_string();
     assert!(faults.0.len() == 1 && said.contains("cell E2") && said.contains("a formula without a value"), "{said}");
 }
+
+#[test]
+fn a_record_that_is_no_csv_file_says_what_it_is() {
+    let statement = r#"{"records": [{"file": "record.xlsx"}]}"#;
+    let faults = read(statement, &[("record.xlsx", "PK\u{3}\u{4} and so on")]).expect_err("a spreadsheet");
+    assert!(faults.contains("is a spreadsheet") && !faults.contains("PK"), "{faults}");
+    let text = record("t_s,sh_motor_deg,sh_link_deg,sh_motor_torque_nm").replace(',', ";");
+    let faults = read("{}", &[("record.csv", &text)]).expect_err("semicolons");
+    assert!(faults.lines().count() == 1 && faults.contains("separated by semicolons"), "{faults}");
+    let faults = read("{}", &[("record.csv", "\u{1}\u{2}\u{0}binary\n1,2\n")]).expect_err("no text");
+    assert!(faults.contains("is no text"), "{faults}");
+}
