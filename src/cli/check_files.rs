@@ -80,7 +80,8 @@ fn unit_of(file: &Path) -> PathBuf {
     let is_catalog = CatalogFile::ALL.iter().any(|catalog| catalog.file_name() == name);
     let is_usual = DEFAULT_FILES.contains(&name.as_str()) || name == DEFAULT_RECORD;
     let statement = read_json(&folder.join("campaign.json"));
-    let is_reading = statement.is_some_and(|statement| is_usual || is_named(&statement, &name));
+    let is_reading = !name.ends_with(".json")
+        && statement.is_some_and(|statement| is_usual || is_named(&statement, &name));
     let is_result = MANIFESTS.iter().any(|manifest| {
         name == *manifest
             || read_json(&folder.join(manifest))

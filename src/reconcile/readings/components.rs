@@ -128,10 +128,15 @@ const NOTHING: [&str; 9] = ["-", "--", "\u{2013}", "\u{2014}", "/", "?", "n/a", 
 
 /// Sentence on the components that have a column without any reading; `None` if there are none.
 pub(crate) fn never_read(table: &Table, names: &Names, rows: &[&mut Components]) -> Option<String> {
-    let is_blank = |c: &usize| table.optional(names.values[*c]).is_some() && rows.iter().all(|row| row[*c].is_none());
+    let is_blank =
+        |c: &usize| table.optional(names.values[*c]).is_some() && rows.iter().all(|row| row[*c].is_none());
     let blank: Vec<&str> = (0..3).filter(is_blank).map(|c| names.values[c]).collect();
     (!blank.is_empty() && !rows.is_empty()).then(|| {
-        format!("{}: columns without any reading, taken as not measured: {}", table.short_name(), blank.join(", "))
+        format!(
+            "{}: columns without any reading, taken as not measured: {}",
+            table.short_name(),
+            blank.join(", ")
+        )
     })
 }
 

@@ -299,8 +299,13 @@ impl Table {
         let lacks = |name: &&String| !self.columns.contains(name);
         let words = |column: &str| {
             let is_meant = |name: &&String| unit_of(name).is_some() && unit_of(name) == unit_of(column);
-            let meant: Vec<&str> =
-                asked.iter().filter(lacks).filter(is_meant).filter(not_of_sigma).map(String::as_str).collect();
+            let meant: Vec<&str> = asked
+                .iter()
+                .filter(lacks)
+                .filter(is_meant)
+                .filter(not_of_sigma)
+                .map(String::as_str)
+                .collect();
             match meant.is_empty() {
                 true => column.to_string(),
                 false => format!("{column} (is it {}?)", meant.join(" or ")),
@@ -396,8 +401,8 @@ impl Table {
 
 /// Units with which names of columns end.
 const UNITS: [&str; 24] = [
-    "mm", "m", "um", "cm", "in", "mil", "deg", "rad", "mrad", "arcmin", "arcsec", "kg", "g", "lb", "n", "kn", "kgf", "lbf",
-    "nm", "hz", "rpm", "s", "ms", "us",
+    "mm", "m", "um", "cm", "in", "mil", "deg", "rad", "mrad", "arcmin", "arcsec", "kg", "g", "lb", "n", "kn",
+    "kgf", "lbf", "nm", "hz", "rpm", "s", "ms", "us",
 ];
 
 /// The unit with which the name of a column ends, in lower case.

@@ -89,7 +89,8 @@ fn columns_that_nobody_reads_are_named_with_the_ones_they_may_be() {
     let modal = "q_sh_deg,q_el_deg,mass_kg,mode,frequency_hz,sigma_hz,operator\n10,20,8,1,4.5,0.01,A\n";
     let said = remark("modal.csv", modal);
     assert_eq!(said, "modal.csv: columns that are not used: mass_kg (is it payload_kg?), operator");
-    let forces = statics(&STATIC.replace("dz_mm,sigma_mm", "fz_n,dz_mm,sigma_mm")).replace(",-0.1", ",-40,-0.1");
+    let forces =
+        statics(&STATIC.replace("dz_mm,sigma_mm", "fz_n,dz_mm,sigma_mm")).replace(",-0.1", ",-40,-0.1");
     let said = remark("static.csv", &forces);
     assert!(said.contains("fz_n (is it force_x_n or force_y_n or force_z_n?)"), "{said}");
     let said = remark("static.csv", &statics("test,q_sh_deg,q_el_deg,payload_kg,dx_mm,sigma_mm"));
@@ -111,7 +112,10 @@ fn a_formula_without_a_value_is_no_blank_cell() {
     let error = Campaign::read(folder.path(), &Catalogs::default()).expect_err("a cell without a value");
     let InputError::Faulty(faults) = error else { panic!("{error}") };
     let said = faults.0[0].to_string();
-    assert!(faults.0.len() == 1 && said.contains("cell E2") && said.contains("a formula without a value"), "{said}");
+    assert!(
+        faults.0.len() == 1 && said.contains("cell E2") && said.contains("a formula without a value"),
+        "{said}"
+    );
 }
 
 #[test]

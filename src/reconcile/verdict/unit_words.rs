@@ -26,7 +26,8 @@ const OF_NEXT_TEST: &str = "; the loads are in the unit of the campaign's column
 /// has both.)
 pub(crate) fn joined(effects: Vec<Finding>) -> Vec<Finding> {
     let is_at = |f: &Finding, name: &str, at: &str| f.effect == name && f.at == at;
-    let factor = |f: &Finding| f.parameters.first().and_then(|(_, list)| list.first()).map_or(1.0, |e| e.value);
+    let factor =
+        |f: &Finding| f.parameters.first().and_then(|(_, list)| list.first()).map_or(1.0, |e| e.value);
     let of_unit = |at: &str| -> f64 {
         effects.iter().filter(|f| is_at(f, wrong_unit::KIND.name, at)).map(factor).product()
     };
