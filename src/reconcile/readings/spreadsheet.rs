@@ -54,7 +54,7 @@ pub(crate) fn read_sheet(path: &Path, sheet: Option<&str>) -> Result<Sheet, (Str
     let text_at = |row: usize, column: usize, cell: &Data| {
         let formula = formulas.get_value((row as u32, column as u32)).filter(|formula| !formula.is_empty());
         match (text(cell), formula) {
-            (blank, Some(formula)) if blank.is_empty() => format!("={formula} (a formula without a value)"),
+            (blank, Some(formula)) if blank.is_empty() => format!("formula {formula} without a value"),
             (given, _) => given,
         }
     };

@@ -417,7 +417,7 @@ fn not_of_sigma(name: &&String) -> bool {
 }
 
 /// What to do if the column `column` is meant to be the one that this program calls `name`.
-fn renamed(name: &str, column: &str) -> String {
+pub(super) fn renamed(name: &str, column: &str) -> String {
     match (unit_of(name), unit_of(column)) {
         (Some(unit), Some(other)) if unit != other => {
             format!("convert its values from {other} to {unit}, and write the name of the column so")
