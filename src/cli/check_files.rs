@@ -12,6 +12,7 @@ use crate::input::json::{Document, Fault, Faults, InputError};
 use crate::interchange::given::{MovingJoint, read_given};
 use crate::interchange::urdf_file::UrdfTree;
 use crate::reconcile::Campaign;
+use crate::reconcile::readings::record_spec::DEFAULT_FILE as DEFAULT_RECORD;
 use crate::reconcile::readings::source::DEFAULT_FILES;
 use crate::report::whole_file::folder_of;
 use crate::study::load_limits::check_limits;
@@ -77,7 +78,10 @@ fn unit_of(file: &Path) -> PathBuf {
     let name = file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let folder = folder_of(file);
     let is_catalog = CatalogFile::ALL.iter().any(|catalog| catalog.file_name() == name);
-    let is_reading = DEFAULT_FILES.contains(&name.as_str()) && folder.join("campaign.json").is_file();
+    let is_usual = DEFAULT_FILES.contains(&name.as_str()) || name == DEFAULT_RECORD;
+    let statement = read_json(&folder.join("campaign.json"));
+    let is_reading = !name.ends_with(".json")
+        && statement.is_some_and(|statement| is_usual || is_named(&statement, &name));
     let is_result = MANIFESTS.iter().any(|manifest| {
         name == *manifest
             || read_json(&folder.join(manifest))
@@ -86,6 +90,16 @@ fn unit_of(file: &Path) -> PathBuf {
     });
     let of_folder = is_catalog || is_reading || is_result || name == "campaign.json";
     if of_folder && file.is_file() { folder } else { file.to_path_buf() }
+}
+
+/// Whether the statement of a campaign names the file `name` anywhere.
+fn is_named(statement: &Value, name: &str) -> bool {
+    match statement {
+        Value::String(text) => text == name,
+        Value::Array(list) => list.iter().any(|value| is_named(value, name)),
+        Value::Object(keys) => keys.values().any(|value| is_named(value, name)),
+        _ => false,
+    }
 }
 
 fn read_json(path: &Path) -> Option<Value> {
@@ -110,7 +124,7 @@ type Look = (&'static str, Result<(), Problem>);
 fn look_at_folder(folder: &Path, catalogs: &Catalogs) -> Look {
     let has = |name: &str| folder.join(name).is_file();
     if let Some(manifest) = MANIFESTS.into_iter().find(|name| has(name)) {
-        return (result_words(manifest), whole_result(folder, manifest));
+        return (result_words(manifest), whole_result(folder, manifest, catalogs));
     }
     if has("campaign.json") {
         return ("campaign", Campaign::read(folder, catalogs).map(drop).map_err(Problem::from));
@@ -262,10 +276,12 @@ fn unchanged(folder: &Path, manifest: &str) -> Result<Value, Problem> {
     if wrong.is_empty() { Ok(value) } else { Err(Problem::Changed(wrong.join("\n  "))) }
 }
 
-/// Checks that the files of a result are those that were written, and that nothing is missing in it or in the runs that
-/// are folders in it.
-fn whole_result(folder: &Path, manifest: &str) -> Result<(), Problem> {
-    whole(&unchanged(folder, manifest)?)?;
+/// Checks that the files of a result are those that were written, that its arms can be read, and that nothing is
+/// missing in it or in the runs that are folders in it.
+fn whole_result(folder: &Path, manifest: &str, catalogs: &Catalogs) -> Result<(), Problem> {
+    let written = unchanged(folder, manifest)?;
+    whole(&written)?;
+    arms_are_sound(folder, &written, catalogs)?;
     let mut folders = vec![folder.to_path_buf(), folder.join("study")];
     folders.retain(|folder| folder.is_dir());
     for outer in folders {
@@ -277,6 +293,21 @@ fn whole_result(folder: &Path, manifest: &str) -> Result<(), Problem> {
         }
     }
     Ok(())
+}
+
+/// Reads the arms among the files that the manifest `written` lists, as `analyze` reads them.
+fn arms_are_sound(folder: &Path, written: &Value, catalogs: &Catalogs) -> Result<(), Problem> {
+    let names = listed(written).unwrap_or_default();
+    let mut faults = Vec::new();
+    for name in names.keys().filter(|name| name.ends_with(".json")) {
+        let Ok(document) = Document::read(&folder.join(name)) else { continue };
+        if kind_of(document.root().value()) == Some("arm")
+            && let Err(Faults(found)) = read_arm_document(document, catalogs)
+        {
+            faults.extend(found);
+        }
+    }
+    if faults.is_empty() { Ok(()) } else { Err(Problem::Faulty(Faults(faults))) }
 }
 
 /// Checks that nothing is missing in the result of a study whose `run.json` is `written`.
@@ -337,5 +368,49 @@ impl Found {
             Err(Problem::Unreadable(why)) => ("unreadable", vec![json!({"problem": why})]),
         };
         json!({"path": self.place.display().to_string(), "kind": self.what, "state": state, "faults": faults})
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A result of a campaign whose corrected arm has play that closes over the torque `torque_nm`.
+    fn result_with(torque_nm: f64) -> tempfile::TempDir {
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let arm = json!({
+            "chain": [{"type": "joint", "name": "j1", "axis": [0, 1, 0], "stiffness_nm_per_rad": 50},
+                      {"type": "link", "name": "l1", "vector_m": [0.3, 0, 0], "mass_kg": 0.2}],
+            "effects": [{"effect": "lost_motion", "at": "j1",
+                         "parameters": {"half_width_rad": 0.01, "torque_nm": torque_nm}}],
+        });
+        let arm = arm.to_string();
+        std::fs::write(folder.path().join("arm.corrected.json"), &arm).expect("written");
+        let verdict = json!({"files": {"arm.corrected.json": hash(arm.as_bytes())}});
+        std::fs::write(folder.path().join("verdict.json"), verdict.to_string()).expect("written");
+        folder
+    }
+
+    #[test]
+    fn a_corrected_arm_is_read_as_analyze_reads_it() {
+        let check = |torque_nm: f64| {
+            let folder = result_with(torque_nm);
+            let file = unit_of(&folder.path().join("arm.corrected.json"));
+            look(file, &Catalogs::default()).to_text()
+        };
+        assert!(check(-1.0).contains("effects[0].parameters.torque_nm"), "{}", check(-1.0));
+        assert!(check(0.0107).contains("sound"), "a small arm: {}", check(0.0107));
+    }
+
+    #[test]
+    fn a_record_is_checked_with_its_campaign() {
+        let folder = tempfile::tempdir().expect("temporary folder");
+        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).expect("written");
+        write("campaign.json", r#"{"records": [{"file": "axis2.csv"}]}"#);
+        for name in ["record.csv", "axis2.csv", "notes.csv"] {
+            write(name, "t_s,j1_motor_deg\n");
+            let unit = unit_of(&folder.path().join(name));
+            assert_eq!(unit == folder.path(), name != "notes.csv", "{name}");
+        }
     }
 }

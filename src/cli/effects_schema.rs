@@ -72,7 +72,8 @@ fn of_parameter(parameter: &Parameter) -> Value {
         return json!({"type": "string", "description": "a channel: static, modal, windup or positions"});
     }
     let mut number = json!({"type": "number"});
-    for (key, bound) in [("minimum", parameter.low), ("maximum", parameter.high)] {
+    let (low, high) = parameter.readable();
+    for (key, bound) in [("minimum", low), ("maximum", high)] {
         // an infinite bound is left out
         if bound.is_finite() {
             number[key] = json!(bound);

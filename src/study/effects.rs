@@ -135,6 +135,8 @@ pub fn corrections_json(corrections: &[Correction]) -> Value {
 
 const OF_TEST: &str = "it describes how the arm was tested, not the arm";
 
+const CHOSEN_DRIVE: &str = "the study chooses this joint's drive: it keeps its catalog ratings";
+
 /// Applies the corrections of a measured arm to the file of a study. They are the effects of `arm`, and the factors in
 /// `calibrated`, such as `("j2.stiffness", 1.02)`.
 pub fn apply_corrections(
@@ -194,7 +196,7 @@ impl CorrectedStudy {
         match found {
             None => self.leaves_out(what, format!("the study has no joint {part}")),
             Some((_, SpaceJoint { drive: DriveChoice::FirstFit(_) | DriveChoice::AllFits(_), .. })) => {
-                self.leaves_out(what, "the study chooses this joint's drive: it keeps its catalog ratings");
+                self.leaves_out(what, CHOSEN_DRIVE);
             }
             Some((index, SpaceJoint { drive: DriveChoice::Given { curve, mass_kg, .. }, bearing, .. })) => {
                 let entry = &mut self.file["chain"][index];
@@ -224,15 +226,28 @@ impl CorrectedStudy {
     ) {
         let SpacePiece::Prismatic(slide) = piece else { return };
         let mut joint = slide.joint.clone();
-        match quantity {
-            "stiffness" => joint.stiffness_n_per_m = joint.stiffness_n_per_m.map(|k| k * factor),
-            "mass" => joint.mass_kg *= factor,
-            _ => joint.guide = joint.guide.stiffened(factor),
+        // the measured stiffness and mass are those of the drive that was built
+        if slide.drive.is_some() && quantity != "guide_stiffness" {
+            return self.leaves_out(what, CHOSEN_DRIVE);
         }
-        let written = joint.to_json();
-        for key in ["stiffness_n_per_m", "mass_kg", "guide"] {
-            self.file["chain"][index][key] = written[key].clone();
-        }
+        let key = match quantity {
+            "stiffness" => {
+                let Some(stiffness) = joint.stiffness_n_per_m else {
+                    return self.leaves_out(what, "the drive of this joint is rigid in the study");
+                };
+                joint.stiffness_n_per_m = Some(stiffness * factor);
+                "stiffness_n_per_m"
+            }
+            "mass" => {
+                joint.mass_kg *= factor;
+                "mass_kg"
+            }
+            _ => {
+                joint.guide = joint.guide.stiffened(factor);
+                "guide"
+            }
+        };
+        self.file["chain"][index][key] = joint.to_json()[key].take();
         self.applies(what, "the study gives this joint: its value is calibrated");
     }
 }

@@ -273,3 +273,38 @@ fn an_arm_file_that_changes_nothing_in_a_study_is_refused() {
         assert!(!here.path().join("out").exists());
     }
 }
+
+#[test]
+fn what_a_gantry_measured_of_a_screw_stays_with_it_and_what_it_measured_of_a_guide_does_not() {
+    let here = folder();
+    let gantry = read_json(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/arms/gantry.json"));
+    write(here.path(), "study.json", &gantry);
+    let slide = |name: &str, axis: Value| {
+        json!({"type": "prismatic", "name": name, "axis": axis, "stiffness_n_per_m": 5e7, "mass_kg": 20,
+               "guide": {"roll_nm_per_rad": 4e5, "pitch_nm_per_rad": 6e5, "yaw_nm_per_rad": 6e5}})
+    };
+    let calibrated = |name: &str| {
+        let value = |what: &str| json!({"value": format!("{name}.{what}"), "factor": 0.9});
+        ["stiffness", "mass", "guide_stiffness"].map(value)
+    };
+    let both = [calibrated("rail"), calibrated("column")].concat();
+    let arm = json!({"name": "measured", "effects": [],
+        "provenance": {"calibrated": both},
+        "chain": [slide("rail", json!([1, 0, 0])), slide("column", json!([0, 0, 1])),
+                  {"type": "link", "name": "boom", "vector_m": [0, 0.5, 0], "mass_kg": 2}]});
+    write(here.path(), "arm.json", &arm);
+    let words = ["run", "study.json", "--effects", "arm.json", "--out", "out"];
+    let (exit, said) = armwright(here.path(), &words);
+    assert_eq!(exit, 0, "{said}");
+    let run = read_json(here.path().join("out/run.json"));
+    let carried = run["carried_over"].as_array().expect("corrections");
+    let applied = |what: &str| {
+        let of = |c: &&Value| c["what"].as_str().is_some_and(|w| w.starts_with(what));
+        carried.iter().find(of).expect("the correction")["carried"].as_bool()
+    };
+    for slide in ["rail", "column"] {
+        assert_eq!(applied(&format!("{slide}.stiffness ")), Some(false));
+        assert_eq!(applied(&format!("{slide}.mass ")), Some(false));
+        assert_eq!(applied(&format!("{slide}.guide_stiffness ")), Some(true));
+    }
+}

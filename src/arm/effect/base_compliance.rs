@@ -6,7 +6,7 @@ use super::kind::{ElasticRotation, Kind, Parameter, Place, Scale, Scope, Traits}
 use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] =
-    &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 5e5, Scale::Stiffness).expected(0.0, 6.0)];
+    &[Parameter::number("stiffness_nm_per_rad", 1e-3, 1e10, 5e5, Scale::Stiffness).expected(0.0, 6.0)];
 
 /// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {

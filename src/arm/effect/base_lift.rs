@@ -6,8 +6,10 @@ use super::subject::Subject;
 use crate::arm::base_lift::BaseLift;
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 5e5, Scale::Stiffness).expected(0.0, 6.0),
-    Parameter::number("preload_nm", 0.1, 1e6, 100.0, Scale::Log).expected(1.0, 1e4).within_torque(0.05, 0.95),
+    Parameter::number("stiffness_nm_per_rad", 1e-3, 1e10, 5e5, Scale::Stiffness).expected(0.0, 6.0),
+    Parameter::number("preload_nm", 1e-3, 1e6, 100.0, Scale::Log)
+        .expected(1.0, 1e4)
+        .within_torque(0.05, 0.95),
 ];
 
 /// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.

@@ -4,7 +4,7 @@ use super::kind::{ElasticRotation, Kind, Needs, Parameter, Place, Scale, Scope, 
 use super::subject::Subject;
 
 const PARAMETERS: &[Parameter] =
-    &[Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness).expected(0.0, 20.0)];
+    &[Parameter::number("stiffness_nm_per_rad", 1e-3, 1e10, 2e5, Scale::Stiffness).expected(0.0, 20.0)];
 
 /// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {

@@ -87,9 +87,9 @@ pub struct Parameter {
     pub name: &'static str,
     /// Number of values: 1, more for a vector, or 0 for a list of any length.
     pub count: usize,
-    /// Smallest value that a file may give.
+    /// Smallest value that a file may give for an arm of usual size.
     pub low: f64,
-    /// Largest value that a file may give.
+    /// Largest value that a file may give for an arm of usual size.
     pub high: f64,
     /// A typical value. With the scale [`Scale::Linear`] it is the value at `u = 1`.
     pub typical: f64,
@@ -122,9 +122,25 @@ pub struct Parameter {
 }
 
 impl Parameter {
+    /// Smallest and largest value that a file may give. Where the expected size grows with the arm, both are those of
+    /// an arm that is much larger than usual.
+    pub(crate) fn readable(&self) -> (f64, f64) {
+        match self.grows_with {
+            Some(_) if self.sought_up_to.is_none() => (LARGEST_GROWTH * self.low, LARGEST_GROWTH * self.high),
+            _ => (self.low, self.high),
+        }
+    }
+
     /// Whether a file may give this value.
     pub(crate) fn allows(&self, value: f64) -> bool {
-        (self.low..=self.high).contains(&value)
+        let (low, high) = self.readable();
+        (low..=high).contains(&value)
+    }
+
+    /// The value next to `value` that a file may give.
+    pub(crate) fn nearest(&self, value: f64) -> f64 {
+        let (low, high) = self.readable();
+        value.clamp(low, high)
     }
 
     /// A parameter with a single value that a file must give, between `low` and `high`. `typical` is a usual value, and
@@ -247,6 +263,9 @@ pub(super) const EVERY_CHANNEL: &[Place] = &[
     Place::Channel(Channel::Positions),
 ];
 
+/// How many times larger than usual an arm or its readings may be, for the limits of parameters that grow with them.
+const LARGEST_GROWTH: f64 = 100.0;
+
 /// Prior probability of a rare effect divided by the prior probability of a usual effect. A prior probability is the
 /// probability before any reading is considered.
 pub const RARE_PRIOR: f64 = 0.3;
@@ -359,4 +378,11 @@ pub struct Kind {
     pub apply: fn(&[f64], &str, &mut Subject),
     /// Properties that `reconcile` and the studies use.
     pub traits: Traits,
+}
+
+impl Kind {
+    /// The parameter named `name`, at the first kind of place that has it.
+    pub(crate) fn parameter(&self, name: &str) -> Option<&'static Parameter> {
+        self.places.iter().flat_map(|place| (self.parameters)(*place)).find(|p| p.name == name)
+    }
 }

@@ -9,7 +9,7 @@ const PARAMETERS: &[Parameter] = &[
         .expected(0.0, 2e-3)
         .sought_up_to(5e-3)
         .growing_with(Measure::Angle, 1.0),
-    Parameter::number("torque_nm", 0.05, 1e4, 10.0, Scale::Log)
+    Parameter::number("torque_nm", 1e-4, 1e4, 10.0, Scale::Log)
         .expected(0.3, 500.0)
         .within_torque(0.003, 1.0),
 ];

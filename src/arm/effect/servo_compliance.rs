@@ -9,7 +9,7 @@ use super::subject::Subject;
 pub(crate) const CHANNEL: &str = "channel";
 
 const PARAMETERS: &[Parameter] = &[
-    Parameter::number("stiffness_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness).expected(0.0, 6.0),
+    Parameter::number("stiffness_nm_per_rad", 1e-3, 1e10, 2e5, Scale::Stiffness).expected(0.0, 6.0),
     Parameter { is_channel: true, default: None, ..Parameter::number(CHANNEL, 0.0, 3.0, 1.0, Scale::Linear) },
 ];
 

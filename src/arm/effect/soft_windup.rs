@@ -10,13 +10,13 @@ pub(crate) const MIDDLE_SLOPE: &str = "k2_nm_per_rad";
 /// Parameters of the effect: the slopes K1, K2, K3 and the break points. The nominal stiffness of a joint is usually
 /// the slope K2 of its gear. So a fit expects K2 near the nominal stiffness, K1 below and K3 above.
 const PARAMETERS: &[Parameter] = &[
-    Parameter::number("k1_nm_per_rad", 1.0, 1e10, 1e5, Scale::Stiffness)
+    Parameter::number("k1_nm_per_rad", 1e-3, 1e10, 1e5, Scale::Stiffness)
         .expected(1.02, 4.0)
         .absent(Absent::Never),
-    Parameter::number(MIDDLE_SLOPE, 1.0, 1e10, 1.5e5, Scale::Stiffness)
+    Parameter::number(MIDDLE_SLOPE, 1e-3, 1e10, 1.5e5, Scale::Stiffness)
         .expected(0.9, 1.1)
         .absent(Absent::Never),
-    Parameter::number("k3_nm_per_rad", 1.0, 1e10, 2e5, Scale::Stiffness)
+    Parameter::number("k3_nm_per_rad", 1e-3, 1e10, 2e5, Scale::Stiffness)
         .expected(0.25, 0.98)
         .absent(Absent::Never),
     Parameter::number("t1_nm", 0.01, 1e5, 50.0, Scale::Log).expected(0.5, 5e3).within_torque(0.02, 1.0),

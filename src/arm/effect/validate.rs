@@ -86,10 +86,8 @@ impl Effect {
             }
             Some((_, numbers)) => {
                 let outside = numbers.iter().find(|n| !parameter.allows(**n))?;
-                (
-                    format!("= {outside} is out of bounds"),
-                    format!("give {} to {}", parameter.low, parameter.high),
-                )
+                let (low, high) = parameter.readable();
+                (format!("= {outside} is out of bounds"), format!("give {low} to {high}"))
             }
         };
         Some(EffectFault { field: format!("parameters.{}", parameter.name), problem, hint })

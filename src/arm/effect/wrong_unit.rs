@@ -46,14 +46,14 @@ pub struct UnitSlip {
     pub column: UnitColumn,
     /// The mistake in words, for messages, such as "inches in a column of mm".
     pub cause: &'static str,
-    /// The channels whose quantity has these units; all if the list is empty.
+    /// The channels whose quantity has these units.
     pub channels: &'static [Channel],
 }
 
 impl UnitSlip {
     /// Whether a column of the channel can have these units.
     pub fn is_of(&self, channel: Channel) -> bool {
-        self.channels.is_empty() || self.channels.contains(&channel)
+        self.channels.contains(&channel)
     }
 }
 
@@ -63,6 +63,14 @@ const KGF_N: f64 = 9.806_65;
 const POUND_KG: f64 = 0.453_592_37;
 /// One pound-force in N.
 const LBF_N: f64 = POUND_KG * KGF_N;
+/// Inches in one foot.
+const FOOT_IN: f64 = 12.0;
+/// One inch in m.
+const INCH_M: f64 = 0.0254;
+/// Ounces in one pound.
+const POUND_OZ: f64 = 16.0;
+/// One radian in arcmin.
+const RADIAN_ARCMIN: f64 = 10_800.0 / std::f64::consts::PI;
 
 const LENGTHS: &[Channel] = &[Channel::Static, Channel::Positions];
 const FREQUENCIES: &[Channel] = &[Channel::Modal];
@@ -74,8 +82,12 @@ const fn slip(factor: f64, cause: &'static str, channels: &'static [Channel]) ->
     UnitSlip { factor, column: UnitColumn::Reading, cause, channels }
 }
 
-const fn force(factor: f64, cause: &'static str, channels: &'static [Channel]) -> UnitSlip {
-    UnitSlip { factor, column: UnitColumn::Force, cause, channels }
+const fn force(factor: f64, cause: &'static str) -> UnitSlip {
+    UnitSlip { factor, column: UnitColumn::Force, cause, channels: TIP_LOADS }
+}
+
+const fn torque(factor: f64, cause: &'static str) -> UnitSlip {
+    UnitSlip { factor, column: UnitColumn::Force, cause, channels: ANGLES }
 }
 
 const fn payload(factor: f64, cause: &'static str) -> UnitSlip {
@@ -87,28 +99,42 @@ pub const SLIPS: &[UnitSlip] = &[
     slip(25.4, "a value in mm stands 25.4 times too large: converted from inches twice", LENGTHS),
     slip(1.0 / 25.4, "inches in a column of mm", LENGTHS),
     slip(1000.0 / 25.4, "thousandths of an inch in a column of mm", LENGTHS),
-    slip(1000.0, "thousandths (micrometres in a column of mm), or a conversion done twice", &[]),
-    slip(1e-3, "thousands (metres in a column of mm)", &[]),
-    slip(10.0, "tenths in the column", &[]),
-    slip(0.1, "tens (cm in a column of mm)", &[]),
-    slip(std::f64::consts::PI / 180.0, "radians in a column of degrees", ANGLES),
-    slip(180.0 / std::f64::consts::PI, "degrees in a column of radians", ANGLES),
-    slip(60.0, "arcseconds in a column of arcmin", ANGLES),
-    slip(1.0 / 60.0, "degrees in a column of arcmin", ANGLES),
+    slip(1000.0, "thousandths (micrometres in a column of mm), or a conversion done twice", LENGTHS),
+    slip(100.0, "hundredths (divisions of 0.01 mm of a dial gauge in a column of mm)", LENGTHS),
+    slip(10.0, "tenths (divisions of 0.1 mm in a column of mm)", LENGTHS),
+    slip(0.1, "tens (cm in a column of mm)", LENGTHS),
+    slip(1e-3, "thousands (metres in a column of mm)", LENGTHS),
     slip(60.0, "revolutions per minute in a column of Hz", FREQUENCIES),
     slip(std::f64::consts::TAU, "rad/s in a column of Hz", FREQUENCIES),
     slip(1.0 / std::f64::consts::TAU, "a frequency divided by 2 pi twice", FREQUENCIES),
-    slip(std::f64::consts::PI / 10800.0, "radians in a column of arcmin", ANGLES),
-    slip(0.1 * std::f64::consts::PI / 10.8, "milliradians in a column of arcmin", ANGLES),
-    force(KGF_N, "forces in kgf in a column of N", TIP_LOADS),
-    force(1.0 / KGF_N, "forces multiplied by g although they were in N", TIP_LOADS),
-    force(LBF_N, "forces in lbf in a column of N", TIP_LOADS),
-    force(1.0 / LBF_N, "forces multiplied by 4.448 although they were in N", TIP_LOADS),
-    force(1e3, "forces in kN in a column of N", TIP_LOADS),
-    force(KGF_N, "torques in kgf m in a column of N m", ANGLES),
-    force(1.0 / KGF_N, "torques multiplied by g although they were in N m", ANGLES),
+    slip(1000.0, "mHz in a column of Hz", FREQUENCIES),
+    slip(1e-3, "kHz in a column of Hz", FREQUENCIES),
+    slip(60.0, "arcseconds in a column of arcmin", ANGLES),
+    slip(1.0 / 60.0, "degrees in a column of arcmin", ANGLES),
+    slip(1.0 / RADIAN_ARCMIN, "radians in a column of arcmin", ANGLES),
+    slip(1e3 / RADIAN_ARCMIN, "milliradians in a column of arcmin", ANGLES),
+    slip(1e6 / RADIAN_ARCMIN, "microradians in a column of arcmin", ANGLES),
+    force(KGF_N, "forces in kgf in a column of N"),
+    force(1.0 / KGF_N, "forces multiplied by g although they were in N"),
+    force(1e-3 * KGF_N, "forces in gf in a column of N"),
+    force(LBF_N, "forces in lbf in a column of N"),
+    force(1.0 / LBF_N, "forces multiplied by 4.448 although they were in N"),
+    force(LBF_N / POUND_OZ, "forces in ozf in a column of N"),
+    force(1e3, "forces in kN in a column of N"),
+    torque(KGF_N, "torques in kgf m in a column of N m"),
+    torque(1.0 / KGF_N, "torques multiplied by g although they were in N m"),
+    torque(1e-2 * KGF_N, "torques in kgf cm in a column of N m"),
+    torque(LBF_N * FOOT_IN * INCH_M, "torques in ft lbf in a column of N m"),
+    torque(1.0 / (LBF_N * FOOT_IN * INCH_M), "torques multiplied by 1.356 although they were in N m"),
+    torque(LBF_N * INCH_M, "torques in in lbf in a column of N m"),
+    torque(LBF_N / POUND_OZ * INCH_M, "torques in ozf in in a column of N m"),
+    torque(10.0, "torques in daN m in a column of N m"),
+    torque(0.01, "torques in N cm in a column of N m"),
+    torque(1e-3, "torques in N mm in a column of N m"),
+    torque(1e3, "torques in kN m in a column of N m"),
     payload(POUND_KG, "payloads in pounds in a column of kg"),
     payload(1.0 / POUND_KG, "payloads multiplied by 0.4536 although they were in kg"),
+    payload(POUND_KG / POUND_OZ, "payloads in ounces in a column of kg"),
     payload(1.0 / KGF_N, "payloads as weights in N in a column of kg"),
     payload(1e-3, "payloads in grams in a column of kg"),
 ];
@@ -148,6 +174,35 @@ mod tests {
             of(Channel::Modal, UnitColumn::Payload).is_empty(),
             "a frequency is not proportional to a payload"
         );
+    }
+
+    #[test]
+    fn every_unit_of_a_bench_and_of_a_gauge_has_the_factor_of_the_tables() {
+        let has = |channel: Channel, cause: &str, factor: f64| {
+            let unit = SLIPS.iter().find(|slip| slip.is_of(channel) && slip.cause.contains(cause));
+            let found = unit.expect(cause).factor;
+            assert!((found / factor - 1.0).abs() < 1e-6, "{cause}: {found}");
+        };
+        // the radian is 3437.7468 arcmin; the torques are those of NIST SP 811
+        for (cause, factor) in [
+            ("milliradians", 0.290_888_2),
+            ("microradians", 290.888_2),
+            ("radians in", 2.908_882e-4),
+            ("arcseconds", 60.0),
+            ("kgf cm", 9.806_65e-2),
+            ("ft lbf", 1.355_818),
+            ("in in lbf", 0.112_984_8),
+            ("ozf in", 7.061_552e-3),
+            ("N cm", 0.01),
+        ] {
+            has(Channel::Windup, cause, factor);
+        }
+        has(Channel::Static, "ozf", 0.278_013_9);
+        has(Channel::Static, "ounces", 2.834_952e-2);
+        has(Channel::Static, "dial gauge", 100.0);
+        let of_bench = SLIPS.iter().filter(|slip| slip.is_of(Channel::Windup));
+        let in_degrees = |factor: f64| libm::log(factor * std::f64::consts::PI / 180.0).abs() < 0.01;
+        assert!(of_bench.clone().all(|slip| !in_degrees(slip.factor)), "no bench has radians or degrees");
     }
 
     #[test]

@@ -16,6 +16,7 @@ use crate::arm::joint_law::Curve;
 use crate::arm::structure::Piece;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::forward::statics::StaticPose;
+use std::ops::RangeInclusive;
 
 /// The candidates of a campaign: every effect at every place of the arm that the channels of the campaign could show.
 pub fn candidates(forward: &Forward) -> Vec<Candidate> {
@@ -162,6 +163,7 @@ fn candidate(forward: &Forward, sizes: &Sizes, asked: Asked) -> Candidate {
     let torque_nm = largest_torque_nm(forward, &at).max(1.0);
     let mut free_parameters = Vec::new();
     let mut numbers = Vec::new();
+    let mut fitted = Vec::new();
     for parameter in (kind.parameters)(place) {
         let sized = &of_size(parameter, sizes);
         for component in 0..parameter.count {
@@ -171,6 +173,7 @@ fn candidate(forward: &Forward, sizes: &Sizes, asked: Asked) -> Candidate {
                 let free = within_torque(free, parameter, torque_nm);
                 let free = within_tolerance(free, parameter, forward.stiffness_tolerance);
                 free_parameters.push(within_rows(free, rows_of_campaign(forward)));
+                fitted.push(parameter);
                 numbers.push(Number::Free);
             } else {
                 numbers.push(Number::Stated(stated(forward, parameter, channel)));
@@ -187,6 +190,7 @@ fn candidate(forward: &Forward, sizes: &Sizes, asked: Asked) -> Candidate {
         free_parameters[0].low =
             free_parameters[0].low.max(-0.999 * least_kg / free_parameters[0].value(1.0));
     }
+    free_parameters.iter_mut().zip(fitted).for_each(|(free, parameter)| free.keep_readable(parameter));
     let values_at_one: Vec<f64> = free_parameters.iter().map(|free| free.value(1.0)).collect();
     let rows = rows_of_campaign(forward);
     let setting =
@@ -315,6 +319,10 @@ pub(crate) fn largest_torque_nm(forward: &Forward, at: &str) -> f64 {
     statics.chain(modal).map(|t| t[j].abs()).chain(bench).fold(0.0, f64::max)
 }
 
+/// Factors in this range are no candidates. A missing compliance changes readings by such factors too, and as a unit has
+/// no free parameter it would be preferred to each of them. A gain that is near such a factor says so.
+const LIKE_A_STIFFNESS: RangeInclusive<f64> = 0.6..=1.0 / 0.6;
+
 /// Factors whose logarithms differ by less than this are one and the same.
 const ONE_FACTOR: f64 = 1e-9;
 
@@ -332,7 +340,8 @@ fn unit_slips(forward: &Forward) -> Vec<Candidate> {
     };
     channels
         .flat_map(|channel| {
-            let factors = unit_factors(&possible_slips(forward, channel));
+            let mut factors = unit_factors(&possible_slips(forward, channel));
+            factors.retain(|factor| !LIKE_A_STIFFNESS.contains(factor));
             factors.into_iter().map(move |factor| slip(channel, factor))
         })
         .collect()
@@ -365,6 +374,32 @@ fn unit_factors(slips: &[&UnitSlip]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The range in which a parameter is sought, as in [`candidate`].
+    fn sought(parameter: &Parameter, wider: f64, reference: f64, torque_nm: f64) -> FreeParameter {
+        let sized = Parameter { low: wider * parameter.low, high: wider * parameter.high, ..*parameter };
+        let reference = if parameter.scale == Scale::Torque { torque_nm } else { reference };
+        let free = within_torque(FreeParameter::new(&sized, 0, reference), parameter, torque_nm);
+        let mut free = within_rows(within_tolerance(free, parameter, 0.1), 3.0);
+        free.keep_readable(parameter);
+        free
+    }
+
+    #[test]
+    fn no_parameter_is_sought_where_no_file_may_have_it() {
+        let kinds = KINDS.iter().filter(|kind| kind.traits.is_sought);
+        let parameters = kinds.flat_map(|kind| kind.places.iter().flat_map(|at| (kind.parameters)(*at)));
+        for parameter in parameters.filter(|p| !p.is_channel && p.count > 0) {
+            for (wider, reference, torque_nm) in [(1.0, 5.0, 1.0), (1.0, 1e5, 80.0), (1e4, 1e11, 1e7)] {
+                let free = sought(parameter, wider, reference, torque_nm);
+                // 1e-12 for the rounding of logarithms, which the writer of the corrected arm removes
+                let ends = [free.low, free.high].map(|u| free.value(u));
+                let is_kept = |x: &f64| (parameter.nearest(*x) - x).abs() <= 1e-12 * x.abs();
+                let is_absent = |x: &f64| *x >= 1e15 && parameter.scale == Scale::Stiffness;
+                assert!(ends.iter().all(|x| is_kept(x) || is_absent(x)), "{} {ends:?}", parameter.name);
+            }
+        }
+    }
 
     #[test]
     fn units_with_one_factor_are_one_candidate() {

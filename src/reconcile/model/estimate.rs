@@ -1,5 +1,6 @@
 //! Values with their 95 % intervals, and effects found with such values.
 
+use crate::arm::effect::catalogue::kind;
 use crate::arm::effect::entry::{Effect, word_of};
 use serde_json::{Map, Value, json};
 
@@ -75,10 +76,27 @@ impl Finding {
         format!("{}@{}", self.effect, self.at)
     }
 
-    /// The finding as an entry of an arm file. `source` says which readings it comes from.
+    /// The finding with its estimates multiplied by `factor`, which is positive.
+    pub(crate) fn times(&self, factor: f64) -> Self {
+        let mut out = self.clone();
+        for estimate in out.parameters.iter_mut().flat_map(|(_, list)| list) {
+            let [low, high] = [estimate.low, estimate.high].map(|end| end.map(|x| x * factor));
+            *estimate = Estimate { value: estimate.value * factor, low, high };
+        }
+        out
+    }
+
+    /// The finding as an entry of an arm file, with values that such a file may have. `source` says which readings it
+    /// comes from.
     pub(crate) fn as_effect(&self, source: Value) -> Effect {
-        let values = |list: &[Estimate]| list.iter().map(|estimate| estimate.value).collect();
-        let parameters = self.parameters.iter().map(|(name, list)| (name.clone(), values(list))).collect();
+        let kind = kind(&self.effect);
+        let readable = |name: &str, value: f64| match kind.and_then(|kind| kind.parameter(name)) {
+            Some(parameter) => parameter.nearest(value),
+            None => value,
+        };
+        let values = |name: &str, list: &[Estimate]| list.iter().map(|e| readable(name, e.value)).collect();
+        let parameters = self.parameters.iter().map(|(name, list)| (name.clone(), values(name, list)));
+        let parameters = parameters.collect();
         Effect { effect: self.effect.clone(), at: self.at.clone(), parameters, source: Some(source) }
     }
 

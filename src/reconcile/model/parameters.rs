@@ -90,6 +90,20 @@ impl FreeParameter {
         Self { low: self.low / factor, high: self.high * factor, ..self }
     }
 
+    /// Limits the range to values that files may give, so that whatever a fit finds can be read again. A compliance may
+    /// still be zero: the effect is then absent, and no file has it.
+    pub(crate) fn keep_readable(&mut self, parameter: &Parameter) {
+        let (least, most) = parameter.readable();
+        let (low, high) = match self.reversed() {
+            true => (self.u(most), self.u(least)),
+            false => (self.u(least), self.u(most)),
+        };
+        if !(self.scale == Scale::Stiffness && self.is_size()) {
+            self.low = self.low.clamp(low, high);
+        }
+        self.high = self.high.clamp(low, high);
+    }
+
     /// Distance of `u` from its expected range, as a multiple of the range's width; 0 inside the range.
     pub fn beyond_expected(&self, u: f64) -> f64 {
         let (low, high) = self.expected;
@@ -323,9 +337,9 @@ impl Candidate {
             .map(|p| {
                 let (own, others) = rest.split_at(p.count.min(rest.len()));
                 rest = others;
-                // a stiffness beyond the range of files is as good as rigid
-                let most = if p.scale == Scale::Stiffness { p.high } else { f64::INFINITY };
-                (p.name.to_string(), own.iter().map(|x| x.min(most)).collect())
+                // a stiffness beyond the range of files is as good as rigid, and other values may miss the range by
+                // rounding
+                (p.name.to_string(), own.iter().map(|x| p.nearest(*x)).collect())
             })
             .collect();
         Effect { effect: self.kind.name.into(), at: self.at.clone(), parameters, source: None }

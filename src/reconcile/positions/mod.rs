@@ -20,6 +20,7 @@
 //! - `setups` brings the positions of several campaigns into one frame.
 //! - `conventions` tests whether the file was written by another convention (`convention_changes`). `far_geometry` tests
 //!   whether calibration went further than its prior expects, and `structure` tests the errors that are left.
+//! - `declared_sigma` compares the standard deviations of the file with the scatter.
 //! - `unnamed_springs` widens intervals for compliances that are not in the model.
 //! - `next_test` proposes what to measure, and [`outcome`] reaches the verdict.
 //! - [`predict`] predicts positions of several arms whose weights load each other's trunk.
@@ -31,6 +32,7 @@ mod angle_laws;
 pub(crate) mod boundary;
 pub(crate) mod convention_changes;
 pub(crate) mod conventions;
+mod declared_sigma;
 pub(crate) mod dependence;
 mod drift;
 pub(crate) mod eight_places;

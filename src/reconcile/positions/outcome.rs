@@ -156,7 +156,7 @@ impl Positions {
         out.extend(self.moved_zeros());
         out.extend(self.moved_geometry());
         out.extend(self.still_joints());
-        out.extend(self.other_convention(campaign));
+        out.extend(self.other_convention(campaign).into_iter().chain(self.too_careful(campaign)));
         out
     }
 

@@ -1,7 +1,7 @@
 //! Reads a campaign: the arm file, what `campaign.json` states about arm and readings, and the readings.
 
 use super::cells::Purpose;
-use super::components::{Components, DISPLACEMENT, POSITION, leave_out_idle};
+use super::components::{Components, DISPLACEMENT, POSITION, leave_out_idle, never_read};
 use super::declared::{self, DeclaredSession};
 use super::keys::{CAMPAIGN, POSITIONS, TOLERANCE};
 use super::record::{Record, read_all};
@@ -277,6 +277,7 @@ impl Campaign {
                 let mut table = Table::read_from(&file, &source)?;
                 table.refuse_more_than(MOST_READINGS);
                 campaign.read_channel(channel, &table);
+                campaign.remarks.extend(table.unused());
                 faults.extend(table.into_faults());
             }
         }
@@ -305,6 +306,7 @@ impl Campaign {
                 self.statics = static_rows(table, &self.arm, Purpose::Fit);
                 let mut read: Vec<&mut Components> =
                     self.statics.iter_mut().map(|r| &mut r.measured).collect();
+                self.remarks.extend(never_read(table, &DISPLACEMENT, &read));
                 self.remarks.extend(leave_out_idle(&table.short_name(), &DISPLACEMENT, &mut read));
             }
             Channel::Modal => self.modal = modal_rows(table, &self.arm, Purpose::Fit),
@@ -314,6 +316,7 @@ impl Campaign {
                 self.positions = position_rows(table, &names, &driven_joints(&self.arms()), Purpose::Fit);
                 let mut read: Vec<&mut Components> =
                     self.positions.iter_mut().map(|r| &mut r.measured).collect();
+                self.remarks.extend(never_read(table, &POSITION, &read));
                 self.remarks.extend(leave_out_idle(&table.short_name(), &POSITION, &mut read));
             }
         }

@@ -130,6 +130,20 @@ impl<'a> VectorColumns<'a> {
 /// Texts that people write into a cell if nothing was read. They are faults; a blank cell is expected.
 const NOTHING: [&str; 9] = ["-", "--", "\u{2013}", "\u{2014}", "/", "?", "n/a", "na", "none"];
 
+/// Sentence on the components that have a column without any reading; `None` if there are none.
+pub(crate) fn never_read(table: &Table, names: &Names, rows: &[&mut Components]) -> Option<String> {
+    let is_blank =
+        |c: &usize| table.optional(names.values[*c]).is_some() && rows.iter().all(|row| row[*c].is_none());
+    let blank: Vec<&str> = (0..3).filter(is_blank).map(|c| names.values[c]).collect();
+    (!blank.is_empty() && !rows.is_empty()).then(|| {
+        format!(
+            "{}: columns without any reading, taken as not measured: {}",
+            table.short_name(),
+            blank.join(", ")
+        )
+    })
+}
+
 /// Replaces readings in `rows` that are in the file but were not measured by `None`, and returns a sentence on each
 /// case. The cases are constant columns and zeros of other directions (see the head of this file). `file` is the name
 /// of the file for the sentences. Nothing is replaced, and the result is empty, if there are fewer than

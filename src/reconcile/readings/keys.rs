@@ -277,18 +277,19 @@ static COLUMN_NAMES: Shape = Shape {
 };
 
 /// Keys of `columns`: for each channel, the names that its columns have in the file.
-pub(super) static COLUMNS: Shape = Shape::new(
-    "columns",
-    "What columns are called in the files.",
-    &[
+pub(super) static COLUMNS: Shape = Shape {
+    name: "columns",
+    about: "What columns are called in the files. Columns of records stand here by their own names.",
+    keys: &[
         optional("static", NAMES_OF_COLUMNS, "-", "{}", "Of the displacements."),
         optional("modal", NAMES_OF_COLUMNS, "-", "{}", "Of the frequencies."),
         optional("windup", NAMES_OF_COLUMNS, "-", "{}", "Of the twists."),
         optional("positions", NAMES_OF_COLUMNS, "-", "{}", "Of the positions."),
         NOTE,
     ],
-    &[],
-);
+    rules: &[],
+    others: Some(&Kind::Text),
+};
 
 /// Keys of an entry of `records`: a record against time.
 pub(crate) static RECORD: Shape = Shape::new(

@@ -14,3 +14,5 @@ pub(crate) mod rows;
 pub(crate) mod source;
 pub(crate) mod spreadsheet;
 pub mod table;
+#[cfg(test)]
+mod tests;

@@ -5,7 +5,9 @@
 //! the columns that are used are converted to numbers.
 
 use super::median::median;
-use super::record_spec::RecordSpec;
+use super::record_spec::{RecordSpec, SUFFIXES};
+use super::spreadsheet::is_spreadsheet;
+use crate::input::csv::other_separators;
 use crate::input::json::{Fault, InputError, closest};
 use csv::{ReaderBuilder, Trim};
 use std::path::Path;
@@ -109,7 +111,13 @@ fn read_record(
     let file = path.display().to_string();
     let text = std::fs::read(path).map_err(|source| InputError::Unreadable { file: file.clone(), source })?;
     let mut reader = Reader { file, spec, header: Vec::new(), faults: Vec::new() };
-    let record = reader.read(&text, joints);
+    let record = match no_csv(path, &text) {
+        Some((problem, hint)) => {
+            reader.fault(None, "", problem.into(), hint);
+            None
+        }
+        None => reader.read(&text, joints),
+    };
     let is_sound = reader.faults.is_empty();
     let listed = reader.faults.len();
     faults.extend(reader.faults.into_iter().take(MOST_FAULTS));
@@ -126,6 +134,17 @@ fn read_record(
     Ok(record.filter(|_| is_sound))
 }
 
+/// Why the content `text` of a file cannot be the CSV of a record, and what to do; `None` if it can be.
+fn no_csv(path: &Path, text: &[u8]) -> Option<(&'static str, &'static str)> {
+    const HINT: &str = "records are read as CSV: save the sheet as CSV, with commas between the columns";
+    match () {
+        () if is_spreadsheet(path) => Some(("is a spreadsheet", HINT)),
+        // a text has no zero bytes, and a file that is none must not be shown in messages
+        () if text.contains(&0) => Some(("is no text", HINT)),
+        () => None,
+    }
+}
+
 impl Reader<'_> {
     /// Reads the content `text` of the file. Faults are collected. `None` if the columns are not those of a record.
     fn read(&mut self, text: &[u8], joints: &[String]) -> Option<Record> {
@@ -140,6 +159,13 @@ impl Reader<'_> {
         let first = records.next().and_then(Result::ok);
         let as_text = |cell: &[u8]| String::from_utf8_lossy(cell).into_owned();
         self.header = first.iter().flatten().map(as_text).collect();
+        let separators: Vec<&str> = other_separators(&self.header, 2).collect();
+        if !separators.is_empty() {
+            let problem = format!("its columns are separated by {}", separators.join(" and "));
+            let hint = "separate columns with commas, write decimals with a point, and name the columns in the first row";
+            self.fault(Some(1), "", problem, hint);
+            return None;
+        }
         self.check_names(joints);
         let time = self.required("t_s");
         let columns: Vec<Columns> = joints.iter().filter_map(|j| self.columns_of(j)).collect();
@@ -178,7 +204,10 @@ impl Reader<'_> {
 
     /// Name in the file of the column that this program calls `column`.
     fn name_of(&self, column: &str) -> String {
-        let mapped = self.spec.columns.iter().find(|(ours, _)| ours == column);
+        let own = self.spec.columns.iter().find(|(ours, _)| ours == column);
+        let mut common = self.spec.common_columns.iter();
+        let mapped =
+            own.or_else(|| common.find(|(ours, theirs)| ours == column && self.header.contains(theirs)));
         mapped.map_or(column, |(_, theirs)| theirs).to_string()
     }
 
@@ -207,19 +236,20 @@ impl Reader<'_> {
                 let problem = format!("campaign.json gives it for {ours}, but the file has no such column");
                 self.fault(Some(1), &theirs, problem, &hint);
             }
-            let suffixes = ["_motor_deg", "_motor_shaft_deg", "_link_deg", "_motor_torque_nm", "_current_a"];
+        }
+        let spec = self.spec;
+        for (ours, _) in spec.columns.iter().chain(&spec.common_columns) {
             let of_joint =
-                suffixes.iter().any(|s| ours.strip_suffix(s).is_some_and(|j| joints.iter().any(|k| k == j)));
+                SUFFIXES.iter().any(|s| ours.strip_suffix(s).is_some_and(|j| joints.iter().any(|k| k == j)));
             if ours != "t_s" && !of_joint {
                 let hint = format!(
                     "known are t_s and, for each joint ({}), the joint's name followed by one of: {}",
                     joints.join(", "),
-                    suffixes.join(", ")
+                    SUFFIXES.join(", ")
                 );
-                self.fault(None, &ours, "\"columns\" of campaign.json maps an unknown name".into(), &hint);
+                self.fault(None, ours, "\"columns\" of campaign.json maps an unknown name".into(), &hint);
             }
         }
-        let spec = self.spec;
         let stated = [&spec.ratio, &spec.torque_constant_nm_per_a, &spec.rotor_inertia_kgm2];
         for name in stated.iter().flat_map(|p| p.joints()).filter(|n| !joints.iter().any(|j| j == n)) {
             let hint = format!("joints of the arm: {}", joints.join(", "));
@@ -300,6 +330,9 @@ impl Reader<'_> {
     /// the column of times. Faults are collected.
     fn push(&mut self, out: &mut Record, columns: &[Columns], time: usize, cells: &csv::ByteRecord) {
         let line = cells.position().map(|p| p.line() as usize);
+        if cells.iter().all(<[u8]>::is_empty) {
+            return;
+        }
         if cells.len() != self.header.len() {
             let problem = format!("has {} cells, the header has {}", cells.len(), self.header.len());
             return self.fault(line, "", problem, "give every row a value for every column");

@@ -7,6 +7,10 @@ use crate::input::json::{Node, Object};
 /// Name of the file that is read if `campaign.json` names none.
 pub(crate) const DEFAULT_FILE: &str = "record.csv";
 
+/// What follows the name of a joint in the name of a record's column.
+pub(crate) const SUFFIXES: [&str; 5] =
+    ["_motor_deg", "_motor_shaft_deg", "_link_deg", "_motor_torque_nm", "_current_a"];
+
 /// A constant of the drives: one number for all joints, or a number for each joint by its name.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PerJoint(Vec<(Option<String>, f64)>);
@@ -33,6 +37,8 @@ pub struct RecordSpec {
     pub is_named: bool,
     /// Columns whose names differ, as pairs: the name in this program, and the name in the file.
     pub columns: Vec<(String, String)>,
+    /// Pairs of names as in `columns`, for every record. A record need not have these columns.
+    pub(crate) common_columns: Vec<(String, String)>,
     /// Gear ratio: turns of the motor for one turn of the output.
     pub ratio: PerJoint,
     /// Torque at the motor shaft for each ampere \[N m/A\].
@@ -48,7 +54,9 @@ pub struct RecordSpec {
 /// not exist. Constants that an entry does not state are those of `campaign.json` itself. `None` after recording a
 /// fault.
 pub(crate) fn read_records(root: &Object) -> Option<Vec<RecordSpec>> {
-    let common = read_constants(root, &RecordSpec { file: DEFAULT_FILE.into(), ..RecordSpec::default() })?;
+    let common = RecordSpec { file: DEFAULT_FILE.into(), ..RecordSpec::default() };
+    let names = root.or("columns", Vec::new(), read_common_columns);
+    let common = RecordSpec { common_columns: names?, ..read_constants(root, &common)? };
     let Some(node) = root.optional("records") else { return Some(vec![common]) };
     let read: Vec<Option<RecordSpec>> = node.array()?.iter().map(|n| read_record(n, &common)).collect();
     read.into_iter().collect()
@@ -81,6 +89,19 @@ fn read_constants(object: &Object, common: &RecordSpec) -> Option<RecordSpec> {
         torque_at_output: at_output?,
         ..common.clone()
     })
+}
+
+/// The entries of `columns` of `campaign.json` that name columns of records: `t_s`, or a joint with one of the
+/// [`SUFFIXES`].
+pub(crate) fn record_columns<'a>(columns: &Node<'a>) -> Vec<(&'a str, Node<'a>)> {
+    let is_of_record = |name: &str| name == "t_s" || SUFFIXES.iter().any(|suffix| name.ends_with(suffix));
+    let entries = if columns.value().is_object() { columns.entries() } else { None };
+    entries.unwrap_or_default().into_iter().filter(|(name, _)| is_of_record(name)).collect()
+}
+
+fn read_common_columns(columns: &Node) -> Option<Vec<(String, String)>> {
+    let read = |(name, n): (&str, Node)| Some((name.to_string(), n.string()?.trim().to_string()));
+    record_columns(columns).into_iter().map(read).collect()
 }
 
 fn read_columns(node: &Node) -> Option<Vec<(String, String)>> {

@@ -2,7 +2,7 @@
 
 use super::cells::{ABSURD, Purpose, measured, needed, or_zero, reading_column, sigma};
 use super::components::{Components, DISPLACEMENT, POSITION, VectorColumns};
-use super::table::Table;
+use super::table::{Table, renamed};
 use crate::arm::Arm;
 use crate::arm::effect::warming::Moment;
 use crate::arm::load::Payload;
@@ -145,12 +145,20 @@ impl StateColumns {
     fn find(table: &Table, joints: &[DrivenJoint], payload: PayloadColumn) -> Option<Self> {
         let expected: Vec<String> = joints.iter().map(|joint| format!("q_{}", joint.key())).collect();
         for column in table.columns.iter().filter(|c| c.starts_with("q_") && !expected.contains(c)) {
+            // a column of one of the joints, in another unit
+            let joint = |name: &str| name.rsplit_once('_').map(|(joint, _)| joint.to_string());
+            let meant = expected.iter().find(|name| joint(name) == joint(column));
+            let advice = meant.map_or(String::new(), |name| format!("{}; ", renamed(name, column)));
             table.fault(
                 Some(1),
                 column,
                 "is the angle or travel of no driven joint".into(),
-                &format!("the columns of the arm's joints: {}", expected.join(", ")),
+                &format!("{advice}the columns of the arm's joints: {}", expected.join(", ")),
             );
+        }
+        // all of them are asked for first, so that a missing one is not taken for the column of another joint
+        for name in &expected {
+            table.optional(name);
         }
         let pose: Vec<Option<usize>> = expected.iter().map(|name| table.required(name)).collect();
         const CG: [&str; 3] = ["payload_cg_x_m", "payload_cg_y_m", "payload_cg_z_m"];

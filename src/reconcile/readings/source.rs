@@ -2,6 +2,7 @@
 //! columns have in the file.
 
 use super::keys::{COLUMNS as COLUMN_NAMES, FILES, SHEET};
+use super::record_spec::record_columns;
 use crate::arm::effect::channel::Channel;
 use crate::arm::pose::DrivenJoint;
 use crate::input::json::{Node, Object, closest};
@@ -10,8 +11,11 @@ use crate::input::json::{Node, Object, closest};
 /// [`Channel::ALL`].
 pub(crate) const DEFAULT_FILES: [&str; 4] = ["static.csv", "modal.csv", "windup.csv", "positions.csv"];
 
-/// Names of the columns of each channel, in the order of [`Channel::ALL`]. The angles `q_<joint>_deg` and the column
-/// `temperature_c` are not in this list.
+/// Column with the temperature of the arm. Few files have it.
+const TEMPERATURE: &str = "temperature_c";
+
+/// Names of the columns of each channel, in the order of [`Channel::ALL`]. The angles `q_<joint>_deg`, the travels
+/// `q_<joint>_mm` and the temperature are not in this list.
 const COLUMNS: [&[&str]; 4] = [
     &[
         "test",
@@ -19,6 +23,7 @@ const COLUMNS: [&[&str]; 4] = [
         "payload_cg_x_m",
         "payload_cg_y_m",
         "payload_cg_z_m",
+        TEMPERATURE,
         "force_x_n",
         "force_y_n",
         "force_z_n",
@@ -37,6 +42,7 @@ const COLUMNS: [&[&str]; 4] = [
         "payload_cg_x_m",
         "payload_cg_y_m",
         "payload_cg_z_m",
+        TEMPERATURE,
         "mode",
         "frequency_hz",
         "sigma_hz",
@@ -48,6 +54,7 @@ const COLUMNS: [&[&str]; 4] = [
         "payload_cg_x_m",
         "payload_cg_y_m",
         "payload_cg_z_m",
+        TEMPERATURE,
         "arm",
         "point",
         "x_mm",
@@ -66,7 +73,7 @@ pub(crate) fn columns_for(channel: Channel, joints: &[DrivenJoint]) -> Vec<Strin
     let (label, others) = COLUMNS[channel as usize].split_at(1);
     let angles = joints.iter().map(|joint| format!("q_{}", joint.key()));
     let angles: Vec<String> = angles.filter(|_| channel != Channel::Windup).collect();
-    let own = |name: &&&str| !OWN_SIGMAS.contains(*name) && **name != "arm";
+    let own = |name: &&&str| !OWN_SIGMAS.contains(*name) && ![TEMPERATURE, "arm"].contains(*name);
     let others = others.iter().filter(own).map(|name| name.to_string());
     label.iter().map(|name| name.to_string()).chain(angles).chain(others).collect()
 }
@@ -93,7 +100,10 @@ pub struct Source {
 /// [`Channel::ALL`]. `None` for a channel about which it says nothing.
 pub(crate) fn read_sources(root: &Object) -> [Option<Source>; 4] {
     let files = root.optional("files").and_then(|n| n.shaped(&FILES));
-    let columns = root.optional("columns").and_then(|n| n.shaped(&COLUMN_NAMES));
+    let columns = root.optional("columns").and_then(|node| {
+        let of_records = record_columns(&node).into_iter().map(|(name, _)| name);
+        node.object(&COLUMN_NAMES.names().into_iter().chain(of_records).collect::<Vec<_>>())
+    });
     Channel::ALL.map(|channel| {
         let word = channel.word();
         let block = root.optional(word);
@@ -141,16 +151,38 @@ fn read_columns(node: &Node, channel: Channel) -> Option<Vec<(String, String)>> 
     let known = COLUMNS[channel as usize];
     let mut out = Vec::new();
     for (name, value) in node.entries()? {
-        let is_angle = name.starts_with("q_") && name.ends_with("_deg");
+        let is_of_pose = name.starts_with("q_") && (name.ends_with("_deg") || name.ends_with("_mm"));
         if name == "note" {
             continue;
         }
-        if !known.contains(&name) && !is_angle {
+        if !known.contains(&name) && !is_of_pose {
             let near = closest(name, known).map_or(String::new(), |near| format!("is it \"{near}\"? "));
-            let hint = format!("{near}the columns: q_<joint>_deg, {}", known.join(", "));
+            let hint = format!("{near}the columns: q_<joint>_deg, q_<joint>_mm, {}", known.join(", "));
             value.fault::<()>(format!("{} readings have no such column", channel.word()), &hint);
         }
         out.push((name.to_string(), value.string()?.trim().to_string()));
     }
     Some(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::input::json::Document;
+
+    fn columns_of(channel: Channel, text: &str) -> Result<usize, String> {
+        let document = Document::parse("campaign.json", text).expect("JSON");
+        let read = read_columns(&document.root(), channel).map(|columns| columns.len());
+        document.finish(read).map_err(|faults| faults.0.iter().map(ToString::to_string).collect())
+    }
+
+    #[test]
+    fn travels_and_temperatures_may_have_other_names_too() {
+        let text = r#"{"q_lift_mm": "Hub [mm]", "q_s1_deg": "A1", "temperature_c": "Temp [C]"}"#;
+        for channel in [Channel::Static, Channel::Modal, Channel::Positions] {
+            assert_eq!(columns_of(channel, text), Ok(3), "{channel:?}");
+        }
+        let faults = columns_of(Channel::Windup, text).expect_err("a bench has neither");
+        assert!(faults.contains("temperature_c"), "{faults}");
+    }
 }

@@ -49,8 +49,19 @@ pub(crate) fn read_sheet(path: &Path, sheet: Option<&str>) -> Result<Sheet, (Str
     };
     let range = book.worksheet_range(&name).map_err(|e| unreadable(e.to_string()))?;
     let (row, column) = range.start().map_or((0, 0), |(row, column)| (row as usize, column as usize));
-    let text = |cells: &[Data]| cells.iter().map(text).collect::<Vec<String>>();
-    let rows = range.rows().enumerate().map(|(i, cells)| (row + i + 1, text(cells)));
+    // a file that no spreadsheet program has stored has formulas without values
+    let formulas = book.worksheet_formula(&name).unwrap_or_default();
+    let text_at = |row: usize, column: usize, cell: &Data| {
+        let formula = formulas.get_value((row as u32, column as u32)).filter(|formula| !formula.is_empty());
+        match (text(cell), formula) {
+            (blank, Some(formula)) if blank.is_empty() => format!("formula {formula} without a value"),
+            (given, _) => given,
+        }
+    };
+    let texts = |i: usize, cells: &[Data]| -> Vec<String> {
+        cells.iter().enumerate().map(|(j, cell)| text_at(row + i, column + j, cell)).collect()
+    };
+    let rows = range.rows().enumerate().map(|(i, cells)| (row + i + 1, texts(i, cells)));
     Ok(Sheet {
         name,
         rows: rows.filter(|(_, cells)| cells.iter().any(|cell| !cell.is_empty())).collect(),

@@ -7,6 +7,7 @@ use crate::input::csv::{Csv, Record, is_repeated, other_separators};
 use crate::input::json::{Fault, InputError, closest, read_text};
 use crate::input::names::{unfit_cell, unfit_name};
 use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// First character of a comment line.
@@ -33,6 +34,8 @@ pub struct Table {
     /// Letters of the columns of a spreadsheet; empty for a CSV file.
     letters: Vec<String>,
     faults: RefCell<Vec<Fault>>,
+    /// Names of the columns that the readers of the table know, whether or not it has them.
+    asked: RefCell<BTreeSet<String>>,
 }
 
 impl Table {
@@ -92,6 +95,7 @@ impl Table {
             shown: Vec::new(),
             letters: Vec::new(),
             faults: RefCell::default(),
+            asked: RefCell::default(),
         }
     }
 
@@ -203,6 +207,10 @@ impl Table {
     /// Adds a line of the file: the first as the column names, every other as a row. A row with another number of cells
     /// than the header is a fault.
     fn push(&mut self, Record { line, cells }: Record) {
+        // spreadsheets are often saved with rows of commas below their last row
+        if cells.iter().all(String::is_empty) {
+            return;
+        }
         if self.columns.is_empty() {
             self.header_line = line;
             self.columns = cells;
@@ -266,10 +274,10 @@ impl Table {
             if !self.has_header() && !self.faults.borrow().is_empty() {
                 return None;
             }
-            let known: Vec<&str> = self.columns.iter().map(String::as_str).collect();
-            let hint = match closest(name, &known) {
-                Some(near) => format!("is it \"{near}\"? columns found: {}", known.join(", ")),
-                None => format!("columns found: {}", known.join(", ")),
+            let found = format!("columns found: {}", self.columns.join(", "));
+            let hint = match closest(name, &self.unasked()) {
+                Some(near) => format!("is it \"{near}\"? {}; {found}", renamed(name, near)),
+                None => found,
             };
             self.fault(Some(self.header_line), name, "the column is missing".into(), &hint);
             None
@@ -278,7 +286,38 @@ impl Table {
 
     /// Index of the column `name`; `None` if there is no such column.
     pub fn optional(&self, name: &str) -> Option<usize> {
+        self.asked.borrow_mut().insert(name.to_string());
         self.columns.iter().position(|c| c == name)
+    }
+
+    /// The columns for which no reader has asked.
+    fn unasked(&self) -> Vec<&str> {
+        let asked = self.asked.borrow();
+        self.columns.iter().map(String::as_str).filter(|c| !c.is_empty() && !asked.contains(*c)).collect()
+    }
+
+    /// Sentence on the columns that no reader asked for, each with the columns that it may be meant for; `None` if there
+    /// are none. It is known after the rows were read.
+    pub(crate) fn unused(&self) -> Option<String> {
+        let asked = self.asked.borrow();
+        let lacks = |name: &&String| !self.columns.contains(name);
+        let words = |column: &str| {
+            let is_meant = |name: &&String| unit_of(name).is_some() && unit_of(name) == unit_of(column);
+            let meant: Vec<&str> = asked
+                .iter()
+                .filter(lacks)
+                .filter(is_meant)
+                .filter(not_of_sigma)
+                .map(String::as_str)
+                .collect();
+            match meant.is_empty() {
+                true => column.to_string(),
+                false => format!("{column} (is it {}?)", meant.join(" or ")),
+            }
+        };
+        let unused: Vec<String> = self.unasked().into_iter().map(words).collect();
+        (!unused.is_empty())
+            .then(|| format!("{}: columns that are not used: {}", self.short_name(), unused.join(", ")))
     }
 
     /// Records a fault for each column whose name begins with `beginning` and an underscore follows somewhere, unless
@@ -298,8 +337,8 @@ impl Table {
             self.columns.iter().map(String::as_str).filter(|column| !known.contains(column)).collect();
         let near = closest(name, &others);
         if let Some(near) = near {
-            let hint = "write the name of the column so, or remove it";
-            self.fault(Some(self.header_line), near, format!("is it {name}?"), hint);
+            let hint = format!("{}, or remove it", renamed(name, near));
+            self.fault(Some(self.header_line), near, format!("is it {name}?"), &hint);
         }
         near.is_some()
     }
@@ -361,5 +400,32 @@ impl Table {
         let hint = "remove the row, or give the value that was measured";
         self.row_fault(row, &self.columns[column], problem.into(), hint);
         None
+    }
+}
+
+/// Units with which names of columns end.
+const UNITS: [&str; 24] = [
+    "mm", "m", "um", "cm", "in", "mil", "deg", "rad", "mrad", "arcmin", "arcsec", "kg", "g", "lb", "n", "kn",
+    "kgf", "lbf", "nm", "hz", "rpm", "s", "ms", "us",
+];
+
+/// The unit with which the name of a column ends, in lower case.
+fn unit_of(column: &str) -> Option<&'static str> {
+    let (_, end) = column.rsplit_once('_')?;
+    UNITS.into_iter().find(|unit| end.eq_ignore_ascii_case(unit))
+}
+
+/// Whether a column is none of standard deviations. Those are known by the beginning of their names.
+fn not_of_sigma(name: &&String) -> bool {
+    !name.starts_with("sigma_")
+}
+
+/// What to do if the column `column` is meant to be the one that this program calls `name`.
+pub(super) fn renamed(name: &str, column: &str) -> String {
+    match (unit_of(name), unit_of(column)) {
+        (Some(unit), Some(other)) if unit != other => {
+            format!("convert its values from {other} to {unit}, and write the name of the column so")
+        }
+        _ => "write the name of the column so".into(),
     }
 }
