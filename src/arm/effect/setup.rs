@@ -20,7 +20,7 @@ impl Event {
     /// The event just before the row `from_row`, counted from 1, of a file with `file_rows` rows. Files write both numbers
     /// so. `None` if `from_row` is 0: it did not happen in this file.
     pub(crate) fn of_file(from_row: f64, file_rows: f64) -> Option<Self> {
-        (from_row >= 1.0).then_some(Self { from_row: from_row as usize - 1, file_rows: file_rows as usize })
+        (from_row >= 1.0).then(|| Self { from_row: from_row as usize - 1, file_rows: file_rows as usize })
     }
 
     /// Whether it happened in a file with `rows` rows.
