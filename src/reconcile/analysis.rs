@@ -257,7 +257,7 @@ impl Analysis<'_> {
             (None, _) => Some(&self.best),
         };
         let in_arm = match (&choice, written) {
-            (Some(_), Some(fit)) => fitted::effects(fit, &intervals(self.forward, fit, self.weights), &[]),
+            (Some(choice), Some(fit)) => choice.findings(fit, self.forward, self.weights),
             _ => named.to_vec(),
         };
         let unwritten = if choice.is_some() { &self.baseline } else { &self.best };

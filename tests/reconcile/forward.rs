@@ -50,8 +50,9 @@ fn law(at: &str, parameters: &[(&str, &[f64])]) -> Effect {
     Effect { effect: "empirical".into(), at: at.into(), parameters, source: None }
 }
 
-/// A joint that softens while it is tested, a base that turns once, and one that tilts more about one axis.
-fn laws() -> [Effect; 4] {
+/// A joint that softens while it is tested, a base that turns once, one that tilts more about one axis, a payload that slips,
+/// joints that twist under the torques of their neighbours, an instrument that moves.
+fn laws() -> [Effect; 8] {
     let softening: [(&str, &[f64]); 5] = [
         ("static_softening", &[0.3]),
         ("static_softening_rows", &[7.0]),
@@ -62,7 +63,24 @@ fn laws() -> [Effect; 4] {
     let turn: [(&str, &[f64]); 2] =
         [("base_turn_rad", &[1e-4, -2e-4, 3e-4]), ("base_turn_from_row", &[11.0])];
     let tilt = |at: &str| law(at, &[("tilt_rad_per_nm", &[1e-6, 4e-6])]);
-    [law("j2", &softening), law("static", &turn), tilt("base"), tilt("j3")]
+    let slip: [(&str, &[f64]); 3] =
+        [("slip_m", &[0.03, -0.02, 0.05]), ("static_slip_from_row", &[7.0]), ("modal_slip_from_row", &[9.0])];
+    let twist = |at: &str| {
+        let play: (&str, &[f64]) = ("load_play_nm", &[3.0]);
+        law(at, &[("neighbour_twist_rad_per_nm", &[2e-6, -3e-6]), ("load_play_rad", &[1e-4]), play])
+    };
+    let shift: [(&str, &[f64]); 3] =
+        [("shift_mm", &[0.1, -0.2, 0.3]), ("base_turn_from_row", &[4.0]), ("base_turn_file_rows", &[20.0])];
+    [
+        law("j2", &softening),
+        law("static", &turn),
+        tilt("base"),
+        tilt("j3"),
+        law("payload", &slip),
+        twist("j1"),
+        twist("j3"),
+        law("static", &shift),
+    ]
 }
 
 #[test]

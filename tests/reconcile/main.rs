@@ -15,6 +15,7 @@ mod generated;
 mod generator;
 #[path = "../../examples/measured/mod.rs"]
 mod measured;
+mod moved;
 mod nominal_positions;
 mod other_simulator;
 mod positions;

@@ -2,7 +2,7 @@
 //! without a name, and must predict poses that were not fitted better than the nominal arm.
 
 use crate::generator::{self, Dice, Plan, Specimen};
-use armwright::arm::{JointModel, read_arm_document};
+use armwright::arm::{Effect, JointModel, read_arm_document};
 use armwright::catalog::Catalogs;
 use armwright::input::Document;
 use armwright::reconcile::model::direct::Direct;
@@ -166,4 +166,87 @@ fn a_bench_alone_is_judged_on_rows_that_were_held_out() {
     let written = outcome.models.iter().find(|row| row.is_written).expect("a model");
     assert!(given > 20.0 && calibrated > 20.0 && written.kept_out_rms_sigma < 2.0, "{}", outcome.to_text());
     assert!(written.model.contains("a further twist of j that is even"), "{}", written.model);
+}
+
+/// The joint stands elsewhere than the file says: every pose is another one. The slopes of the readings by the angle change
+/// with the pose, so a straight line about the stated poses would not do.
+#[test]
+fn an_angle_whose_zero_is_off_turns_the_corrected_arm() {
+    for (at, zero_rad) in [("j2", 0.06), ("j3", -0.05)] {
+        let hidden = json!({"effect": "zero_off", "at": at, "amount": zero_rad});
+        let folder = campaigns(&hidden);
+        let outcome = outcome(folder.path());
+        assert_eq!(outcome.verdict, Verdict::Unexplained, "{hidden}: {}", outcome.to_text());
+        let words = format!("an angle of {at} whose zero is off");
+        let law = outcome.empirical.iter().find(|law| law.law == words);
+        let law = law.unwrap_or_else(|| panic!("{hidden}: {}", outcome.to_text()));
+        let (name, zero) = &law.finding.parameters[0];
+        let (low, high) = (zero[0].low.expect("an end"), zero[0].high.expect("an end"));
+        assert!(name == "zero_rad" && (zero[0].value - zero_rad).abs() < 0.003, "{name}: {zero:?}");
+        assert!(low < zero_rad + 5e-4 && high > zero_rad - 5e-4, "{zero:?}");
+        let [nominal_mm, corrected_mm] = ["fitted/arm.json", "verdict/arm.corrected.json"]
+            .map(|arm| error_mm(folder.path(), &folder.path().join(arm)));
+        println!("{hidden}: {zero:?}, {nominal_mm:.4} mm as given, {corrected_mm:.4} mm corrected");
+        assert!(corrected_mm < nominal_mm / 3.0, "{hidden}: {corrected_mm} of {nominal_mm} mm");
+    }
+}
+
+/// The campaign `fitted`, without hidden physics, with what `law` changes added to its readings.
+fn with_law(folder: &Path, law: &Value) -> Campaign {
+    let mut campaign = Campaign::read(&folder.join("fitted"), &Catalogs::default()).expect("sound");
+    let nominal = campaign.arm.subject(JointModel::ThreeSegment);
+    let mut subject = nominal.clone();
+    let numbers = |value: &Value| match value {
+        Value::Array(list) => list.iter().map(|x| x.as_f64().expect("number")).collect(),
+        number => vec![number.as_f64().expect("number")],
+    };
+    let parameters = law["parameters"].as_object().expect("parameters").iter();
+    subject.apply(&Effect {
+        effect: "empirical".into(),
+        at: law["at"].as_str().expect("a place").into(),
+        parameters: parameters.map(|(name, value)| (name.clone(), numbers(value))).collect(),
+        source: None,
+    });
+    let (before, after) = (Direct::new(&nominal), Direct::new(&subject));
+    let [from, to] = [&before, &after].map(|direct| direct.statics_mm(&campaign.statics));
+    for (row, (from, to)) in campaign.statics.iter_mut().zip(from.iter().zip(&to)) {
+        let components = row.measured.iter_mut().enumerate();
+        components.for_each(|(c, read)| read.as_mut().expect("measured").value_mm += to[c] - from[c]);
+    }
+    let [from, to] = [&before, &after].map(|direct| direct.frequencies_hz(&campaign.modal));
+    for (row, (from, to)) in campaign.modal.iter_mut().zip(from.iter().zip(&to)) {
+        row.frequency_hz *= to.expect("mode") / from.expect("mode");
+    }
+    campaign
+}
+
+#[test]
+fn what_moved_once_and_what_twists_with_its_neighbour_are_laws_of_the_corrected_arm() {
+    let slip = json!({"slip_m": [0.05, -0.03, 0.04], "static_slip_from_row": 41, "modal_slip_from_row": 1});
+    let shift = json!({"shift_mm": [0.03, -0.02, 0.04], "base_turn_from_row": 33});
+    let twist = json!({"neighbour_twist_rad_per_nm": [0.0, 1.2e-5]});
+    let play = json!({"load_play_rad": 4e-4, "load_play_nm": 1.0});
+    for (at, parameters, words, first) in [
+        (
+            "payload",
+            slip,
+            "a payload whose centre of gravity moved before row 41 of the static readings, and before the modal readings",
+            0.05,
+        ),
+        ("static", shift, "an instrument that moved before row 33 of the static readings", 0.03),
+        ("j2", twist, "a twist of j2 under the torques of its neighbours", 0.0),
+        ("j3", play, "a play of j3 that opens from the unloaded arm to both sides", 4e-4),
+    ] {
+        let plan = Plan { static_poses: 16, modal_poses: 6, bench: false, ..Plan::plain() };
+        let folder = campaigns_of(&json!({"effect": "creep", "at": "static", "amount": 0.0}), &plan);
+        let outcome = reconcile(&with_law(folder.path(), &json!({"at": at, "parameters": parameters})));
+        assert_eq!(outcome.verdict, Verdict::Unexplained, "{words}: {}", outcome.to_text());
+        let law = outcome.empirical.iter().find(|law| law.law == words);
+        let law = law.unwrap_or_else(|| panic!("{words}: {}", outcome.to_text()));
+        let found = law.finding.parameters[0].1[0].value;
+        let size = if at == "j2" { 1.2e-5 } else { first };
+        assert!((found - first).abs() < 0.2 * size, "{words}: {:?}", law.finding.parameters);
+        let written = outcome.models.iter().find(|row| row.is_written).expect("a model");
+        assert!(written.kept_out_rms_sigma < 1.3, "{words}: {}", outcome.to_text());
+    }
 }

@@ -1,14 +1,16 @@
 //! `empirical`: a law without a name, as it was found in readings.
 //!
-//! - At a joint it is one of three laws: a further twist that is a polynomial of the torque; a tilt of the housing that
-//!   differs about two axes; a compliance that changes in the course of the tests.
+//! - At a joint it is one of six laws: a further twist that is a polynomial of the torque; a tilt of the housing that
+//!   differs about two axes; a compliance that changes in the course of the tests; a twist under the torques of its
+//!   neighbours; play that opens from the unloaded arm; an angle whose zero is off.
 //! - At the base it is a tilt that differs about x and y.
-//! - At a channel it is one of four laws: a nonlinearity; a gain for each direction; a rotation of the base between two
-//!   rows; axes that each show a part of the other directions.
+//! - At the payload it is a centre of gravity that moved once between two rows.
+//! - At a channel it is one of five laws: a nonlinearity; a gain for each direction; a rotation of the base or a motion of
+//!   the instrument between two rows; axes that each show a part of the other directions.
 
 use super::channel::Channel;
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
-use super::setup::Turned;
+use super::setup::{Event, LoadTwist, Slipped, Turned};
 use super::subject::Subject;
 use super::warming::Softening;
 use crate::arm::joint_law::FurtherTwist;
@@ -50,6 +52,27 @@ pub(crate) const BASE_TURN_ROW: &str = "base_turn_from_row";
 /// x, of x and z in y, of x and y in z.
 pub(crate) const MIX: &str = "mix";
 
+/// Name of the parameter with the true angle of a joint minus the stated one, in every static and modal test.
+pub(crate) const ZERO: &str = "zero_rad";
+/// Name of the parameter with the twist of a joint per torque of the next joint inboard, and per torque of the next joint
+/// outboard, in static tests.
+pub(crate) const NEIGHBOUR_TWIST: &str = "neighbour_twist_rad_per_nm";
+/// Name of the parameter with the further twist of a joint under a large torque of the load, in static tests.
+pub(crate) const LOAD_PLAY: &str = "load_play_rad";
+/// Name of the parameter with the torque of the load at which 76 % of [`LOAD_PLAY`] is reached.
+pub(crate) const LOAD_PLAY_TORQUE: &str = "load_play_nm";
+/// Name of the parameter with the displacement by which the instrument moved once between two rows.
+pub(crate) const SHIFT: &str = "shift_mm";
+/// Name of the parameter with the number of rows of the file in which the base turned or the instrument moved.
+pub(crate) const BASE_TURN_FILE_ROWS: &str = "base_turn_file_rows";
+/// Name of the parameter with the displacement of a payload's centre of gravity between two rows, in the last frame.
+pub(crate) const SLIP: &str = "slip_m";
+/// Names of the parameters with the first row after a payload slipped, counted from 1: in the static tests, and in the
+/// modal tests; 0 if it did not slip in these tests.
+pub(crate) const SLIP_ROW: [&str; 2] = ["static_slip_from_row", "modal_slip_from_row"];
+/// Names of the parameters with the number of rows of the files in which the payload slipped.
+pub(crate) const SLIP_FILE_ROWS: [&str; 2] = ["static_slip_file_rows", "modal_slip_file_rows"];
+
 const OF_JOINT: &[Parameter] = &[
     optional(ODD_TWIST, 2, -0.1, 0.1, 0.0),
     optional(EVEN_TWIST, 2, -0.1, 0.1, 0.0),
@@ -60,6 +83,10 @@ const OF_JOINT: &[Parameter] = &[
     optional(SOFTENING_ROWS[1], 1, 0.1, 1e6, 1.0),
     optional(SOFTENING_REFERENCE, 1, 0.0, 1.0, 1.0),
     optional(LEAN, 2, 0.0, 1.0, 0.0),
+    optional(ZERO, 1, -0.5, 0.5, 0.0),
+    optional(NEIGHBOUR_TWIST, 2, -1.0, 1.0, 0.0),
+    optional(LOAD_PLAY, 1, -0.1, 0.1, 0.0),
+    optional(LOAD_PLAY_TORQUE, 1, 1e-9, 1e9, 1.0),
 ];
 
 const OF_CHANNEL: &[Parameter] = &[
@@ -70,6 +97,14 @@ const OF_CHANNEL: &[Parameter] = &[
 
 const OF_BASE: &[Parameter] = &[optional(LEAN, 2, 0.0, 1.0, 0.0)];
 
+const OF_PAYLOAD: &[Parameter] = &[
+    optional(SLIP, 3, -10.0, 10.0, 0.0),
+    optional(SLIP_ROW[0], 1, 0.0, 1e9, 0.0),
+    optional(SLIP_FILE_ROWS[0], 1, 0.0, 1e9, 0.0),
+    optional(SLIP_ROW[1], 1, 0.0, 1e9, 0.0),
+    optional(SLIP_FILE_ROWS[1], 1, 0.0, 1e9, 0.0),
+];
+
 const OF_STATIC: &[Parameter] = &[
     OF_CHANNEL[0],
     OF_CHANNEL[1],
@@ -77,6 +112,8 @@ const OF_STATIC: &[Parameter] = &[
     optional(BASE_TURN, 3, -0.1, 0.1, 0.0),
     optional(BASE_TURN_ROW, 1, 1.0, 1e9, 1.0),
     optional(MIX, 6, -2.0, 2.0, 0.0),
+    optional(SHIFT, 3, -1e4, 1e4, 0.0),
+    optional(BASE_TURN_FILE_ROWS, 1, 0.0, 1e9, 0.0),
 ];
 
 /// A parameter of `count` numbers that a file may leave out. Each number is then `default`, with which the effect
@@ -94,6 +131,7 @@ pub(crate) const KIND: Kind = Kind {
     places: &[
         Place::Joint,
         Place::Base,
+        Place::Payload,
         Place::Channel(Channel::Static),
         Place::Channel(Channel::Modal),
         Place::Channel(Channel::Windup),
@@ -101,6 +139,7 @@ pub(crate) const KIND: Kind = Kind {
     parameters: |place| match place {
         Place::Joint => OF_JOINT,
         Place::Base => OF_BASE,
+        Place::Payload => OF_PAYLOAD,
         Place::Channel(Channel::Static) => OF_STATIC,
         _ => OF_CHANNEL,
     },
@@ -118,32 +157,65 @@ pub(crate) fn is_of_tests_alone(parameters: &[(String, Vec<f64>)]) -> bool {
 }
 
 fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
-    if let [about_x, about_y] = *numbers {
-        subject.structure.base_frame.0 += Matrix3::from_diagonal(&Vector3::new(about_x, about_y, 0.0));
-    } else if let Some(joint) = subject.structure.joint_mut(at) {
-        let [a, b, c, d, torque_nm, softening @ .., first, second] = numbers else { return };
+    match *numbers {
+        [about_x, about_y] => {
+            subject.structure.base_frame.0 += Matrix3::from_diagonal(&Vector3::new(about_x, about_y, 0.0));
+        }
+        [x, y, z, ref events @ ..] if events.len() == 4 => slip(Vector3::new(x, y, z), events, subject),
+        _ if subject.structure.joint_mut(at).is_some() => apply_to_joint(numbers, at, subject),
+        _ => apply_to_channel(numbers, at, subject),
+    }
+}
+
+/// Moves the payload's centre of gravity by `offset_m`. The four numbers are row and number of rows of the static tests,
+/// and row and number of rows of the modal tests.
+fn slip(offset_m: Vector3<f64>, events: &[f64], subject: &mut Subject) {
+    for (channel, own) in [Channel::Static, Channel::Modal].into_iter().zip(events.chunks_exact(2)) {
+        let event = Event::of_file(own[0], own[1]);
+        let slipped = event.map(|event| Slipped { offset_m, event });
+        subject.setups[channel as usize].slipped.extend(slipped);
+    }
+}
+
+fn apply_to_joint(numbers: &[f64], at: &str, subject: &mut Subject) {
+    let [a, b, c, d, torque_nm, ref softening @ .., first, second, zero_rad, x, y, play_rad, play_nm] =
+        *numbers
+    else {
+        return;
+    };
+    if let Some(joint) = subject.structure.joint_mut(at) {
         joint.lean_rad_per_nm = [joint.lean_rad_per_nm[0] + first, joint.lean_rad_per_nm[1] + second];
-        if [a, b, c, d] != [&0.0; 4] {
-            let twist = FurtherTwist { odd_rad: [*a, *b], even_rad: [*c, *d], torque_nm: *torque_nm };
+        if [a, b, c, d] != [0.0; 4] {
+            let twist = FurtherTwist { odd_rad: [a, b], even_rad: [c, d], torque_nm };
             joint.law.further = Some(added(joint.law.further, twist));
         }
-        soften(softening, at, subject);
-    } else if let Some(reading) = subject.channel_mut(at) {
-        let [a, b, bend_scale, x, y, z, ref of_static @ ..] = numbers[..] else { return };
-        // a channel may have two laws that both act, one with a nonlinearity and one with gains; the law without a
-        // nonlinearity must not erase the nonlinearity of the other
-        if [a, b] != [0.0; 2] {
-            (reading.bend, reading.bend_scale) = ([a, b], bend_scale);
-        }
-        reading.gain.iter_mut().zip([x, y, z]).for_each(|(own, gain)| *own *= gain);
-        let [x, y, z, from_row, ref mix @ ..] = of_static[..] else { return };
-        let [xy, xz, yx, yz, zx, zy] = mix[..] else { return };
-        reading.mix += Matrix3::new(0.0, xy, xz, yx, 0.0, yz, zx, zy, 0.0);
-        let turn_rad = Vector3::new(x, y, z);
-        if let Some(setup) = subject.setup_mut(at).filter(|_| turn_rad != Vector3::zeros()) {
-            setup.turned = Some(Turned { turn_rad, from_row: (from_row.max(1.0) - 1.0) as usize });
-        }
     }
+    soften(softening, at, subject);
+    if zero_rad != 0.0 {
+        subject.zeros_rad.push((at.into(), zero_rad));
+    }
+    if [x, y, play_rad] != [0.0; 3] {
+        let twist = LoadTwist { neighbours_rad_per_nm: [x, y], play_rad, play_nm };
+        subject.setups[Channel::Static as usize].load_twists.push((at.into(), twist));
+    }
+}
+
+fn apply_to_channel(numbers: &[f64], at: &str, subject: &mut Subject) {
+    let Some(reading) = subject.channel_mut(at) else { return };
+    let [a, b, bend_scale, x, y, z, ref of_static @ ..] = numbers[..] else { return };
+    // a channel may have two laws, one with a nonlinearity and one with gains, and both act; so a law without a
+    // nonlinearity must not erase the nonlinearity of the other law
+    if [a, b] != [0.0; 2] {
+        (reading.bend, reading.bend_scale) = ([a, b], bend_scale);
+    }
+    reading.gain.iter_mut().zip([x, y, z]).for_each(|(own, gain)| *own *= gain);
+    let [x, y, z, from_row, xy, xz, yx, yz, zx, zy, dx, dy, dz, file_rows] = of_static[..] else { return };
+    reading.mix += Matrix3::new(0.0, xy, xz, yx, 0.0, yz, zx, zy, 0.0);
+    let (turn_rad, shift_m) = (Vector3::new(x, y, z), Vector3::new(dx, dy, dz) / 1e3);
+    let happened = (turn_rad, shift_m) != (Vector3::zeros(), Vector3::zeros());
+    let event = Event::of_file(from_row.max(1.0), file_rows).filter(|_| happened);
+    let turned = event.map(|event| Turned { turn_rad, shift_m, event });
+    subject.setup_mut(at).into_iter().for_each(|setup| setup.turned.extend(turned));
 }
 
 /// Makes the compliance of the joint `at` change in the course of the static and of the modal tests. The five
@@ -188,8 +260,8 @@ mod tests {
         let twist = |odd_rad, even_rad, torque_nm| FurtherTwist { odd_rad, even_rad, torque_nm };
         let (first, second) =
             (twist([1e-4, -2e-5], [3e-5, 1e-5], 20.0), twist([0.0, 4e-5], [0.0, 2e-5], 50.0));
-        apply(&[1e-4, -2e-5, 3e-5, 1e-5, 20.0, 0.0, 0.0], "j1", &mut subject);
-        apply(&[0.0, 4e-5, 0.0, 2e-5, 50.0, 0.0, 0.0], "j1", &mut subject);
+        apply(&[1e-4, -2e-5, 3e-5, 1e-5, 20.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], "j1", &mut subject);
+        apply(&[0.0, 4e-5, 0.0, 2e-5, 50.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], "j1", &mut subject);
         let law = subject.structure.joint_mut("j1").expect("j1").law;
         for torque_nm in [-70.0, -10.0, 5.0, 60.0] {
             let sum = first.angle_rad(torque_nm) + second.angle_rad(torque_nm);
@@ -213,7 +285,7 @@ mod tests {
         use std::f64::consts::FRAC_PI_2;
         let share_of = |lean: [f64; 2]| {
             let mut subject = super::super::validate::testing::two_link_subject();
-            apply(&[0.0, 0.0, 0.0, 0.0, 1.0, lean[0], lean[1]], "j2", &mut subject);
+            apply(&[0.0, 0.0, 0.0, 0.0, 1.0, lean[0], lean[1], 0.0, 0.0, 0.0, 0.0, 1.0], "j2", &mut subject);
             subject.structure.gravity_m_s2 = 0.0;
             let chain = crate::mechanics::chain::Chain::new(&subject.structure, LinkModel::Rigid);
             // j1 has turned the upper arm into the direction of world y; the forearm hangs down from j2
@@ -234,13 +306,39 @@ mod tests {
     fn an_axis_shows_a_part_of_the_others() {
         let mut subject = super::super::validate::testing::two_link_subject();
         let plain = [0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0];
-        let mixing = [&plain[..], &[0.01, 0.02, 0.03, 0.04, 0.05, 0.06]].concat();
+        let mixing = [&plain[..], &[0.01, 0.02, 0.03, 0.04, 0.05, 0.06], &[0.0; 4]].concat();
         apply(&mixing, "static", &mut subject);
         let reading = &subject.channels[Channel::Static as usize];
         let seen = reading.along_own_axes(&Vector3::new(1.0, 10.0, 100.0));
         let expected = Vector3::new(1.0 + 0.1 + 2.0, 10.0 + 0.03 + 4.0, 100.0 + 0.05 + 0.6);
         assert!((seen - expected).norm() < 1e-12, "{seen}");
-        assert_eq!(subject.setups[Channel::Static as usize].turned, None);
+        assert!(subject.setups[Channel::Static as usize].turned.is_empty());
+    }
+
+    #[test]
+    fn an_event_is_of_the_file_in_which_it_happened() {
+        let mut subject = super::super::validate::testing::two_link_subject();
+        let offset_m = Vector3::new(0.01, 0.0, -0.02);
+        apply(&[0.01, 0.0, -0.02, 5.0, 12.0, 0.0, 0.0], "payload", &mut subject);
+        let [statics, modal] = [Channel::Static, Channel::Modal].map(|c| subject.setups[c as usize].clone());
+        assert!(modal.slipped.is_empty());
+        assert_eq!([3, 4, 11].map(|row| statics.slip_m(row)), [Vector3::zeros(), offset_m, offset_m]);
+        for (rows, count) in [(12, 1), (11, 0)] {
+            let mut of_file = statics.clone();
+            of_file.keep_events_of(rows);
+            assert_eq!(of_file.slipped.len(), count, "{rows} rows");
+        }
+        assert!(Event { from_row: 4, file_rows: 0 }.is_in(7));
+    }
+
+    #[test]
+    fn the_zero_of_a_driven_joint_turns_its_entry_of_a_pose() {
+        let mut subject = super::super::validate::testing::two_link_subject();
+        let zero = |rad: f64| [[0.0; 4].as_slice(), &[1.0], &[0.0; 2], &[rad, 0.0, 0.0, 0.0, 1.0]].concat();
+        apply(&zero(0.03), "j2", &mut subject);
+        apply(&zero(-0.01), "j2", &mut subject);
+        let standing = subject.standing_rad(vec![0.5, 1.0]);
+        assert!(standing[0] == 0.5 && (standing[1] - 1.02).abs() < 1e-15, "{standing:?}");
     }
 
     #[test]

@@ -6,20 +6,77 @@ use super::warming::Softening;
 use crate::arm::structure::{FrameCompliance, LinkPiece, Piece, Structure};
 use nalgebra::Vector3;
 
-/// A base that turned once between two rows of a file.
+/// Something that happened once, between two rows of a file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Event {
+    /// The first row of the file after it happened, counted from 0.
+    pub from_row: usize,
+    /// Number of rows of the file in which it happened; 0 for a file of any length. In a file with another number of rows,
+    /// which is another series of tests, it did not happen.
+    pub file_rows: usize,
+}
+
+impl Event {
+    /// The event just before the row `from_row`, counted from 1, of a file with `file_rows` rows. Files write both numbers
+    /// so. `None` if `from_row` is 0: it did not happen in this file.
+    pub(crate) fn of_file(from_row: f64, file_rows: f64) -> Option<Self> {
+        (from_row >= 1.0).then(|| Self { from_row: from_row as usize - 1, file_rows: file_rows as usize })
+    }
+
+    /// Whether it happened in a file with `rows` rows.
+    pub fn is_in(&self, rows: usize) -> bool {
+        self.file_rows == 0 || self.file_rows == rows
+    }
+}
+
+/// A base that turned, or an instrument that moved, once between two rows of a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turned {
-    /// Rotation vector about the origin of the chain \[rad\].
+    /// Rotation vector of the base about the origin of the chain \[rad\].
     pub turn_rad: Vector3<f64>,
-    /// The first row of the file after the base turned, counted from 0.
-    pub from_row: usize,
+    /// Displacement of every point as the instrument sees it \[m\].
+    pub shift_m: Vector3<f64>,
+    /// When it happened.
+    pub event: Event,
 }
 
 impl Turned {
-    /// Displacement \[m\] of the point `at_m` by this rotation. `row` is the row of the file, counted from 0; in the
-    /// rows before the rotation the displacement is zero.
+    /// Displacement \[m\] of the point `at_m` that the instrument sees. `row` is the row of the file, counted from 0; in
+    /// the rows before the event the displacement is zero.
     pub fn moved_m(&self, at_m: &Vector3<f64>, row: usize) -> Vector3<f64> {
-        if row < self.from_row { Vector3::zeros() } else { self.turn_rad.cross(at_m) }
+        if row < self.event.from_row { Vector3::zeros() } else { self.turn_rad.cross(at_m) + self.shift_m }
+    }
+}
+
+/// A payload whose centre of gravity moved once between two rows of a file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slipped {
+    /// Displacement of the centre of gravity, in the last frame \[m\].
+    pub offset_m: Vector3<f64>,
+    /// When it happened.
+    pub event: Event,
+}
+
+/// A further twist of a joint under a load, in proportion to the torques that the load puts on its neighbours, or by play
+/// that the unloaded arm leaves open to both sides.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LoadTwist {
+    /// Twist per torque of the load on the next joint inboard and on the next joint outboard \[rad/(N m)\].
+    pub neighbours_rad_per_nm: [f64; 2],
+    /// Twist under a large torque of the load on the joint itself \[rad\].
+    pub play_rad: f64,
+    /// Torque of the load at which 76 % of this twist is reached \[N m\].
+    pub play_nm: f64,
+}
+
+impl LoadTwist {
+    /// The twist under the torques that a load puts on the next joint inboard, on the joint itself and on the next joint
+    /// outboard \[rad\].
+    pub fn angle_rad(&self, [inboard_nm, own_nm, outboard_nm]: [f64; 3]) -> f64 {
+        let play_rad =
+            if self.play_rad == 0.0 { 0.0 } else { self.play_rad * libm::tanh(own_nm / self.play_nm) };
+        let [inboard, outboard] = self.neighbours_rad_per_nm;
+        inboard * inboard_nm + outboard * outboard_nm + play_rad
     }
 }
 
@@ -35,8 +92,12 @@ pub struct Setup {
     pub servo_rad_per_nm: Vec<(String, f64)>,
     /// Joints that soften in the course of the tests, by name.
     pub softening: Vec<(String, Softening)>,
-    /// Rotation of the base between two rows of the tests; `None` if the base did not turn.
-    pub turned: Option<Turned>,
+    /// Turns of the base and motions of the instrument between two rows of the tests.
+    pub turned: Vec<Turned>,
+    /// Displacements of the payload's centre of gravity between two rows of the tests.
+    pub slipped: Vec<Slipped>,
+    /// Joints that twist further under a load, by name.
+    pub load_twists: Vec<(String, LoadTwist)>,
 }
 
 impl Setup {
@@ -49,6 +110,23 @@ impl Setup {
     /// Whether the structure is the same in all rows.
     pub fn is_steady(&self) -> bool {
         self.softening.is_empty()
+    }
+
+    /// Forgets what happened in files with another number of rows than `rows`.
+    pub(crate) fn keep_events_of(&mut self, rows: usize) {
+        self.turned.retain(|turned| turned.event.is_in(rows));
+        self.slipped.retain(|slipped| slipped.event.is_in(rows));
+    }
+
+    /// Displacement of the payload's centre of gravity by all slips before the row `row`, counted from 0, in the last
+    /// frame \[m\].
+    pub fn slip_m(&self, row: usize) -> Vector3<f64> {
+        slip_m(&self.slipped, row)
+    }
+
+    /// The further twists under a load of the joint named `joint`.
+    pub fn load_twists_of(&self, joint: &str) -> Vec<LoadTwist> {
+        self.load_twists.iter().filter(|(name, _)| name == joint).map(|(_, twist)| *twist).collect()
     }
 
     /// How the joint named `joint` softens in these tests; `None` if it does not.
@@ -87,6 +165,12 @@ impl Setup {
         }
         out
     }
+}
+
+/// Displacement of a payload's centre of gravity by those of the slips that came before the row `row`, counted from 0
+/// \[m\].
+pub(crate) fn slip_m(slipped: &[Slipped], row: usize) -> Vector3<f64> {
+    slipped.iter().filter(|slip| row >= slip.event.from_row).map(|slip| slip.offset_m).sum()
 }
 
 fn offset(name: &str, vector_m: Vector3<f64>, point_mass_kg: f64) -> Piece {

@@ -20,6 +20,9 @@ pub struct Subject {
     /// Transmission errors: the name of the joint, and the amplitudes \[rad\] of sine and cosine of the angle and of
     /// twice the angle.
     pub transmissions_rad: Vec<(String, [f64; 4])>,
+    /// Zeros of angles that are off in static and modal tests: the name of the joint, and its true angle minus the stated
+    /// one \[rad\].
+    pub zeros_rad: Vec<(String, f64)>,
     /// How each channel turns actual values into readings, in the order of [`Channel::ALL`].
     pub channels: [Reading; 4],
     /// Differences between the arm in the tests of each channel and the arm by itself, in the order of
@@ -37,10 +40,33 @@ impl Subject {
             payload_delta_kg: 0.0,
             payload_offset_m: Vector3::zeros(),
             transmissions_rad: Vec::new(),
+            zeros_rad: Vec::new(),
             channels: std::array::from_fn(|_| Reading::default()),
             setups: std::array::from_fn(|_| Setup::default()),
             warming: Warming::default(),
         }
+    }
+
+    /// For each entry of a pose, the true angle minus the stated one in static and modal tests \[rad\]; 0 for travels.
+    /// Empty if no zero is off.
+    pub(crate) fn turns_rad(&self) -> Vec<f64> {
+        if self.zeros_rad.is_empty() {
+            return Vec::new();
+        }
+        let mut out = vec![0.0; self.structure.driven_joints().len()];
+        for (name, zero_rad) in &self.zeros_rad {
+            let joint = self.structure.joints().find(|j| j.name == *name);
+            if let Some(JointAngle::Driven(entry)) = joint.map(|j| &j.angle) {
+                out[*entry] += zero_rad;
+            }
+        }
+        out
+    }
+
+    /// The pose in which the arm stands in a static or modal test that states the pose `pose_rad` \[rad, m\].
+    pub(crate) fn standing_rad(&self, mut pose_rad: Vec<f64>) -> Vec<f64> {
+        pose_rad.iter_mut().zip(self.turns_rad()).for_each(|(angle, zero)| *angle += zero);
+        pose_rad
     }
 
     /// The angles to which the driven joints actually turn when `pose_rad` is commanded \[rad\].

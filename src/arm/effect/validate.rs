@@ -1,6 +1,7 @@
 //! Checks the effects of a file, and lists the effects that a calculation leaves out.
 
 use super::catalogue::{KINDS, kind};
+use super::empirical;
 use super::entry::Effect;
 use super::kind::{Kind, Needs, Parameter};
 use super::subject::Subject;
@@ -26,8 +27,24 @@ impl Effect {
         let Some(kind) = kind(&self.effect) else { return vec![self.unknown_kind()] };
         match structure.place(&self.at, kind.places) {
             None => vec![self.wrong_place(kind, structure)],
-            Some(place) => self.parameter_faults(kind, (kind.parameters)(place)),
+            Some(place) => {
+                let mut faults = self.parameter_faults(kind, (kind.parameters)(place));
+                faults.extend(self.zero_fault(structure));
+                faults
+            }
         }
+    }
+
+    /// The fault of an angle whose zero is off at a joint that other joints turn; `None` if there is none.
+    fn zero_fault(&self, structure: &Structure) -> Option<EffectFault> {
+        let is_zero = |name: &str| self.effect == empirical::KIND.name && name == empirical::ZERO;
+        let (name, _) = self.parameters.iter().find(|(name, own)| is_zero(name) && *own != [0.0])?;
+        let is_turned = structure.joints().any(|joint| joint.name == self.at && !joint.is_driven());
+        is_turned.then(|| EffectFault {
+            field: format!("parameters.{name}"),
+            problem: format!("{} has no angle of its own: other joints turn it", self.at),
+            hint: "give the zero of a joint that turns it".into(),
+        })
     }
 
     fn unknown_kind(&self) -> EffectFault {

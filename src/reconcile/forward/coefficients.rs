@@ -3,7 +3,7 @@
 use crate::arm::LinkModel;
 use crate::arm::base_lift::BaseLift;
 use crate::arm::effect::channel::{Channel, Reading};
-use crate::arm::effect::setup::{Setup, Turned};
+use crate::arm::effect::setup::{LoadTwist, Setup, Slipped, Turned, slip_m};
 use crate::arm::effect::subject::Subject;
 use crate::arm::effect::warming::{Softening, Warming};
 use crate::arm::joint_law::{Curve, JointLaw};
@@ -78,8 +78,12 @@ pub struct TestNumbers {
     pub servo_rad_per_nm: Vec<f64>,
     /// How each joint softens in the course of the tests, base to tip; empty if none does.
     pub softening: Vec<Option<Softening>>,
-    /// How the base turned in the course of the tests; `None` if it did not.
-    pub turned: Option<Turned>,
+    /// How the base turned and the instrument moved in the course of the tests.
+    pub turned: Vec<Turned>,
+    /// How the payload's centre of gravity moved in the course of the tests.
+    pub slipped: Vec<Slipped>,
+    /// Further twists of each joint under a load, base to tip; empty if there are none.
+    pub load_twists: Vec<Vec<LoadTwist>>,
 }
 
 impl TestNumbers {
@@ -92,7 +96,24 @@ impl TestNumbers {
             true => Vec::new(),
             false => layout.joints.iter().map(|j| setup.softening_of(&j.name)).collect(),
         };
-        Self { mass_kg: setup.mass_kg, cg_m: setup.cg_m, servo_rad_per_nm, softening, turned: setup.turned }
+        let load_twists = match setup.load_twists.is_empty() {
+            true => Vec::new(),
+            false => layout.joints.iter().map(|j| setup.load_twists_of(&j.name)).collect(),
+        };
+        Self {
+            mass_kg: setup.mass_kg,
+            cg_m: setup.cg_m,
+            servo_rad_per_nm,
+            softening,
+            turned: setup.turned.clone(),
+            slipped: setup.slipped.clone(),
+            load_twists,
+        }
+    }
+
+    /// The further twists of a joint under a load.
+    pub(crate) fn load_twists_of(&self, joint: usize) -> &[LoadTwist] {
+        self.load_twists.get(joint).map_or(&[], Vec::as_slice)
     }
 
     /// How a joint softens; `None` if it does not.
@@ -141,6 +162,9 @@ pub struct Coefficients {
     pub tests: [TestNumbers; 4],
     /// Change of the links' moduli during the tests.
     pub warming: Warming,
+    /// For each entry of a pose, how far the arm is turned from the pose that was prepared, because the zero of an angle
+    /// is off \[deg\]; empty if it is not turned. [`Coefficients::new`] leaves it empty, because a preparation knows it.
+    pub turned_deg: Vec<f64>,
     /// Width over which the slope of a gear's curve changes at a break point \[ln of the torque\]; 0 for a sharp break.
     pub smoothing: f64,
 }
@@ -345,8 +369,15 @@ impl Coefficients {
             channels: subject.channels.clone(),
             tests: std::array::from_fn(|c| TestNumbers::of(&subject.setups[c], layout)),
             warming: subject.warming,
+            turned_deg: Vec::new(),
             smoothing: 0.0,
         }
+    }
+
+    /// Actual minus stated centre of gravity of the payload in a row of a channel's file, counted from 0, in the last
+    /// frame \[m\].
+    pub(crate) fn payload_offset_in(&self, channel: Channel, row: usize) -> Vector3<f64> {
+        self.payload_offset_m + slip_m(&self.tests[channel as usize].slipped, row)
     }
 
     /// Torsion law of a joint at the joint angle `angle_rad`, in the test that one row of a channel's file reports.
@@ -370,19 +401,21 @@ impl Coefficients {
     /// Which of the numbers that static readings depend on differ between this subject and `other`.
     pub(crate) fn static_changes(&self, other: &Self) -> StaticChanges {
         let in_test = |c: &Self, joint: usize| {
-            (c.law(joint, Channel::Static), c.tests[Channel::Static as usize].softening_of(joint))
+            let test = &c.tests[Channel::Static as usize];
+            (c.law(joint, Channel::Static), test.softening_of(joint), test.load_twists_of(joint).to_vec())
         };
         let laws: Vec<bool> = (0..self.laws.len()).map(|j| in_test(self, j) != in_test(other, j)).collect();
         let linear = self.linear != other.linear || self.warming != other.warming;
+        let [own, others] = [self, other].map(|c| &c.tests[Channel::Static as usize]);
         let payload = self.payload_delta_kg != other.payload_delta_kg
             || self.payload_offset_m != other.payload_offset_m
-            || self.payload_weight != other.payload_weight;
+            || self.payload_weight != other.payload_weight
+            || own.slipped != others.slipped;
         // readings are differences from the unloaded arm, so weights have no effect where twists are proportional to
         // torques
         let is_proportional = |law: &JointLaw| !law.has_play() && !matches!(law.curve, Curve::Windup(_));
         let lift = self.lift != other.lift;
         let is_other = linear || payload || lift || laws.contains(&true);
-        let [own, others] = [self, other].map(|c| &c.tests[Channel::Static as usize]);
         let is_heavier = (own.mass_kg, own.cg_m) != (others.mass_kg, others.cg_m)
             || self.weights != other.weights
             || self.torques != other.torques;

@@ -10,9 +10,12 @@ mod added_mass;
 pub(crate) mod bench;
 pub(crate) mod coefficients;
 pub(crate) mod datum;
+mod dead_weight;
 pub(crate) mod modal;
 pub(crate) mod prepared;
 pub(crate) mod statics;
+mod tangents;
+mod turned;
 
 pub use coefficients::{Coefficients, Layout};
 pub use prepared::Forward;

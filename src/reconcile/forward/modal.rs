@@ -10,11 +10,10 @@ use super::added_mass::Factor;
 use super::coefficients::{Coefficients, Layout};
 use super::datum::{Datum, Groups};
 use super::statics::PoseGeometry;
-use crate::arm::base_lift::BaseLift;
+use super::tangents::{lifted_tangent, tangent};
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::subject::Subject;
 use crate::arm::effect::warming::Moment;
-use crate::arm::joint_law::{Curve, JointLaw};
 use crate::arm::load::Payload;
 use crate::mechanics::chain::Chain;
 use crate::mechanics::chain::Posed;
@@ -111,7 +110,7 @@ pub(crate) fn prepare(
 
 impl ModalTest {
     fn new(layout: &Layout, nominal: &Subject, row: &ModalRow) -> Self {
-        let pose_rad = layout.template.pose_si(&row.pose_deg);
+        let pose_rad = nominal.standing_rad(layout.template.pose_si(&row.pose_deg));
         let empty = Payload::default();
         let posed = layout.template.pose_rad(&pose_rad, &empty, Vector3::zeros());
         let mass = posed.mass_matrix();
@@ -129,6 +128,11 @@ impl ModalTest {
             spin,
             forces: DMatrix::zeros(layout.n, 0),
         }
+    }
+
+    /// The first row of the list in its file, from 0.
+    pub(crate) fn first_row(&self) -> usize {
+        self.when.row
     }
 
     /// Number of modes that must be computed: the highest mode number in the list.
@@ -233,7 +237,8 @@ impl ModalTest {
         if self.payload.mass_kg == 0.0 {
             return (0.0, Matrix3xX::zeros(0));
         }
-        let arm = self.geometry.rotation * (self.payload.cg_m + coefficients.payload_offset_m);
+        let offset_m = coefficients.payload_offset_in(Channel::Modal, self.when.row);
+        let arm = self.geometry.rotation * (self.payload.cg_m + offset_m);
         (self.payload.mass_kg + coefficients.payload_delta_kg, &self.tip - arm.cross_matrix() * &self.spin)
     }
 
@@ -257,8 +262,7 @@ impl ModalTest {
             strains.for_each(|i| out[i] /= factor);
         }
         let dead = self.geometry.dead_torques_nm(coefficients, layout, Channel::Modal);
-        let wrench =
-            self.geometry.wrench(&self.payload, &Vector3::zeros(), layout.gravity_m_s2, coefficients);
+        let wrench = self.wrench(layout, coefficients);
         if let Some(lift) = coefficients.lift {
             let moments_nm = self.base_moments_nm(layout, coefficients, &wrench);
             (0..2).for_each(|i| out[i] += lifted_tangent(&lift, moments_nm[i], coefficients.smoothing));
@@ -271,6 +275,12 @@ impl ModalTest {
         out
     }
 
+    /// Weight of the payload in this test, as a wrench about the world's origin.
+    fn wrench(&self, layout: &Layout, coefficients: &Coefficients) -> Wrench {
+        let at = (Channel::Modal, self.when.row);
+        self.geometry.wrench(&self.payload, &Vector3::zeros(), layout.gravity_m_s2, coefficients, at)
+    }
+
     /// Static moments on the base about world x and y in this test \[N m\]. `wrench` is the weight of the payload.
     fn base_moments_nm(&self, layout: &Layout, coefficients: &Coefficients, wrench: &Wrench) -> [f64; 2] {
         let dead = self.geometry.dead_base_nm(coefficients, layout, Channel::Modal);
@@ -280,8 +290,7 @@ impl ModalTest {
     /// Static torques on the joints of an arm with these coefficients in this test, base to tip \[N m\].
     pub fn torques_nm(&self, layout: &Layout, coefficients: &Coefficients) -> Vec<f64> {
         let dead = self.geometry.dead_torques_nm(coefficients, layout, Channel::Modal);
-        let wrench =
-            self.geometry.wrench(&self.payload, &Vector3::zeros(), layout.gravity_m_s2, coefficients);
+        let wrench = self.wrench(layout, coefficients);
         self.geometry.joints.iter().zip(dead).map(|(m, t)| t + m.twist.dot(&wrench)).collect()
     }
 
@@ -440,8 +449,8 @@ impl ModalTest {
             .filter(|(_, (a, b))| a != b)
             .map(|(i, (a, b))| (i, b - a))
             .collect();
-        let payload_moves =
-            from.payload_delta_kg != to.payload_delta_kg || from.payload_offset_m != to.payload_offset_m;
+        let [before_m, after_m] = [from, to].map(|c| c.payload_offset_in(Channel::Modal, self.when.row));
+        let payload_moves = from.payload_delta_kg != to.payload_delta_kg || before_m != after_m;
         let payloads = payload_moves.then(|| (self.payload_jacobian(from), self.payload_jacobian(to)));
         let tests = [from, to].map(|c| &c.tests[Channel::Modal as usize]);
         let hung = (tests[0] != tests[1]).then(|| (self.hung_jacobian(from), self.hung_jacobian(to)));
@@ -523,31 +532,6 @@ impl UnitStrains {
             UnitStrains::Columns(columns) => Some(columns * combined),
         }
     }
-}
-
-/// Slope of the tilt of a base whose feet lift off, at the moment `moment_nm` \[rad/(N m)\]. The slope jumps at
-/// lift-off, and the jump is smoothed over `width` \[ln of the moment\]; 0 leaves it sharp.
-fn lifted_tangent(lift: &BaseLift, moment_nm: f64, width: f64) -> f64 {
-    if width == 0.0 {
-        return lift.tangent_compliance_rad_per_nm(moment_nm);
-    }
-    let beyond = libm::log(moment_nm.abs().max(1e-12) / lift.preload_nm) / width;
-    0.5 * (1.0 + libm::tanh(beyond)) / lift.stiffness_nm_per_rad
-}
-
-/// Slope of a joint's torsion law at the torque `torque_nm` \[rad/(N m)\]. The jumps of slope of a gear's curve are
-/// smoothed over `width` \[ln of the torque\]; 0 leaves them sharp.
-fn tangent(law: &JointLaw, torque_nm: f64, width: f64) -> f64 {
-    let Curve::Windup(w) = law.curve else { return law.tangent_compliance_rad_per_nm(torque_nm) };
-    if width == 0.0 {
-        return law.tangent_compliance_rad_per_nm(torque_nm);
-    }
-    let beyond = |t: f64| 0.5 * (1.0 + libm::tanh(libm::log((torque_nm.abs().max(1e-12)) / t) / width));
-    let segments = w.segments();
-    let [c1, c2, c3] = segments.map(|s| 1.0 / s.stiffness_nm_per_rad);
-    let smooth = c1 + (c2 - c1) * beyond(segments[0].to_nm) + (c3 - c2) * beyond(segments[1].to_nm);
-    let sharp = law.curve.tangent_compliance_rad_per_nm(torque_nm);
-    law.tangent_compliance_rad_per_nm(torque_nm) - sharp + smooth
 }
 
 /// Motions of the last frame per unit of each strain coordinate.

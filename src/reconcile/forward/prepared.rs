@@ -20,6 +20,9 @@ pub struct Forward {
     pub layout: Layout,
     /// The nominal arm, tested as the campaign describes.
     pub nominal: Subject,
+    /// For each entry of a pose, by how much the poses that were prepared are larger than those of the files \[rad\]: the
+    /// zeros of the angles that are off. Empty if the poses are those of the files.
+    pub(super) stands_rad: Vec<f64>,
     /// All measured numbers, in the order static, modal, bench.
     pub data: Vec<Datum>,
     /// Poses of the static rows, each with its loads.
@@ -40,8 +43,9 @@ pub struct Forward {
     pub largest_payload_kg: f64,
     /// The smallest stated payload above zero \[kg\]; infinite if there is none.
     pub lightest_payload_kg: f64,
-    /// For each driven joint, the change of every reading by an angle whose zero is off; empty until it is asked for.
-    pub(crate) zero_columns: OnceLock<Vec<Vec<f64>>>,
+    /// For each entry of a pose, the change of every reading per degree of the angle or millimetre of the travel; empty
+    /// until it is asked for.
+    pub(crate) turn_slopes: OnceLock<Vec<Vec<f64>>>,
     /// For each horizontal axis, the change of every reading by an arm that is out of level; empty until it is asked
     /// for.
     pub(crate) level_columns: OnceLock<Vec<Vec<f64>>>,
@@ -49,6 +53,8 @@ pub struct Forward {
     pub(crate) length_columns: OnceLock<Vec<Vec<f64>>>,
     /// Whether some static or modal reading has a temperature.
     pub has_temperatures: bool,
+    /// Number of rows of the files of static and of modal readings.
+    pub(crate) file_rows: [usize; 2],
 }
 
 impl Forward {
@@ -56,7 +62,7 @@ impl Forward {
     pub fn new(campaign: &Campaign) -> Self {
         let nominal = nominal_subject(campaign);
         let layout = Layout::new(&nominal.structure);
-        Self::prepare(campaign, nominal, layout)
+        Self::prepare(campaign, nominal, layout, None)
     }
 
     /// Prepares a campaign for the prediction of its nominal arm alone: masses that this arm does not have are left
@@ -68,15 +74,29 @@ impl Forward {
         if own.masses.iter().chain(&own.weights).all(|amount| *amount == 0.0) {
             layout.with_mass.clear();
         }
-        Self::prepare(campaign, nominal, layout)
+        Self::prepare(campaign, nominal, layout, None)
     }
 
-    fn prepare(campaign: &Campaign, nominal: Subject, layout: Layout) -> Self {
+    /// Prepares a campaign for the nominal arm, in the poses in which an arm with the zeros of `turned` stands; `None` for
+    /// the zeros of the nominal arm. `layout` lists the strain coordinates of the nominal arm.
+    pub(super) fn prepare(
+        campaign: &Campaign,
+        mut nominal: Subject,
+        layout: Layout,
+        turned: Option<&Subject>,
+    ) -> Self {
+        let file_rows =
+            [file_rows(&campaign.statics, |row| row.row), file_rows(&campaign.modal, |row| row.row)];
+        for (channel, rows) in [Channel::Static, Channel::Modal].into_iter().zip(file_rows) {
+            nominal.setups[channel as usize].keep_events_of(rows);
+        }
+        let zeros_rad = turned.map_or(&nominal.zeros_rad, |subject| &subject.zeros_rad).clone();
+        let standing = Subject { zeros_rad, ..nominal.clone() };
         let mut groups = Groups::default();
         let mut data = Vec::new();
-        let statics = statics::prepare(campaign, &layout, &nominal, &mut groups, &mut data);
+        let statics = statics::prepare(campaign, &layout, &standing, &mut groups, &mut data);
         let modal_start = data.len();
-        let modal = modal::prepare(campaign, &layout, &nominal, &mut groups, &mut data);
+        let modal = modal::prepare(campaign, &layout, &standing, &mut groups, &mut data);
         let windup_start = data.len();
         let bench = bench::prepare(campaign, &layout, &mut data);
         // the data are sorted by channel, so one index range selects a channel
@@ -87,6 +107,7 @@ impl Forward {
         Self {
             layout,
             nominal,
+            stands_rad: standing.turns_rad(),
             data,
             statics,
             modal,
@@ -95,11 +116,12 @@ impl Forward {
             groups: groups.names,
             payload_density_kg_m3: campaign.statement.payload_density_kg_m3,
             stiffness_tolerance: campaign.statement.tolerance.joint_stiffness,
-            zero_columns: OnceLock::new(),
+            turn_slopes: OnceLock::new(),
             level_columns: OnceLock::new(),
             length_columns: OnceLock::new(),
             has_temperatures: campaign.statics.iter().any(|r| r.temperature_c.is_some())
                 || campaign.modal.iter().any(|r| r.temperature_c.is_some()),
+            file_rows,
             largest_payload_kg: payloads_kg.iter().copied().fold(0.0, f64::max),
             lightest_payload_kg: payloads_kg
                 .iter()
@@ -129,7 +151,7 @@ impl Forward {
     /// arm with these coefficients. Returns a sentence for each list that was changed.
     pub fn find_missed_modes(&mut self, coefficients: &Coefficients) -> Vec<String> {
         // the modes of the readings change
-        self.zero_columns = OnceLock::new();
+        self.turn_slopes = OnceLock::new();
         self.length_columns = OnceLock::new();
         let mut out = Vec::new();
         for (i, test) in self.modal.iter_mut().enumerate() {
@@ -204,7 +226,19 @@ impl Forward {
     /// Expresses a subject (an arm under test) as compliances, joint laws and masses. The masses are given as
     /// differences from those of the nominal arm.
     pub fn coefficients(&self, subject: &Subject) -> Coefficients {
-        Coefficients::new(&self.layout, &self.nominal, subject)
+        let turned_deg = self.turned_deg(subject);
+        Coefficients { turned_deg, ..Coefficients::new(&self.layout, &self.nominal, subject) }
+    }
+
+    /// For each entry of a pose, how far `subject` is turned from the pose that was prepared \[deg\]; empty if it is not.
+    fn turned_deg(&self, subject: &Subject) -> Vec<f64> {
+        let own_rad = subject.turns_rad();
+        if own_rad == self.stands_rad {
+            return Vec::new();
+        }
+        let at = |list: &[f64], entry: usize| list.get(entry).copied().unwrap_or(0.0);
+        let entries = own_rad.len().max(self.stands_rad.len());
+        (0..entries).map(|i| (at(&own_rad, i) - at(&self.stands_rad, i)).to_degrees()).collect()
     }
 
     /// The predicted reading of an arm with these coefficients for every datum, in the unit of the datum's file.
@@ -280,12 +314,21 @@ impl Forward {
     }
 
     /// Adds the errors of the measuring channels: turns the value of each datum in `out` into the reading that the
-    /// channel shows.
+    /// channel shows. Then adds what changes if the arm is turned from the pose that was prepared.
     pub fn read(&self, coefficients: &Coefficients, out: &mut [f64]) {
         for (value, datum) in out.iter_mut().zip(&self.data) {
             *value = coefficients.channels[datum.channel as usize].of(*value, datum.component, datum.row);
         }
+        let slopes = self.turn_slopes.get().into_iter().flatten();
+        for (turned_deg, slope) in coefficients.turned_deg.iter().zip(slopes) {
+            out.iter_mut().zip(slope).for_each(|(value, slope)| *value += turned_deg * slope);
+        }
     }
+}
+
+/// Number of rows of a file whose rows are `rows`. `number` is the number of a row in its file, from 0.
+pub(crate) fn file_rows<R>(rows: &[R], number: impl Fn(&R) -> usize) -> usize {
+    rows.iter().map(|row| number(row) + 1).max().unwrap_or(0)
 }
 
 /// The nominal arm of a campaign, with rigid links if the campaign says so.

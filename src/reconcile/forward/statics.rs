@@ -7,13 +7,13 @@
 
 use super::coefficients::{Coefficients, Layout, StaticChanges};
 use super::datum::{Datum, Groups};
+use super::dead_weight::dead_torques;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::subject::Subject;
 use crate::arm::effect::warming::Moment;
 use crate::arm::joint_law::JointLaw;
 use crate::arm::load::Payload;
-use crate::mechanics::chain::{Item, Posed};
-use crate::mechanics::{Twist, Wrench, angular, displacement_at, force_wrench};
+use crate::mechanics::{Twist, Wrench, displacement_at, force_wrench};
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::components::Component;
 use nalgebra::{Matrix3x6, Rotation3, Vector3};
@@ -177,7 +177,7 @@ impl StaticPose {
 impl PoseGeometry {
     /// Computes the geometry of a pose with the mechanics of the full model.
     pub fn new(layout: &Layout, nominal: &Subject, pose_deg: &[f64]) -> Self {
-        let pose_rad = layout.template.pose_si(pose_deg);
+        let pose_rad = nominal.standing_rad(layout.template.pose_si(pose_deg));
         let empty = Payload::default();
         let posed = layout.template.pose_rad(&pose_rad, &empty, Vector3::zeros());
         let twists = posed.tip_twists();
@@ -283,18 +283,20 @@ impl PoseGeometry {
     }
 
     /// Weight of the payload, corrected by the coefficients, and tip force, together as a wrench about the world's
-    /// origin.
-    pub fn wrench(
+    /// origin, in the row `row` of the file of `channel`, counted from 0.
+    pub(crate) fn wrench(
         &self,
         payload: &Payload,
         force_n: &Vector3<f64>,
         gravity_m_s2: f64,
         coefficients: &Coefficients,
+        (channel, row): (Channel, usize),
     ) -> Wrench {
         let mut wrench = force_wrench(force_n, &self.tip_m);
         if payload.mass_kg != 0.0 {
             let mass_kg = payload.mass_kg + coefficients.payload_delta_kg;
-            let cg_m = self.tip_m + self.rotation * (payload.cg_m + coefficients.payload_offset_m);
+            let offset_m = coefficients.payload_offset_in(channel, row);
+            let cg_m = self.tip_m + self.rotation * (payload.cg_m + offset_m);
             let weight_n = mass_kg * gravity_m_s2 * coefficients.payload_weight;
             wrench += force_wrench(&Vector3::new(0.0, 0.0, -weight_n), &cg_m);
         }
@@ -347,32 +349,6 @@ fn follow_changing(
         follow_from(&reference, &loaded, dead_nm, &loaded_nm[..=load], &mut own_rad[..=load]);
         twists_rad[load] = own_rad[load];
     }
-}
-
-/// Torque of the dead weight on each joint, and its moments about world x and y on the base \[N m\].
-fn dead_torques(posed: &Posed) -> (Vec<f64>, [f64; 2]) {
-    let mut wrench = Wrench::zeros();
-    let mut torques = Vec::new();
-    let carried = posed.transferred();
-    for item in posed.items.iter().rev() {
-        match item {
-            Item::Body(body) => wrench += body.weight(),
-            Item::Load(load) => wrench += load,
-            Item::Elastic(element) => {
-                if let crate::mechanics::chain::Compliance::Joint(_) = element.compliance {
-                    let passive = carried.iter().filter(|c| c.driver == element.name);
-                    let passive_nm: f64 = passive.map(|c| c.torque_nm).sum();
-                    torques.push(element.twists[0].dot(&wrench) + element.torque_nm + passive_nm);
-                }
-                if let Some(own) = &element.own {
-                    wrench += own.weight;
-                }
-            }
-        }
-    }
-    torques.reverse();
-    let moment = angular(&wrench);
-    (torques, [moment.x, moment.y])
 }
 
 impl StaticPose {
@@ -435,13 +411,17 @@ impl StaticPose {
         }
     }
 
+    /// Weight of the payload and tip force of a load together, as a wrench about the world's origin.
+    fn wrench(&self, load: &Load, layout: &Layout, coefficients: &Coefficients) -> Wrench {
+        let at = (Channel::Static, load.when.row);
+        self.geometry.wrench(&load.payload, &load.force_n, layout.gravity_m_s2, coefficients, at)
+    }
+
     /// Computes the wrench of each load and its torque on each joint, and stores them in `state`.
     fn update_loads(&self, layout: &Layout, coefficients: &Coefficients, state: &mut StaticState) {
         let geometry = &self.geometry;
-        let wrench =
-            |load: &Load| geometry.wrench(&load.payload, &load.force_n, layout.gravity_m_s2, coefficients);
         state.wrenches.clear();
-        state.wrenches.extend(self.loads.iter().map(wrench));
+        state.wrenches.extend(self.loads.iter().map(|load| self.wrench(load, layout, coefficients)));
         state.loaded_nm.clear();
         let torques_nm = geometry.joints.iter().flat_map(|m| state.wrenches.iter().map(|w| m.twist.dot(w)));
         state.loaded_nm.extend(torques_nm);
@@ -466,6 +446,15 @@ impl StaticPose {
                     loaded: law(row),
                 });
                 follow_changing(laws, dead_nm, loaded_nm, twists_rad);
+            }
+        }
+        for further in coefficients.tests[Channel::Static as usize].load_twists_of(j) {
+            let torque_nm = |joint: Option<usize>, load: usize| {
+                joint.and_then(|joint| state.loaded_nm.get(joint * count + load)).copied().unwrap_or(0.0)
+            };
+            for (load, twist_rad) in twists_rad.iter_mut().enumerate() {
+                let near = [j.checked_sub(1), Some(j), Some(j + 1)];
+                *twist_rad += further.angle_rad(near.map(|joint| torque_nm(joint, load)));
             }
         }
     }
@@ -514,8 +503,8 @@ impl StaticPose {
         state.lifted_rad.extend(state.wrenches.iter().map(lifted));
     }
 
-    /// Displacement of the tip under the load with index `load` along the axes of the instrument \[mm\]. It contains a turn
-    /// of the base in the course of the tests.
+    /// Displacement of the tip under the load with index `load` along the axes of the instrument \[mm\]. It contains
+    /// turns of the base and motions of the instrument in the course of the tests.
     pub(crate) fn seen_mm(
         &self,
         state: &StaticState,
@@ -523,7 +512,7 @@ impl StaticPose {
         load: usize,
     ) -> Vector3<f64> {
         let mut moved_mm = self.displacement_mm(state, load);
-        if let Some(turned) = coefficients.tests[Channel::Static as usize].turned {
+        for turned in &coefficients.tests[Channel::Static as usize].turned {
             moved_mm += 1e3 * turned.moved_m(&self.geometry.tip_m, self.loads[load].when.row);
         }
         coefficients.channels[Channel::Static as usize].along_own_axes(&moved_mm)
@@ -555,7 +544,7 @@ impl StaticPose {
             .filter_map(|m| Some(m.tip * (compliance(m.index)? * m.twist.transpose())))
             .sum();
         for (k, load) in self.loads.iter().enumerate() {
-            let wrench = geometry.wrench(&load.payload, &load.force_n, layout.gravity_m_s2, coefficients);
+            let wrench = self.wrench(load, layout, coefficients);
             let moved = 1e3 * compliance_of * wrench;
             self.measured(k).for_each(|(component, datum)| out[datum] += moved[component]);
         }
@@ -565,9 +554,7 @@ impl StaticPose {
     /// loads of the pose \[N m\].
     pub fn largest_base_nm(&self, layout: &Layout, coefficients: &Coefficients) -> f64 {
         let dead = self.geometry.dead_base_nm(coefficients, layout, Channel::Static);
-        let loads = self.loads.iter().map(|load| {
-            self.geometry.wrench(&load.payload, &load.force_n, layout.gravity_m_s2, coefficients)
-        });
+        let loads = self.loads.iter().map(|load| self.wrench(load, layout, coefficients));
         let base = &self.geometry.base;
         let loaded = loads.map(|w| [0, 1].map(|i| (dead[i] + base[i].twist.dot(&w)).abs()));
         loaded.flatten().chain(dead.map(f64::abs)).fold(0.0, f64::max)
@@ -579,8 +566,7 @@ impl StaticPose {
         let dead = self.geometry.dead_torques_nm(coefficients, layout, Channel::Static);
         let mut out = vec![dead.clone()];
         for load in &self.loads {
-            let wrench =
-                self.geometry.wrench(&load.payload, &load.force_n, layout.gravity_m_s2, coefficients);
+            let wrench = self.wrench(load, layout, coefficients);
             let joints = self.geometry.joints.iter().zip(&dead);
             out.push(joints.map(|(m, t)| t + m.twist.dot(&wrench)).collect());
         }

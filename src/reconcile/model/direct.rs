@@ -2,6 +2,7 @@
 //! values, and tests check the prepared model of the fits against them.
 
 use crate::arm::effect::channel::Channel;
+use crate::arm::effect::setup::Setup;
 use crate::arm::effect::subject::Subject;
 use crate::arm::effect::warming::Moment;
 use crate::arm::joint_law::JointLaw;
@@ -12,7 +13,7 @@ use crate::mechanics::chain::Chain;
 use crate::mechanics::chain::{Compliance, Posed};
 use crate::mechanics::{Twist, displacement_at};
 use crate::reconcile::forward::bench::{ARCMIN_PER_RAD, bench_twists_rad};
-use crate::reconcile::forward::prepared::make_links_rigid;
+use crate::reconcile::forward::prepared::{file_rows, make_links_rigid};
 use crate::reconcile::readings::campaign::Statement;
 use crate::reconcile::readings::placement::Placement;
 use crate::reconcile::readings::rows::{ModalRow, PositionRow, StaticRow, WindupRow};
@@ -57,7 +58,7 @@ impl<'a> Direct<'a> {
     /// friction play depends on it.
     pub fn statics_mm(&self, rows: &[StaticRow]) -> Vec<[f64; 3]> {
         let reading = &self.subject.channels[Channel::Static as usize];
-        let turned = self.subject.setups[Channel::Static as usize].turned;
+        let setup = self.setup_of(Channel::Static, file_rows(rows, |row| row.row));
         let mut out = Vec::with_capacity(rows.len());
         let mut pose: &[f64] = &[];
         let (mut play, mut lag) = (Vec::new(), Vector3::zeros());
@@ -72,9 +73,12 @@ impl<'a> Direct<'a> {
                 play = rest(&unloaded);
                 lag = tip_m(&unloaded, &mut play) - unloaded_m;
             }
-            let loaded = self.posed(&chain, pose, &row.payload, row.force_n);
-            let slipped_m = turned.map_or(Vector3::zeros(), |t| t.moved_m(&unloaded.tip_m, row.row));
-            let d = tip_m(&loaded, &mut play) - (unloaded_m + lag) + slipped_m;
+            let payload = self.payload_in(&setup, row.row, &row.payload);
+            let loaded = self.posed(&chain, pose, &payload, row.force_n);
+            let turned_m: Vector3<f64> =
+                setup.turned.iter().map(|t| t.moved_m(&unloaded.tip_m, row.row)).sum();
+            let twisted_m = load_twists_m(&setup, &unloaded, &loaded);
+            let d = tip_m(&loaded, &mut play) - (unloaded_m + lag) + turned_m + twisted_m;
             let seen_mm = reading.along_own_axes(&(1e3 * d));
             out.push(std::array::from_fn(|c| reading.of(seen_mm[c], c, row.row)));
         }
@@ -84,6 +88,7 @@ impl<'a> Direct<'a> {
     /// Predicted frequency readings \[Hz\], one per row; `None` where the arm has no mode of this number.
     pub fn frequencies_hz(&self, rows: &[ModalRow]) -> Vec<Option<f64>> {
         let reading = &self.subject.channels[Channel::Modal as usize];
+        let setup = self.setup_of(Channel::Modal, file_rows(rows, |row| row.row));
         let mut last: Option<(&ModalRow, Vec<f64>)> = None;
         rows.iter()
             .map(|row| {
@@ -92,7 +97,8 @@ impl<'a> Direct<'a> {
                 };
                 if !last.as_ref().is_some_and(|(first, _)| is_of_list(first)) {
                     let chain = self.chain_at(Channel::Modal, &row.moment());
-                    let posed = self.posed(&chain, &row.pose_deg, &row.payload, Vector3::zeros());
+                    let payload = self.payload_in(&setup, row.row, &row.payload);
+                    let posed = self.posed(&chain, &row.pose_deg, &payload, Vector3::zeros());
                     let modes = posed.solve_modes(&posed.statics());
                     last = Some((row, modes.finite().map(|(_, f)| f).collect()));
                 }
@@ -147,7 +153,7 @@ impl<'a> Direct<'a> {
     /// Name of every joint, and the torque on it in the pose and under the loads of `row` \[N m\].
     pub fn torques_nm(&self, row: &StaticRow) -> Vec<(String, f64)> {
         let chain = self.chain_at(Channel::Static, &row.moment());
-        let posed = self.posed(&chain, &row.pose_deg, &row.payload, row.force_n);
+        let posed = self.posed(&chain, &row.pose_deg, &self.subject.payload(&row.payload), row.force_n);
         let torques = posed.statics().joint_torques_nm;
         torques.into_iter().map(|(joint, torque_nm)| (joint.to_string(), torque_nm)).collect()
     }
@@ -169,14 +175,29 @@ impl<'a> Direct<'a> {
         }
     }
 
+    /// The special set-up of the tests in a channel's file with `rows` rows, with what happened in this file.
+    fn setup_of(&self, channel: Channel, rows: usize) -> Setup {
+        let mut setup = self.subject.setups[channel as usize].clone();
+        setup.keep_events_of(rows);
+        setup
+    }
+
+    /// The actual payload in the row `row`, counted from 0, of tests with the set-up `setup`.
+    fn payload_in(&self, setup: &Setup, row: usize, stated: &Payload) -> Payload {
+        let slip_m = if stated.mass_kg == 0.0 { Vector3::zeros() } else { setup.slip_m(row) };
+        let payload = self.subject.payload(stated);
+        Payload { cg_m: payload.cg_m + slip_m, ..payload }
+    }
+
     fn posed<'c>(
         &self,
         chain: &'c Chain,
         pose_deg: &[f64],
-        stated: &Payload,
+        payload: &Payload,
         force_n: Vector3<f64>,
     ) -> Posed<'c> {
-        chain.pose_rad(&chain.pose_si(pose_deg), &self.subject.payload(stated), force_n)
+        let pose_rad = self.subject.standing_rad(chain.pose_si(pose_deg));
+        chain.pose_rad(&pose_rad, payload, force_n)
     }
 }
 
@@ -203,6 +224,7 @@ pub fn seen_from_tool(payload: &Payload, tool_m: &Vector3<f64>) -> Payload {
 
 /// A joint in a pose.
 struct PosedJoint {
+    name: String,
     /// Torsion law.
     law: JointLaw,
     /// Kinematic twist.
@@ -218,11 +240,12 @@ fn joints(posed: &Posed) -> Vec<PosedJoint> {
         // elements without strain coordinates have no twist
         let own: Vec<Twist> = twists.by_ref().take(element.twists.len()).collect();
         match element.compliance {
-            Compliance::Joint(law) => Some((law, own[0])),
+            Compliance::Joint(law) => Some((element.name.clone(), law, own[0])),
             Compliance::Linear(_) | Compliance::Slide { .. } | Compliance::Lift(_) => None,
         }
     });
-    laws.zip(torques).map(|((law, twist), (_, torque_nm))| PosedJoint { law, twist, torque_nm }).collect()
+    let joint = |((name, law, twist), torque_nm)| PosedJoint { name, law, twist, torque_nm };
+    laws.zip(torques.into_iter().map(|(_, torque_nm)| torque_nm)).map(joint).collect()
 }
 
 /// State of each joint's friction play, as a torque, when the arm has come to rest in this pose \[N m\], from base to
@@ -237,9 +260,27 @@ fn tip_m(posed: &Posed, play: &mut [f64]) -> Vector3<f64> {
     let joints = joints(posed);
     let statics = posed.statics();
     let mut tip = statics.tip_displacement_m;
-    for (PosedJoint { law, twist, torque_nm }, state) in joints.into_iter().zip(play) {
+    for (PosedJoint { law, twist, torque_nm, .. }, state) in joints.into_iter().zip(play) {
         let followed = law.play_angle_rad(torque_nm, state) - law.rising_angle_rad(torque_nm);
         tip += displacement_at(&(twist * followed), &posed.tip_m);
     }
     tip
+}
+
+/// Displacement of the tip from its place in the unloaded arm by further twists of the joints under the load \[m\].
+fn load_twists_m(setup: &Setup, unloaded: &Posed, loaded: &Posed) -> Vector3<f64> {
+    if setup.load_twists.is_empty() {
+        return Vector3::zeros();
+    }
+    let (before, after) = (joints(unloaded), joints(loaded));
+    let load_nm = |j: Option<usize>| {
+        j.and_then(|j| Some(after.get(j)?.torque_nm - before[j].torque_nm)).unwrap_or_default()
+    };
+    let moved_m = |(j, joint): (usize, &PosedJoint)| -> Vector3<f64> {
+        let torques_nm = [j.checked_sub(1), Some(j), Some(j + 1)].map(load_nm);
+        let twists = setup.load_twists_of(&joint.name);
+        let twist_rad: f64 = twists.iter().map(|twist| twist.angle_rad(torques_nm)).sum();
+        displacement_at(&(joint.twist * twist_rad), &loaded.tip_m)
+    };
+    after.iter().enumerate().map(moved_m).sum()
 }

@@ -263,6 +263,7 @@ impl Candidate {
         let is_own = |place: &&Place| match place {
             Place::Channel(channel) => channel.word() == self.at,
             Place::Base => self.at == BASE && count(Place::Base) == self.numbers.len(),
+            Place::Payload => self.at == "payload" && count(Place::Payload) == self.numbers.len(),
             _ => false,
         };
         let place = self.kind.places.iter().find(is_own).or(self.kind.places.first());

@@ -7,33 +7,27 @@
 //! - a further twist of a joint as a polynomial of its torque;
 //! - a housing or a base that tilts about two axes, with a compliance of its own for each;
 //! - a joint whose stiffness changes with the order of the tests;
+//! - a joint that stands at another angle than stated, or that twists under the torques of its neighbours;
 //! - readings that are a nonlinear function of the true value, or that have a gain of their own in each direction;
 //! - displacements of which each direction also shows a part of the others;
-//! - a base that turned once in the course of the tests.
+//! - a base that turned, an instrument that moved, or a payload that slipped, once in the course of the tests.
 
-use super::search::{Scored, Search};
+use super::event_rows;
 use crate::arm::BASE;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::empirical::{
-    BASE_TURN, BEND, EVEN_TWIST, GAIN, KIND, LEAN, MIX, ODD_TWIST, SOFTENING, SOFTENING_REFERENCE,
-    SOFTENING_ROWS,
+    BASE_TURN, BEND, EVEN_TWIST, GAIN, KIND, LEAN, LOAD_PLAY, LOAD_PLAY_TORQUE, MIX, NEIGHBOUR_TWIST,
+    ODD_TWIST, SHIFT, SLIP, SOFTENING, SOFTENING_REFERENCE, SOFTENING_ROWS, ZERO,
 };
 use crate::arm::effect::kind::{Absent, Parameter, Scale};
 use crate::arm::structure::Piece;
-use crate::reconcile::fit::descent::{Effort, Fit, Weights};
+use crate::reconcile::fit::descent::{Fit, Weights};
 use crate::reconcile::forward::prepared::Forward;
-use crate::reconcile::forward::statics::StaticPose;
 use crate::reconcile::model::candidates::largest_torque_nm;
 use crate::reconcile::model::parameters::Number::{Free, Stated};
 use crate::reconcile::model::parameters::{Candidate, FreeParameter, LARGEST_COMPLIANCE, Number};
-use nalgebra::{Matrix3, Vector3};
-use rayon::prelude::*;
+use std::ops::Range;
 
-/// Largest number of laws without a name in one model.
-const MOST_LAWS: usize = 3;
-/// A law is accepted if the logarithm of the evidence, less the logarithm of the number of places where a law is
-/// tried, rises by more than this.
-const LEAST_GAIN: f64 = 2.0;
 /// A joint is not tried if its largest torque is less than this fraction of the largest torque on any joint.
 const UNLOADED_SHARE: f64 = 1e-3;
 /// Largest size of a law of a joint (a further twist) that is sought, as a multiple of the joint's nominal twist at
@@ -45,10 +39,92 @@ const SOFTENING_IN: [Channel; 2] = [Channel::Static, Channel::Modal];
 /// A joint softens by 63 % of its total within a number of rows that is fitted. Fits start from these values of this
 /// number, as fractions of the rows of the file.
 const SOFTENED_AFTER: [f64; 2] = [0.08, 0.5];
-/// Place of the row of a base's turn among the numbers of a law of displacements.
-const TURN_ROW: usize = 9;
-/// Smallest number of poses that must come before a turn of the base, and of poses that must come after it.
-const FEWEST_POSES: usize = 2;
+/// Largest error of the zero of an angle that is sought \[rad\].
+const LARGEST_ZERO_RAD: f64 = 0.35;
+/// Usual error of the zero of an angle \[rad\].
+const USUAL_ZERO_RAD: f64 = 0.01;
+/// Largest displacement of a payload's centre of gravity that is sought \[m\].
+const LARGEST_SLIP_M: f64 = 1.0;
+/// Usual displacement of a payload's centre of gravity \[m\].
+const USUAL_SLIP_M: f64 = 0.01;
+/// The word in files for the place of a payload.
+const PAYLOAD: &str = "payload";
+
+/// Places of parameters among the numbers of a law of a joint.
+const IN_JOINT: Joint = Joint {
+    odd: 0..2,
+    even: 2..4,
+    torque: 4,
+    softening: 5,
+    lean: 10..12,
+    zero: 12..13,
+    neighbours: 13,
+    play: 15..17,
+};
+/// Places of parameters among the numbers of a law of displacements.
+const IN_STATIC: Static = Static {
+    bend: 0..2,
+    scale: 2,
+    gain: 3..6,
+    turn: 6..9,
+    from_row: 9,
+    mix: 10,
+    shift: 16..19,
+    file_rows: 19,
+};
+
+/// Places of the parameters of a law of a joint among its numbers.
+struct Joint {
+    odd: Range<usize>,
+    even: Range<usize>,
+    torque: usize,
+    /// The first of five: change and rows of the static tests, those of the modal tests, the part of the reference.
+    softening: usize,
+    lean: Range<usize>,
+    zero: Range<usize>,
+    /// The first of two: inboard, outboard.
+    neighbours: usize,
+    play: Range<usize>,
+}
+
+/// Places of the parameters of a law of displacements among its numbers. A law of another channel has the first three.
+struct Static {
+    bend: Range<usize>,
+    scale: usize,
+    gain: Range<usize>,
+    turn: Range<usize>,
+    from_row: usize,
+    /// The first of six.
+    mix: usize,
+    shift: Range<usize>,
+    file_rows: usize,
+}
+
+/// The numbers of a law of a joint of which those with the indices `free` are fitted. The others change nothing.
+/// `torque_nm` is the largest torque on the joint.
+fn of_joint(torque_nm: f64, free: impl IntoIterator<Item = usize>) -> Vec<Number> {
+    let mut out = vec![Stated(0.0); IN_JOINT.play.end];
+    // files do not take a torque of zero
+    [IN_JOINT.torque, IN_JOINT.play.start + 1].iter().for_each(|own| out[*own] = Stated(torque_nm.max(1e-6)));
+    // numbers of rows, and the part of the change that the reference has
+    [1, 3, 4].iter().for_each(|own| out[IN_JOINT.softening + own] = Stated(1.0));
+    free.into_iter().for_each(|index| out[index] = Free);
+    out
+}
+
+/// The numbers of a law of a channel of which those with the indices `free` are fitted. The others change nothing.
+fn of_channel(channel: Channel, free: impl IntoIterator<Item = usize>) -> Vec<Number> {
+    let mut out = vec![Stated(0.0); IN_STATIC.file_rows + 1];
+    out[IN_STATIC.scale] = Stated(1.0);
+    out[IN_STATIC.gain].fill(Stated(1.0));
+    out[IN_STATIC.from_row] = Stated(1.0);
+    free.into_iter().for_each(|index| out[index] = Free);
+    // only displacements show that something moved or that directions mix
+    if channel != Channel::Static {
+        out.truncate(IN_STATIC.gain.end);
+    }
+    out
+}
 
 /// Every law at every place where the readings could show it. `baseline` is the best fit with calibration alone. Its
 /// residuals show at which row the base could have turned.
@@ -62,11 +138,14 @@ pub(crate) fn laws(forward: &Forward, baseline: &Fit, weights: &Weights) -> Vec<
     // a law at a joint with the name of the base could not be written: the name means the base
     for ((slot, law), torque_nm) in joints.filter(|((slot, _), _)| slot.name != BASE) {
         out.extend(housing(forward, &slot.name, torque_nm));
+        out.extend(zero(forward, &slot.name, torque_nm));
         if !law.is_rigid() && torque_nm > UNLOADED_SHARE * largest {
             out.extend(twists(&slot.name, torque_nm, law.angle_rad(torque_nm).abs()));
+            out.extend(load_play(forward, &slot.name, torque_nm, law.angle_rad(torque_nm).abs()));
             out.extend((0..SOFTENING_IN.len()).filter_map(|c| softening(forward, &slot.name, torque_nm, c)));
         }
     }
+    out.extend((0..forward.layout.joints.len()).filter_map(|joint| neighbours(forward, joint)));
     for channel in [Channel::Static, Channel::Modal, Channel::Windup] {
         let sizes = forward.data[forward.range(channel)].iter().map(|d| d.value.abs());
         let largest = sizes.fold(0.0, f64::max);
@@ -76,8 +155,67 @@ pub(crate) fn laws(forward: &Forward, baseline: &Fit, weights: &Weights) -> Vec<
     }
     out.extend(mixing(forward));
     out.extend(lean(forward));
-    out.extend(most_telling_row(forward, baseline, weights).map(base_turn));
+    out.extend(events(forward, baseline, weights));
     out
+}
+
+/// The laws of what happened once in the course of the tests, each at the row where it explains most.
+fn events(forward: &Forward, baseline: &Fit, weights: &Weights) -> Vec<Candidate> {
+    let (starts, rows) = (event_rows::pose_starts(forward), event_rows::static_rows(forward));
+    let turn = event_rows::of_turn(forward, baseline, weights, &starts);
+    let shift = event_rows::of_shift(forward, baseline, weights, &rows);
+    let turn = turn.map(|row| moved_once(forward, row, BASE_TURN));
+    let shift = shift.map(|row| moved_once(forward, row, SHIFT));
+    let slip = slip(forward, event_rows::of_slip(forward, baseline, weights));
+    turn.into_iter().chain(shift).chain(slip).collect()
+}
+
+/// The candidate for an angle of a joint whose zero is off. `None` for a joint that others turn.
+fn zero(forward: &Forward, joint: &str, torque_nm: f64) -> Option<Candidate> {
+    let is_driven = forward.nominal.structure.joints().any(|j| j.name == joint && j.is_driven());
+    let angle = Parameter::number(ZERO, -LARGEST_ZERO_RAD, LARGEST_ZERO_RAD, USUAL_ZERO_RAD, Scale::Linear);
+    let numbers = of_joint(torque_nm, IN_JOINT.zero);
+    is_driven.then(|| Candidate { numbers, ..law(joint, angle, 0.0) })
+}
+
+/// The candidate for a joint that also twists under the torques of its neighbours in the static tests. The usual size is
+/// the largest compliance among them. `None` if they are rigid or there are no displacements.
+fn neighbours(forward: &Forward, joint: usize) -> Option<Candidate> {
+    let (joints, laws) = (&forward.layout.joints, forward.coefficients(&forward.nominal).laws);
+    let sides = [joint.checked_sub(1), (joint + 1 < joints.len()).then_some(joint + 1)];
+    let near = sides.iter().flatten().chain([&joint]);
+    let compliances = near.map(|j| laws[*j].tangent_compliance_rad_per_nm(0.0));
+    let usual = compliances.fold(0.0, f64::max);
+    let name = &joints[joint].name;
+    if usual == 0.0 || name == BASE || forward.range(Channel::Static).is_empty() {
+        return None;
+    }
+    let most = LARGEST_TWIST * usual;
+    let twist =
+        Parameter { count: 2, ..Parameter::number(NEIGHBOUR_TWIST, -most, most, usual, Scale::Linear) };
+    let mut candidate = law(name, twist, 0.0);
+    candidate.free_parameters.retain(|free| sides[free.component].is_some());
+    candidate.starts = vec![candidate.free_parameters.iter().map(|free| free.u(0.0)).collect()];
+    let free = candidate.free_parameters.iter().map(|free| IN_JOINT.neighbours + free.component);
+    let torque_nm = largest_torque_nm(forward, name);
+    candidate.numbers = of_joint(torque_nm, free);
+    (!candidate.free_parameters.is_empty()).then_some(candidate)
+}
+
+/// The candidate for play of a joint that the unloaded arm leaves open to both sides. `torque_nm` is the largest torque on
+/// the joint, and `twist_rad` its twist under this torque. `None` if there are no displacements.
+fn load_play(forward: &Forward, joint: &str, torque_nm: f64, twist_rad: f64) -> Option<Candidate> {
+    let most = LARGEST_TWIST * twist_rad;
+    let size = Parameter::number(LOAD_PLAY, -most, most, twist_rad, Scale::Linear);
+    let pace = Parameter::number(LOAD_PLAY_TORQUE, 1e-9, 1e9, torque_nm, Scale::Log);
+    let [low, high] = [1e-3, 1.0].map(|part| libm::log(part * torque_nm));
+    let free_parameters =
+        vec![FreeParameter::new(&size, 0, 1.0), FreeParameter::new(&pace, 0, 1.0).within(low, high)];
+    let starts = [0.02, 0.2].map(|part| vec![0.1, libm::log(part * torque_nm)]).to_vec();
+    let numbers = of_joint(torque_nm, IN_JOINT.play);
+    let candidate =
+        Candidate { kind: &KIND, at: joint.into(), free_parameters, numbers, starts, twins: Vec::new() };
+    (!forward.range(Channel::Static).is_empty()).then_some(candidate)
 }
 
 /// The candidate for a joint whose stiffness changes with the order of the tests of one channel. `channel` is the index
@@ -91,32 +229,21 @@ fn softening(forward: &Forward, joint: &str, torque_nm: f64, channel: usize) -> 
         FreeParameter::new(&size, 0, 1.0),
         FreeParameter::new(&pace, 0, 1.0).within(libm::log(0.1), libm::log(3.0 * rows)),
     ];
-    let mut numbers = [vec![Stated(0.0); 4], vec![Stated(torque_nm)], steady(), upright()].concat();
-    let first = 5 + 2 * channel;
-    numbers[first..first + 2].fill(Free);
+    let first = IN_JOINT.softening + 2 * channel;
+    let mut numbers = of_joint(torque_nm, [first, first + 1]);
     let paces = SOFTENED_AFTER.map(|part| libm::log((part * rows).max(1.0)));
     let mut starts = paces.map(|pace| vec![1.0, pace]).to_vec();
     if SOFTENING_IN[channel] == Channel::Static {
         let reference =
             Parameter::number(SOFTENING_REFERENCE, 0.0, 1.0, 1.0, Scale::Linear).absent(Absent::Never);
         free_parameters.push(FreeParameter::new(&reference, 0, 1.0));
-        numbers[9] = Free;
+        numbers[IN_JOINT.softening + 4] = Free;
         starts = starts
             .iter()
             .flat_map(|start| [0.1, 0.9].map(|part| [start.as_slice(), &[part]].concat()))
             .collect();
     }
     Some(Candidate { kind: &KIND, at: joint.into(), free_parameters, numbers, starts, twins: Vec::new() })
-}
-
-/// The softening parameters of a joint that does not soften, as stated numbers.
-fn steady() -> Vec<Number> {
-    [0.0, 1.0, 0.0, 1.0, 1.0].map(Stated).to_vec()
-}
-
-/// The housing parameters of a joint whose housing does not tilt further, as stated numbers.
-fn upright() -> Vec<Number> {
-    vec![Stated(0.0); 2]
 }
 
 /// The candidate that each direction of the displacements also shows a part of the others. `None` if there are no
@@ -126,23 +253,12 @@ fn mixing(forward: &Forward) -> Option<Candidate> {
     let is_measured = |component: usize| statics.iter().any(|datum| datum.component == component);
     let part = Parameter { count: 6, ..Parameter::number(MIX, -0.5, 0.5, 0.05, Scale::Linear) };
     let of_component = [0, 0, 1, 1, 2, 2].map(is_measured);
-    let numbers = of_component.map(|measured| if measured { Free } else { Stated(0.0) });
     let mut candidate = law(Channel::Static.word(), part, 0.0);
     candidate.free_parameters.retain(|free| of_component[free.component]);
     candidate.starts = vec![candidate.free_parameters.iter().map(|free| free.u(0.0)).collect()];
-    candidate.numbers =
-        [vec![Stated(0.0), Stated(0.0)], vec![Stated(1.0); 4], still(), numbers.to_vec()].concat();
+    let free = candidate.free_parameters.iter().map(|free| IN_STATIC.mix + free.component);
+    candidate.numbers = of_channel(Channel::Static, free);
     (!statics.is_empty()).then_some(candidate)
-}
-
-/// The numbers of a base that did not turn in the course of the displacements.
-fn still() -> Vec<Number> {
-    [0.0, 0.0, 0.0, 1.0].map(Stated).to_vec()
-}
-
-/// The numbers of an instrument whose directions do not mix.
-fn square() -> Vec<Number> {
-    vec![Stated(0.0); 6]
 }
 
 /// The candidate for a base that tilts about world x and about world y with a compliance of its own for each. `None` if
@@ -160,8 +276,7 @@ fn housing(forward: &Forward, joint: &str, torque_nm: f64) -> Option<Candidate> 
         Piece::Joint(first) => first.name == joint && first.axis.z.abs() > 1.0 - 1e-12,
         _ => false,
     });
-    let untwisted = [vec![Stated(0.0); 4], vec![Stated(torque_nm)], steady()].concat();
-    leaning(forward, joint, [untwisted, vec![Free; 2]].concat()).filter(|_| !turns_on_the_base)
+    leaning(forward, joint, of_joint(torque_nm, IN_JOINT.lean)).filter(|_| !turns_on_the_base)
 }
 
 /// A candidate for two tilts at a place. The usual size of both compliances is the compliance of the first compliant
@@ -178,41 +293,37 @@ fn leaning(forward: &Forward, at: &str, numbers: Vec<Number>) -> Option<Candidat
     Some(Candidate { numbers, starts, ..law(at, tilt, 0.0) })
 }
 
-/// The candidate for a base that turned just before the row `from_row` (counted from 0) of the displacements.
-fn base_turn(from_row: usize) -> Candidate {
-    let turn = Parameter { count: 3, ..Parameter::number(BASE_TURN, -0.1, 0.1, 1e-4, Scale::Linear) };
-    let straight = vec![Stated(0.0), Stated(0.0), Stated(1.0), Stated(1.0), Stated(1.0), Stated(1.0)];
-    let numbers = [straight, vec![Free; 3], vec![Stated((from_row + 1) as f64)], square()];
-    Candidate { numbers: numbers.concat(), ..law(Channel::Static.word(), turn, 0.0) }
+/// The candidate for a base that turned ([`BASE_TURN`]) or an instrument that moved ([`SHIFT`]) just before the row
+/// `from_row` of the displacements, counted from 0.
+fn moved_once(forward: &Forward, from_row: usize, name: &'static str) -> Candidate {
+    let is_turn = name == BASE_TURN;
+    let largest_mm =
+        forward.data[forward.range(Channel::Static)].iter().map(|d| d.value.abs()).fold(0.0, f64::max);
+    let (most, usual) = if is_turn { (0.1, 1e-4) } else { (10.0 * largest_mm, 0.1 * largest_mm) };
+    let moved = Parameter { count: 3, ..Parameter::number(name, -most, most, usual, Scale::Linear) };
+    let mut numbers = of_channel(Channel::Static, if is_turn { IN_STATIC.turn } else { IN_STATIC.shift });
+    numbers[IN_STATIC.from_row] = Stated((from_row + 1) as f64);
+    numbers[IN_STATIC.file_rows] = Stated(forward.file_rows[0] as f64);
+    Candidate { numbers, ..law(Channel::Static.word(), moved, 0.0) }
 }
 
-/// The first row of a pose, from 0, before which a turn of the base would explain most of the residuals of a fit.
-/// `None` if there are too few poses.
-fn most_telling_row(forward: &Forward, fit: &Fit, weights: &Weights) -> Option<usize> {
-    let residuals = fit.residuals(forward, weights);
-    // normal equations of the turn for each pose, in units of the rows' standard deviations
-    let of_pose = |pose: &StaticPose| {
-        let (mut a, mut b) = (Matrix3::zeros(), Vector3::zeros());
-        let mut first = usize::MAX;
-        for (component, datum) in (0..pose.count()).flat_map(|load| pose.measured(load)) {
-            let moved = Vector3::ith(component, 1e3 * weights.inverse[datum]).cross(&pose.geometry.tip_m);
-            let slope = -moved;
-            a += slope * slope.transpose();
-            b += slope * residuals[datum];
-            first = first.min(forward.data[datum].row);
-        }
-        (first, a, b)
+/// The candidate for a payload that slipped just before the `rows` of the static and of the modal tests, counted from 0;
+/// `None` in the place of a row: it did not slip in these tests. `None` if it slipped in neither, or if a joint has the
+/// name of the payload.
+fn slip(forward: &Forward, rows: [Option<usize>; 2]) -> Option<Candidate> {
+    let is_free = forward.nominal.structure.joints().all(|joint| joint.name != PAYLOAD);
+    let offset = Parameter {
+        count: 3,
+        ..Parameter::number(SLIP, -LARGEST_SLIP_M, LARGEST_SLIP_M, USUAL_SLIP_M, Scale::Linear)
     };
-    let mut poses: Vec<(usize, Matrix3<f64>, Vector3<f64>)> = forward.statics.iter().map(of_pose).collect();
-    poses.sort_by_key(|(first, ..)| *first);
-    let gain = |from: usize| {
-        let (a, b) =
-            poses[from..].iter().fold((Matrix3::zeros(), Vector3::zeros()), |(a, b), p| (a + p.1, b + p.2));
-        a.cholesky().map(|a| (b.dot(&a.solve(&b)), poses[from].0))
+    let event = |(row, file_rows): (Option<usize>, usize)| match row {
+        Some(row) => [Stated((row + 1) as f64), Stated(file_rows as f64)],
+        None => [Stated(0.0); 2],
     };
-    let last = poses.len().saturating_sub(FEWEST_POSES);
-    let gains = (FEWEST_POSES..=last).filter_map(gain);
-    gains.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, row)| row).filter(|row| *row != usize::MAX)
+    let events = rows.into_iter().zip(forward.file_rows).flat_map(event);
+    let numbers = [Free; 3].into_iter().chain(events).collect();
+    let is_seen = rows[0].is_some() && forward.largest_payload_kg > 0.0;
+    (is_free && is_seen).then(|| Candidate { numbers, ..law(PAYLOAD, offset, 0.0) })
 }
 
 /// Clause on the physical causes that a law without a name may have.
@@ -233,6 +344,18 @@ pub(crate) fn may_be(candidate: &Candidate) -> &'static str {
             "it may be a housing, a flange or a bearing that is more compliant one way than the other"
         }
         Some(BASE_TURN) => "it may be a base that slipped on its bolts, or an instrument that was touched",
+        Some(SHIFT) => "it may be an instrument or its stand that was touched",
+        Some(SLIP) => "it may be a payload that slipped in its clamp, or that was mounted anew",
+        Some(ZERO) => {
+            "it may be an encoder whose zero was set elsewhere, or a joint that was mounted turned; of a first joint that is \
+             vertical, also an instrument that is turned about it"
+        }
+        Some(LOAD_PLAY) => {
+            "it may be play that the unloaded arm leaves open to both sides, or a servo that holds the joint only within a band"
+        }
+        Some(NEIGHBOUR_TWIST) => {
+            "it may be a housing or a belt that both joints load, or a servo that gives way to its neighbour"
+        }
         Some(BEND) => {
             "it may be an instrument that is not straight, or a displacement too large for a straight law"
         }
@@ -255,46 +378,44 @@ pub(crate) fn in_words(candidate: &Candidate) -> String {
         }
         Some(LEAN) if at == BASE => format!("a {at} that tilts about x and y unequally"),
         Some(LEAN) => format!("a housing of {at} that tilts about two axes unequally"),
-        Some(BASE_TURN) => match candidate.numbers.get(TURN_ROW) {
-            Some(Stated(row)) => format!("a base that turned before row {row} of the {at} readings"),
-            _ => format!("a base that turned in the course of the {at} readings"),
-        },
+        Some(BASE_TURN) => {
+            format!(
+                "a base that turned before row {} of the {at} readings",
+                stated(candidate, IN_STATIC.from_row)
+            )
+        }
+        Some(SHIFT) => {
+            format!(
+                "an instrument that moved before row {} of the {at} readings",
+                stated(candidate, IN_STATIC.from_row)
+            )
+        }
+        Some(SLIP) => slip_in_words(candidate),
+        Some(ZERO) => format!("an angle of {at} whose zero is off"),
+        Some(LOAD_PLAY) => format!("a play of {at} that opens from the unloaded arm to both sides"),
+        Some(NEIGHBOUR_TWIST) => format!("a twist of {at} under the torques of its neighbours"),
         Some(BEND) => format!("{at} readings that bend"),
         Some(MIX) => format!("{at} readings that mix the directions"),
         _ => format!("{at} readings with a gain of their own in each direction"),
     }
 }
 
-/// Adds laws without a name to the model `from`, one after the other, as long as each raises the score by more than
-/// [`LEAST_GAIN`]. The laws are the candidates of `search` from the index `first` on. `None` if no law does.
-pub(crate) fn with_laws<'a>(search: &Search<'a>, first: usize, from: &Scored) -> Option<(Scored, Fit<'a>)> {
-    let mut best: Option<(Scored, Fit)> = None;
-    for _ in 0..MOST_LAWS {
-        let here = best.as_ref().map_or(from, |(scored, _)| scored);
-        let Some(next) = next_law(search, first, here) else { break };
-        best = Some(next);
+/// The number with the index `index` of a candidate; 0 if it is fitted.
+fn stated(candidate: &Candidate, index: usize) -> f64 {
+    match candidate.numbers.get(index) {
+        Some(Stated(number)) => *number,
+        _ => 0.0,
     }
-    best
 }
 
-/// The fit of the model `from` with that law added which raises its score most; `None` if the rise is not more than
-/// [`LEAST_GAIN`].
-fn next_law<'a>(search: &Search<'a>, first: usize, from: &Scored) -> Option<(Scored, Fit<'a>)> {
-    let laws = (first..search.candidates.len()).filter(|law| !from.effects.contains(law));
-    let starts: Vec<(usize, &Vec<f64>)> =
-        laws.flat_map(|law| search.candidates[law].starts.iter().map(move |start| (law, start))).collect();
-    let tried: Vec<Scored> = starts
-        .into_par_iter()
-        .map(|(law, start)| {
-            let effects = [from.effects.as_slice(), &[law]].concat();
-            let u = [from.u.as_slice(), start].concat();
-            search.scored(&effects, &search.rough(&effects, &u))
-        })
-        .collect();
-    let promising = tried.into_iter().max_by(|a, b| a.score.total_cmp(&b.score))?;
-    let fit = search.fit(&promising.effects, &promising.u, Effort::default());
-    let scored = search.scored(&promising.effects, &fit);
-    (scored.score > from.score + LEAST_GAIN).then_some((scored, fit))
+fn slip_in_words(candidate: &Candidate) -> String {
+    let [statics, modal] = [3, 5].map(|index| stated(candidate, index));
+    let place = match modal {
+        0.0 => format!("row {statics} of the static readings"),
+        1.0 => format!("row {statics} of the static readings, and before the modal readings"),
+        _ => format!("row {statics} of the static and row {modal} of the modal readings"),
+    };
+    format!("a payload whose centre of gravity moved before {place}")
 }
 
 /// Two laws of a joint as candidates: a further twist that is an odd function of the joint's torque, and one that is an
@@ -303,34 +424,26 @@ fn twists(joint: &str, torque_nm: f64, twist_rad: f64) -> [Candidate; 2] {
     let most = LARGEST_TWIST * twist_rad;
     let sized =
         |name| Parameter { count: 2, ..Parameter::number(name, -most, most, twist_rad, Scale::Linear) };
-    // the stiffness of the joint does not change in the course of the tests
-    let with = |twist: [Number; 4]| [twist.as_slice(), &[Stated(torque_nm)], &steady(), &upright()].concat();
     let odd = law(joint, sized(ODD_TWIST), 0.0);
     let even = law(joint, sized(EVEN_TWIST), 0.0);
     [
-        Candidate { numbers: with([Free, Free, Stated(0.0), Stated(0.0)]), ..odd },
-        Candidate { numbers: with([Stated(0.0), Stated(0.0), Free, Free]), ..even },
+        Candidate { numbers: of_joint(torque_nm, IN_JOINT.odd), ..odd },
+        Candidate { numbers: of_joint(torque_nm, IN_JOINT.even), ..even },
     ]
 }
 
 /// The laws of a channel's readings as candidates: a nonlinear characteristic, and a gain for each direction if the
 /// channel has three components. `largest` is the largest reading, in its unit.
 fn readings(channel: Channel, largest: f64) -> Vec<Candidate> {
-    // only displacements show that the base turned or that directions mix
-    let of_static = if channel == Channel::Static { [still(), square()].concat() } else { Vec::new() };
     let bend = Parameter { count: 2, ..Parameter::number(BEND, -1.0, 1.0, 0.1, Scale::Linear) };
     let bent = law(channel.word(), bend, 0.0);
-    let mut out = vec![Candidate {
-        numbers: [vec![Free, Free, Stated(largest)], vec![Stated(1.0); 3], of_static.clone()].concat(),
-        ..bent
-    }];
+    let mut numbers = of_channel(channel, IN_STATIC.bend);
+    numbers[IN_STATIC.scale] = Stated(largest);
+    let mut out = vec![Candidate { numbers, ..bent }];
     if channel.components() == 3 {
         let gain = Parameter::vector(GAIN, 0.5, 2.0, 1.0).absent(Absent::AtOne);
         let gains = law(channel.word(), gain, 1.0);
-        out.push(Candidate {
-            numbers: [vec![Stated(0.0), Stated(0.0), Stated(1.0)], vec![Free; 3], of_static].concat(),
-            ..gains
-        });
+        out.push(Candidate { numbers: of_channel(channel, IN_STATIC.gain), ..gains });
     }
     out
 }

@@ -4,14 +4,20 @@
 //!
 //! The verdict stays `unexplained`: a model that predicts better is no explanation.
 
+use super::fitted;
 use crate::arm::effect::empirical::KIND;
-use crate::reconcile::fit::descent::Fit;
+use crate::reconcile::fit::descent::{Fit, Weights};
 use crate::reconcile::fit::held_out::{self, rms};
+use crate::reconcile::fit::interval::intervals;
 use crate::reconcile::fit::noise::Noise;
+use crate::reconcile::forward::prepared::Forward;
+use crate::reconcile::model::estimate::Finding;
 use crate::reconcile::model::parameters::Candidate;
+use crate::reconcile::select::added_laws::with_laws;
 use crate::reconcile::select::empirical;
 use crate::reconcile::select::search::Search;
 use serde_json::{Value, json};
+use std::sync::Arc;
 
 /// A model with more parameters is taken only if it lowers the error on held-out readings by at least this fraction
 /// compared with the simpler one.
@@ -43,6 +49,17 @@ pub(crate) struct Choice<'a> {
     pub rows: Vec<Row>,
     /// The fit of the chosen model; `None` if the arm as it was given was chosen.
     pub fit: Option<Fit<'a>>,
+    /// The campaign prepared in the poses about which this model was fitted; `None` for the stated poses.
+    pub forward: Option<Arc<Forward>>,
+}
+
+impl Choice<'_> {
+    /// The effects and laws of `fit`, the chosen model, with 95 % intervals. `stated` is the campaign prepared in the
+    /// stated poses.
+    pub(crate) fn findings(&self, fit: &Fit, stated: &Forward, weights: &Weights) -> Vec<Finding> {
+        let forward = self.forward.as_deref().unwrap_or(stated);
+        fitted::effects(fit, &intervals(forward, fit, weights), &[])
+    }
 }
 
 /// Chooses the model of the corrected arm. `baseline` is the calibrated model, and `named` the model with the best
@@ -56,26 +73,30 @@ pub(crate) fn choose<'a>(
     named: Fit<'a>,
     named_effects: &[usize],
 ) -> Choice<'a> {
+    // angles whose zero is off need them
+    search.forward.turn_slopes(search.campaign);
     let mut rows = vec![row("the arm as it was given".into(), nominal_rms(search, noise))];
-    let mut fits = vec![None];
-    let mut add = |fit: Fit<'a>| {
-        rows.push(row(in_words(&fit), fit_rms(search, noise, &fit)));
-        fits.push(Some(fit));
+    let mut fits = vec![(None, None)];
+    let mut add = |fit: Fit<'a>, forward: Option<Arc<Forward>>| {
+        let about = forward.as_deref().unwrap_or(search.forward);
+        rows.push(row(in_words(&fit), fit_rms(about, search.weights, noise, &fit)));
+        fits.push((Some(fit), forward));
     };
     let starts = [search.scored(&[], &baseline), search.scored(named_effects, &named)];
-    add(baseline);
+    add(baseline, None);
     let has_names = !named_effects.is_empty();
     if has_names {
-        add(named);
+        add(named, None);
     }
     for start in starts.iter().take(if has_names { 2 } else { 1 }) {
-        if let Some((_, fit)) = empirical::with_laws(search, first_law, start) {
-            add(fit);
+        for with in with_laws(search, first_law, start) {
+            add(with.fit(search), with.forward);
         }
     }
     let chosen = simplest_of_the_best(&rows);
     rows[chosen].is_written = true;
-    Choice { rows, fit: fits.swap_remove(chosen) }
+    let (fit, forward) = fits.swap_remove(chosen);
+    Choice { rows, fit, forward }
 }
 
 fn row(model: String, kept_out_rms_sigma: f64) -> Row {
@@ -121,10 +142,10 @@ fn nominal_rms(search: &Search, noise: &Noise) -> f64 {
 }
 
 /// Root mean square of the residuals of the model `fit`, predicted with their folds held out \[standard deviations,
-/// scaled by `noise`\].
-fn fit_rms(search: &Search, noise: &Noise, fit: &Fit) -> f64 {
-    let residuals = held_out::residuals(search.forward, &fit.model, &fit.point.u, search.weights);
-    let each = residuals.iter().zip(&search.forward.data);
+/// scaled by `noise`\]. `forward` has the poses about which the model was fitted.
+fn fit_rms(forward: &Forward, weights: &Weights, noise: &Noise, fit: &Fit) -> f64 {
+    let residuals = held_out::residuals(forward, &fit.model, &fit.point.u, weights);
+    let each = residuals.iter().zip(&forward.data);
     rms(each.filter_map(|(r, d)| Some((*r)? / noise.scale[d.channel as usize])))
 }
 

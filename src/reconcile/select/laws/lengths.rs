@@ -27,9 +27,9 @@ impl Builder<'_> {
     /// the full size. All poses have to be prepared anew for this. It is therefore computed once about the nominal arm,
     /// and not for every fit.
     fn length_columns(&self, names: &[&str]) -> Vec<Vec<f64>> {
-        let stated = self.nominal_readings(self.campaign);
+        let stated = self.forward.nominal_readings(self.campaign);
         let column = |name: &&str| {
-            let longer = self.nominal_readings(&lengthened(self.campaign, name));
+            let longer = self.forward.nominal_readings(&lengthened(self.campaign, name));
             longer
                 .iter()
                 .zip(&stated)

@@ -86,17 +86,6 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    /// Predicted readings of the nominal arm of `campaign`, in the units of the files. The campaign has the rows of this one,
-    /// one for one; their poses and loads, or the arm's geometry, may differ. Modes are numbered as in this campaign.
-    fn nominal_readings(&self, campaign: &Campaign) -> Vec<f64> {
-        let mut forward = Forward::of_the_nominal_arm(campaign);
-        // modes that were put in order, or found to be missed, stay as they are
-        for (own, stated) in forward.modal.iter_mut().zip(&self.forward.modal) {
-            own.modes.clone_from(&stated.modes);
-        }
-        forward.predict(&forward.coefficients(&forward.nominal))
-    }
-
     /// Sets the entries of `truth` that belong to frequencies: the first-order change of each frequency \[Hz\] when
     /// the compliance matrix changes by `dC`. `energy` receives the index of a datum and the inertia forces `y` of its
     /// mode, and returns `yᵀ dC y`.

@@ -1,0 +1,30 @@
+//! Torques and moments of an arm's own weight in a pose.
+
+use crate::mechanics::chain::{Compliance, Item, Posed};
+use crate::mechanics::{Wrench, angular};
+
+/// Torque of the dead weight on each joint, and its moments about world x and y on the base \[N m\].
+pub(super) fn dead_torques(posed: &Posed) -> (Vec<f64>, [f64; 2]) {
+    let mut wrench = Wrench::zeros();
+    let mut torques = Vec::new();
+    let carried = posed.transferred();
+    for item in posed.items.iter().rev() {
+        match item {
+            Item::Body(body) => wrench += body.weight(),
+            Item::Load(load) => wrench += load,
+            Item::Elastic(element) => {
+                if let Compliance::Joint(_) = element.compliance {
+                    let passive = carried.iter().filter(|c| c.driver == element.name);
+                    let passive_nm: f64 = passive.map(|c| c.torque_nm).sum();
+                    torques.push(element.twists[0].dot(&wrench) + element.torque_nm + passive_nm);
+                }
+                if let Some(own) = &element.own {
+                    wrench += own.weight;
+                }
+            }
+        }
+    }
+    torques.reverse();
+    let moment = angular(&wrench);
+    (torques, [moment.x, moment.y])
+}
