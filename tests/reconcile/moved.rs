@@ -209,7 +209,9 @@ fn an_arm_file_with_these_laws_is_checked_analysed_and_predicts() {
     let (code, text) = said(&["analyze", path]);
     assert!(code == 0 && text.contains("empirical at j2"), "it says what it leaves out: {text}");
     let statics = folder.path().join("static.csv");
-    let (code, table) = said(&["predict", path, statics.to_str().expect("text")]);
+    let statement = folder.path().join("campaign.json");
+    let [statics, statement] = [&statics, &statement].map(|path| path.to_str().expect("text"));
+    let (code, table) = said(&["predict", path, statics, "--campaign", statement, "-q"]);
     let first = table.lines().nth(1).expect("a row").split(',').collect::<Vec<_>>();
     let expected = displacement_mm(
         POSES[0],
