@@ -70,7 +70,7 @@ fn laws() -> [Effect; 8] {
         law(at, &[("neighbour_twist_rad_per_nm", &[2e-6, -3e-6]), ("load_play_rad", &[1e-4]), play])
     };
     let shift: [(&str, &[f64]); 3] =
-        [("shift_mm", &[0.1, -0.2, 0.3]), ("base_turn_from_row", &[4.0]), ("base_turn_file_rows", &[20.0])];
+        [("shift_mm", &[0.1, -0.2, 0.3]), ("base_turn_from_row", &[4.0]), ("base_turn_file", &[0.0])];
     [
         law("j2", &softening),
         law("static", &turn),

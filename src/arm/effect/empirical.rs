@@ -63,15 +63,15 @@ pub(crate) const LOAD_PLAY: &str = "load_play_rad";
 pub(crate) const LOAD_PLAY_TORQUE: &str = "load_play_nm";
 /// Name of the parameter with the displacement by which the instrument moved once between two rows.
 pub(crate) const SHIFT: &str = "shift_mm";
-/// Name of the parameter with the number of rows of the file in which the base turned or the instrument moved.
-pub(crate) const BASE_TURN_FILE_ROWS: &str = "base_turn_file_rows";
+/// Name of the parameter with the mark of the file in which the base turned or the instrument moved.
+pub(crate) const BASE_TURN_FILE: &str = "base_turn_file";
 /// Name of the parameter with the displacement of a payload's centre of gravity between two rows, in the last frame.
 pub(crate) const SLIP: &str = "slip_m";
 /// Names of the parameters with the first row after a payload slipped, counted from 1: in the static tests, and in the
 /// modal tests; 0 if it did not slip in these tests.
 pub(crate) const SLIP_ROW: [&str; 2] = ["static_slip_from_row", "modal_slip_from_row"];
-/// Names of the parameters with the number of rows of the files in which the payload slipped.
-pub(crate) const SLIP_FILE_ROWS: [&str; 2] = ["static_slip_file_rows", "modal_slip_file_rows"];
+/// Names of the parameters with the marks of the files in which the payload slipped.
+pub(crate) const SLIP_FILE: [&str; 2] = ["static_slip_file", "modal_slip_file"];
 
 const OF_JOINT: &[Parameter] = &[
     optional(ODD_TWIST, 2, -0.1, 0.1, 0.0),
@@ -100,9 +100,9 @@ const OF_BASE: &[Parameter] = &[optional(LEAN, 2, 0.0, 1.0, 0.0)];
 const OF_PAYLOAD: &[Parameter] = &[
     optional(SLIP, 3, -10.0, 10.0, 0.0),
     optional(SLIP_ROW[0], 1, 0.0, 1e9, 0.0),
-    optional(SLIP_FILE_ROWS[0], 1, 0.0, 1e9, 0.0),
+    optional(SLIP_FILE[0], 1, 0.0, 1e9, 0.0),
     optional(SLIP_ROW[1], 1, 0.0, 1e9, 0.0),
-    optional(SLIP_FILE_ROWS[1], 1, 0.0, 1e9, 0.0),
+    optional(SLIP_FILE[1], 1, 0.0, 1e9, 0.0),
 ];
 
 const OF_STATIC: &[Parameter] = &[
@@ -113,7 +113,7 @@ const OF_STATIC: &[Parameter] = &[
     optional(BASE_TURN_ROW, 1, 1.0, 1e9, 1.0),
     optional(MIX, 6, -2.0, 2.0, 0.0),
     optional(SHIFT, 3, -1e4, 1e4, 0.0),
-    optional(BASE_TURN_FILE_ROWS, 1, 0.0, 1e9, 0.0),
+    optional(BASE_TURN_FILE, 1, 0.0, 1e9, 0.0),
 ];
 
 /// A parameter of `count` numbers that a file may leave out. Each number is then `default`, with which the effect
@@ -167,8 +167,8 @@ fn apply(numbers: &[f64], at: &str, subject: &mut Subject) {
     }
 }
 
-/// Moves the payload's centre of gravity by `offset_m`. The four numbers are row and number of rows of the static tests,
-/// and row and number of rows of the modal tests.
+/// Moves the payload's centre of gravity by `offset_m`. The four numbers are row and mark of the file of the static tests,
+/// and row and mark of the file of the modal tests.
 fn slip(offset_m: Vector3<f64>, events: &[f64], subject: &mut Subject) {
     for (channel, own) in [Channel::Static, Channel::Modal].into_iter().zip(events.chunks_exact(2)) {
         let event = Event::of_file(own[0], own[1]);
@@ -209,11 +209,11 @@ fn apply_to_channel(numbers: &[f64], at: &str, subject: &mut Subject) {
         (reading.bend, reading.bend_scale) = ([a, b], bend_scale);
     }
     reading.gain.iter_mut().zip([x, y, z]).for_each(|(own, gain)| *own *= gain);
-    let [x, y, z, from_row, xy, xz, yx, yz, zx, zy, dx, dy, dz, file_rows] = of_static[..] else { return };
+    let [x, y, z, from_row, xy, xz, yx, yz, zx, zy, dx, dy, dz, file] = of_static[..] else { return };
     reading.mix += Matrix3::new(0.0, xy, xz, yx, 0.0, yz, zx, zy, 0.0);
     let (turn_rad, shift_m) = (Vector3::new(x, y, z), Vector3::new(dx, dy, dz) / 1e3);
     let happened = (turn_rad, shift_m) != (Vector3::zeros(), Vector3::zeros());
-    let event = Event::of_file(from_row.max(1.0), file_rows).filter(|_| happened);
+    let event = Event::of_file(from_row.max(1.0), file).filter(|_| happened);
     let turned = event.map(|event| Turned { turn_rad, shift_m, event });
     subject.setup_mut(at).into_iter().for_each(|setup| setup.turned.extend(turned));
 }
@@ -323,12 +323,12 @@ mod tests {
         let [statics, modal] = [Channel::Static, Channel::Modal].map(|c| subject.setups[c as usize].clone());
         assert!(modal.slipped.is_empty());
         assert_eq!([3, 4, 11].map(|row| statics.slip_m(row)), [Vector3::zeros(), offset_m, offset_m]);
-        for (rows, count) in [(12, 1), (11, 0)] {
+        for (file, count) in [(12, 1), (11, 0)] {
             let mut of_file = statics.clone();
-            of_file.keep_events_of(rows);
-            assert_eq!(of_file.slipped.len(), count, "{rows} rows");
+            of_file.keep_events_of(file);
+            assert_eq!(of_file.slipped.len(), count, "the file {file}");
         }
-        assert!(Event { from_row: 4, file_rows: 0 }.is_in(7));
+        assert!(Event { from_row: 4, file: 0 }.is_in(7));
     }
 
     #[test]

@@ -11,21 +11,21 @@ use nalgebra::Vector3;
 pub struct Event {
     /// The first row of the file after it happened, counted from 0.
     pub from_row: usize,
-    /// Number of rows of the file in which it happened; 0 for a file of any length. In a file with another number of rows,
-    /// which is another series of tests, it did not happen.
-    pub file_rows: usize,
+    /// Mark of the file in which it happened: a number made from the content of the file; 0 for any file. In a file with
+    /// another mark, which is another series of tests, it did not happen.
+    pub file: usize,
 }
 
 impl Event {
-    /// The event just before the row `from_row`, counted from 1, of a file with `file_rows` rows. Files write both numbers
-    /// so. `None` if `from_row` is 0: it did not happen in this file.
-    pub(crate) fn of_file(from_row: f64, file_rows: f64) -> Option<Self> {
-        (from_row >= 1.0).then(|| Self { from_row: from_row as usize - 1, file_rows: file_rows as usize })
+    /// The event just before the row `from_row`, counted from 1, of the file with the mark `file`. Files write both
+    /// numbers so. `None` if `from_row` is 0: it did not happen in this file.
+    pub(crate) fn of_file(from_row: f64, file: f64) -> Option<Self> {
+        (from_row >= 1.0).then(|| Self { from_row: from_row as usize - 1, file: file as usize })
     }
 
-    /// Whether it happened in a file with `rows` rows.
-    pub fn is_in(&self, rows: usize) -> bool {
-        self.file_rows == 0 || self.file_rows == rows
+    /// Whether it happened in the file with the mark `file`.
+    pub fn is_in(&self, file: usize) -> bool {
+        self.file == 0 || self.file == file
     }
 }
 
@@ -112,10 +112,10 @@ impl Setup {
         self.softening.is_empty()
     }
 
-    /// Forgets what happened in files with another number of rows than `rows`.
-    pub(crate) fn keep_events_of(&mut self, rows: usize) {
-        self.turned.retain(|turned| turned.event.is_in(rows));
-        self.slipped.retain(|slipped| slipped.event.is_in(rows));
+    /// Forgets what happened in files with another mark than `file`.
+    pub(crate) fn keep_events_of(&mut self, file: usize) {
+        self.turned.retain(|turned| turned.event.is_in(file));
+        self.slipped.retain(|slipped| slipped.event.is_in(file));
     }
 
     /// Displacement of the payload's centre of gravity by all slips before the row `row`, counted from 0, in the last

@@ -53,8 +53,8 @@ pub struct Forward {
     pub(crate) length_columns: OnceLock<Vec<Vec<f64>>>,
     /// Whether some static or modal reading has a temperature.
     pub has_temperatures: bool,
-    /// Number of rows of the files of static and of modal readings.
-    pub(crate) file_rows: [usize; 2],
+    /// Marks of the files of static and of modal readings.
+    pub(crate) files: [usize; 2],
 }
 
 impl Forward {
@@ -85,10 +85,9 @@ impl Forward {
         layout: Layout,
         turned: Option<&Subject>,
     ) -> Self {
-        let file_rows =
-            [file_rows(&campaign.statics, |row| row.row), file_rows(&campaign.modal, |row| row.row)];
-        for (channel, rows) in [Channel::Static, Channel::Modal].into_iter().zip(file_rows) {
-            nominal.setups[channel as usize].keep_events_of(rows);
+        let files = [mark(&campaign.statics, |row| row.file), mark(&campaign.modal, |row| row.file)];
+        for (channel, file) in [Channel::Static, Channel::Modal].into_iter().zip(files) {
+            nominal.setups[channel as usize].keep_events_of(file);
         }
         let zeros_rad = turned.map_or(&nominal.zeros_rad, |subject| &subject.zeros_rad).clone();
         let standing = Subject { zeros_rad, ..nominal.clone() };
@@ -121,7 +120,7 @@ impl Forward {
             length_columns: OnceLock::new(),
             has_temperatures: campaign.statics.iter().any(|r| r.temperature_c.is_some())
                 || campaign.modal.iter().any(|r| r.temperature_c.is_some()),
-            file_rows,
+            files,
             largest_payload_kg: payloads_kg.iter().copied().fold(0.0, f64::max),
             lightest_payload_kg: payloads_kg
                 .iter()
@@ -326,9 +325,9 @@ impl Forward {
     }
 }
 
-/// Number of rows of a file whose rows are `rows`. `number` is the number of a row in its file, from 0.
-pub(crate) fn file_rows<R>(rows: &[R], number: impl Fn(&R) -> usize) -> usize {
-    rows.iter().map(|row| number(row) + 1).max().unwrap_or(0)
+/// Mark of the file whose rows are `rows`; 0 if there are none. `of` returns the mark that a row has.
+pub(crate) fn mark<R>(rows: &[R], of: impl Fn(&R) -> usize) -> usize {
+    rows.first().map_or(0, of)
 }
 
 /// The nominal arm of a campaign, with rigid links if the campaign says so.

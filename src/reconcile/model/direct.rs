@@ -13,7 +13,7 @@ use crate::mechanics::chain::Chain;
 use crate::mechanics::chain::{Compliance, Posed};
 use crate::mechanics::{Twist, displacement_at};
 use crate::reconcile::forward::bench::{ARCMIN_PER_RAD, bench_twists_rad};
-use crate::reconcile::forward::prepared::{file_rows, make_links_rigid};
+use crate::reconcile::forward::prepared::{make_links_rigid, mark};
 use crate::reconcile::readings::campaign::Statement;
 use crate::reconcile::readings::placement::Placement;
 use crate::reconcile::readings::rows::{ModalRow, PositionRow, StaticRow, WindupRow};
@@ -58,7 +58,7 @@ impl<'a> Direct<'a> {
     /// friction play depends on it.
     pub fn statics_mm(&self, rows: &[StaticRow]) -> Vec<[f64; 3]> {
         let reading = &self.subject.channels[Channel::Static as usize];
-        let setup = self.setup_of(Channel::Static, file_rows(rows, |row| row.row));
+        let setup = self.setup_of(Channel::Static, mark(rows, |row| row.file));
         let mut out = Vec::with_capacity(rows.len());
         let mut pose: &[f64] = &[];
         let (mut play, mut lag) = (Vec::new(), Vector3::zeros());
@@ -88,7 +88,7 @@ impl<'a> Direct<'a> {
     /// Predicted frequency readings \[Hz\], one per row; `None` where the arm has no mode of this number.
     pub fn frequencies_hz(&self, rows: &[ModalRow]) -> Vec<Option<f64>> {
         let reading = &self.subject.channels[Channel::Modal as usize];
-        let setup = self.setup_of(Channel::Modal, file_rows(rows, |row| row.row));
+        let setup = self.setup_of(Channel::Modal, mark(rows, |row| row.file));
         let mut last: Option<(&ModalRow, Vec<f64>)> = None;
         rows.iter()
             .map(|row| {
@@ -175,10 +175,10 @@ impl<'a> Direct<'a> {
         }
     }
 
-    /// The special set-up of the tests in a channel's file with `rows` rows, with what happened in this file.
-    fn setup_of(&self, channel: Channel, rows: usize) -> Setup {
+    /// The special set-up of the tests in a channel's file with the mark `file`, with what happened in this file.
+    fn setup_of(&self, channel: Channel, file: usize) -> Setup {
         let mut setup = self.subject.setups[channel as usize].clone();
-        setup.keep_events_of(rows);
+        setup.keep_events_of(file);
         setup
     }
 

@@ -21,6 +21,8 @@ pub(crate) fn pose_key(pose_deg: &[f64]) -> Vec<u64> {
 pub struct StaticRow {
     /// Number of the row in the file, from 0, without the header.
     pub row: usize,
+    /// Mark of the file: a number made from its content; 0 for a row that is in no file.
+    pub file: usize,
     /// Angles of the driven joints \[deg\]; travels of prismatic joints \[mm\].
     pub pose_deg: Vec<f64>,
     /// Payload as stated in the file.
@@ -41,6 +43,8 @@ pub struct StaticRow {
 pub struct ModalRow {
     /// Number of the row in the file, from 0, without the header.
     pub row: usize,
+    /// Mark of the file: a number made from its content; 0 for a row that is in no file.
+    pub file: usize,
     /// Angles of the driven joints \[deg\]; travels of prismatic joints \[mm\].
     pub pose_deg: Vec<f64>,
     /// Payload as stated in the file.
@@ -238,6 +242,7 @@ pub(crate) fn static_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Sta
     let components = VectorColumns::find(table, &DISPLACEMENT, purpose);
     let branch = table.optional("branch");
     let (Some(state), Some(components)) = (state, components) else { return Vec::new() };
+    let file = table.mark();
     let rows = each_row(table, |row| {
         let (pose_deg, payload) = (state.pose(table, row), state.payload(table, row));
         let force = force.map(|column| or_zero(table, row, column, measured));
@@ -245,6 +250,7 @@ pub(crate) fn static_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Sta
         let temperature_c = state.temperature_c(table, row);
         Some(StaticRow {
             row,
+            file,
             pose_deg: pose_deg?,
             payload: payload?,
             temperature_c: temperature_c?,
@@ -268,6 +274,7 @@ pub(crate) fn modal_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Moda
     let (Some(state), Some(mode), [Some(frequency), Some(sigma_hz)]) = (state, mode, readings) else {
         return Vec::new();
     };
+    let file = table.mark();
     let rows = each_row(table, |row| {
         let (pose_deg, payload) = (state.pose(table, row), state.payload(table, row));
         let temperature_c = state.temperature_c(table, row);
@@ -284,6 +291,7 @@ pub(crate) fn modal_rows(table: &Table, arm: &Arm, purpose: Purpose) -> Vec<Moda
         let sigma_hz = needed(table, row, sigma_hz, purpose, sigma);
         Some(ModalRow {
             row,
+            file,
             pose_deg: pose_deg?,
             payload: payload?,
             temperature_c: temperature_c?,

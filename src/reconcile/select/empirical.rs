@@ -62,16 +62,8 @@ const IN_JOINT: Joint = Joint {
     play: 15..17,
 };
 /// Places of parameters among the numbers of a law of displacements.
-const IN_STATIC: Static = Static {
-    bend: 0..2,
-    scale: 2,
-    gain: 3..6,
-    turn: 6..9,
-    from_row: 9,
-    mix: 10,
-    shift: 16..19,
-    file_rows: 19,
-};
+const IN_STATIC: Static =
+    Static { bend: 0..2, scale: 2, gain: 3..6, turn: 6..9, from_row: 9, mix: 10, shift: 16..19, file: 19 };
 
 /// Places of the parameters of a law of a joint among its numbers.
 struct Joint {
@@ -97,7 +89,7 @@ struct Static {
     /// The first of six.
     mix: usize,
     shift: Range<usize>,
-    file_rows: usize,
+    file: usize,
 }
 
 /// The numbers of a law of a joint of which those with the indices `free` are fitted. The others change nothing.
@@ -114,7 +106,7 @@ fn of_joint(torque_nm: f64, free: impl IntoIterator<Item = usize>) -> Vec<Number
 
 /// The numbers of a law of a channel of which those with the indices `free` are fitted. The others change nothing.
 fn of_channel(channel: Channel, free: impl IntoIterator<Item = usize>) -> Vec<Number> {
-    let mut out = vec![Stated(0.0); IN_STATIC.file_rows + 1];
+    let mut out = vec![Stated(0.0); IN_STATIC.file + 1];
     out[IN_STATIC.scale] = Stated(1.0);
     out[IN_STATIC.gain].fill(Stated(1.0));
     out[IN_STATIC.from_row] = Stated(1.0);
@@ -303,7 +295,7 @@ fn moved_once(forward: &Forward, from_row: usize, name: &'static str) -> Candida
     let moved = Parameter { count: 3, ..Parameter::number(name, -most, most, usual, Scale::Linear) };
     let mut numbers = of_channel(Channel::Static, if is_turn { IN_STATIC.turn } else { IN_STATIC.shift });
     numbers[IN_STATIC.from_row] = Stated((from_row + 1) as f64);
-    numbers[IN_STATIC.file_rows] = Stated(forward.file_rows[0] as f64);
+    numbers[IN_STATIC.file] = Stated(forward.files[0] as f64);
     Candidate { numbers, ..law(Channel::Static.word(), moved, 0.0) }
 }
 
@@ -316,11 +308,11 @@ fn slip(forward: &Forward, rows: [Option<usize>; 2]) -> Option<Candidate> {
         count: 3,
         ..Parameter::number(SLIP, -LARGEST_SLIP_M, LARGEST_SLIP_M, USUAL_SLIP_M, Scale::Linear)
     };
-    let event = |(row, file_rows): (Option<usize>, usize)| match row {
-        Some(row) => [Stated((row + 1) as f64), Stated(file_rows as f64)],
+    let event = |(row, file): (Option<usize>, usize)| match row {
+        Some(row) => [Stated((row + 1) as f64), Stated(file as f64)],
         None => [Stated(0.0); 2],
     };
-    let events = rows.into_iter().zip(forward.file_rows).flat_map(event);
+    let events = rows.into_iter().zip(forward.files).flat_map(event);
     let numbers = [Free; 3].into_iter().chain(events).collect();
     let is_seen = rows[0].is_some() && forward.largest_payload_kg > 0.0;
     (is_free && is_seen).then(|| Candidate { numbers, ..law(PAYLOAD, offset, 0.0) })

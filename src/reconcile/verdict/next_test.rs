@@ -192,6 +192,7 @@ fn tests(campaign: &Campaign, best: &Direct) -> Vec<Test> {
     for index in 1..=STATIC_POSES {
         let row = |row: usize, payload: Payload, force_n: Vector3<f64>| StaticRow {
             row,
+            file: 0,
             pose_deg: pose(index),
             payload,
             temperature_c: None,
@@ -211,6 +212,7 @@ fn tests(campaign: &Campaign, best: &Direct) -> Vec<Test> {
         for payload in [Payload::default(), payload] {
             let row = |mode| ModalRow {
                 row: mode - 1,
+                file: 0,
                 pose_deg: pose(index),
                 payload,
                 temperature_c: None,
