@@ -10,7 +10,7 @@
 //! leaves in the gradient is part of the intervals.
 
 use super::fitted::{Fitted, Sample};
-use super::kinematics::{Geometry, Number};
+use super::kinematics::{Geometry, Number, rate};
 use super::loads::Loads;
 use super::normal::Normal;
 use crate::reconcile::readings::rows::PositionRow;
@@ -27,10 +27,22 @@ pub(super) struct GeometrySlopes<'a> {
     from_level: Rotation3<f64>,
     /// The arms with the calibrated geometry.
     here: Loads<'a>,
-    /// For each number on which the deflection depends, its index and the arms after a step of it.
-    moved: Vec<(usize, &'a Number, Loads<'a>)>,
+    /// The numbers on which the deflection depends.
+    moved: Vec<Moved<'a>>,
     /// The index of each number that turns the base, and the axis about which it does.
     turned: Vec<(usize, usize)>,
+}
+
+/// A number of the geometry after a step.
+struct Moved<'a> {
+    /// Index of the number.
+    index: usize,
+    number: &'a Number,
+    /// The arms after the step.
+    loads: Loads<'a>,
+    /// For each arm, whether the number belongs to it. Numbers of another arm move only its weights on the trunk, which is
+    /// neglected.
+    is_of_arm: Vec<bool>,
 }
 
 impl<'a> GeometrySlopes<'a> {
@@ -45,10 +57,11 @@ impl<'a> GeometrySlopes<'a> {
         let mut geometry = fitted.geometry.clone();
         geometry.relevel();
         let all = || numbers.iter().enumerate();
-        let moved = all().filter(|(_, number)| moves_weights(number)).map(|(k, number)| {
+        let moved = all().filter(|(_, number)| moves_weights(number)).map(|(index, number)| {
             let mut moved = geometry.clone();
             moved.step(std::slice::from_ref(number), &[STEP]);
-            (k, number, arms(&moved))
+            let is_of_arm = (0..geometry.arms()).map(|arm| geometry.has(arm, number)).collect();
+            Moved { index, number, loads: arms(&moved), is_of_arm }
         });
         let turned = all().filter_map(|(k, number)| match number {
             Number::BaseRotation(axis) => Some((k, *axis)),
@@ -61,6 +74,24 @@ impl<'a> GeometrySlopes<'a> {
             here: arms(&geometry),
             moved: moved.collect(),
             turned: turned.collect(),
+        }
+    }
+}
+
+impl Geometry {
+    /// Whether the number belongs to the arm with the index `arm`, or to all arms.
+    fn has(&self, arm: usize, number: &Number) -> bool {
+        let chain = &self.arms[arm];
+        match *number {
+            Number::Mount(piece, _)
+            | Number::MountVector(piece, _)
+            | Number::Axis(piece, _)
+            | Number::Vector(piece, _)
+            | Number::Ratio(piece, _) => chain.contains(&piece),
+            Number::Zero(driven) => {
+                chain.iter().any(|&i| self.angles[i].as_ref().is_some_and(|angle| rate(angle, driven) != 0.0))
+            }
+            _ => true,
         }
     }
 }
@@ -90,7 +121,7 @@ fn moves_weights(number: &Number) -> bool {
 impl GeometrySlopes<'_> {
     /// Indices of the numbers whose derivatives lack a part.
     pub(super) fn incomplete(&self) -> Vec<usize> {
-        self.moved.iter().map(|(k, ..)| *k).chain(self.turned.iter().map(|(k, _)| *k)).collect()
+        self.moved.iter().map(|moved| moved.index).chain(self.turned.iter().map(|(k, _)| *k)).collect()
     }
 
     /// Appends the missing parts of the derivatives of a sample's position to `columns`, for the numbers of
@@ -98,10 +129,11 @@ impl GeometrySlopes<'_> {
     pub(super) fn push(&self, sample: &Sample, columns: &mut Vec<Vector3<f64>>) {
         let row = &self.rows[sample.index];
         let here_m = self.here.known_m(row, sample.point);
-        columns.extend(self.moved.iter().map(|(_, number, loads)| match number {
+        columns.extend(self.moved.iter().map(|moved| match moved.number {
             // the offset of another point moves nothing of this one
             Number::Tool(point, _) if *point != sample.point => Vector3::zeros(),
-            _ => self.from_level * (loads.known_m(row, sample.point) - here_m) / STEP,
+            _ if !moved.is_of_arm[sample.arm] => Vector3::zeros(),
+            _ => self.from_level * (moved.loads.known_m(row, sample.point) - here_m) / STEP,
         }));
         let displaced_m = self.from_level * self.fitted.displacement(sample);
         columns.extend(self.turned.iter().map(|(_, axis)| Vector3::ith(*axis, 1.0).cross(&displaced_m)));
