@@ -5,16 +5,14 @@
 //! links, for example, give the weights longer levers. This part is small, of the order of deflection over reach. But it is
 //! the only derivative of some combinations of numbers, such as the height of the base and the length of the first link
 //! along a vertical axis. The readings leave these combinations as uncertain as their priors, and the compliances share in
-//! it. The intervals therefore use the whole derivatives. The missing part is a difference quotient. In a long campaign it
-//! is computed for some of the rows only, because it costs more than everything else of the equations; the error that this
-//! leaves in the gradient is part of the intervals.
+//! it. The intervals therefore use the whole derivatives. The missing part is a difference quotient.
 
 use super::fitted::{Fitted, Sample};
 use super::kinematics::{Geometry, Number, rate};
 use super::loads::Loads;
 use super::normal::Normal;
 use crate::reconcile::readings::rows::PositionRow;
-use nalgebra::{DMatrix, Rotation3, Vector3};
+use nalgebra::{Rotation3, Vector3};
 
 /// Step of each number for the difference quotient, in the unit of the number \[m or rad\]. The deflection is nearly linear
 /// over it.
@@ -140,37 +138,25 @@ impl GeometrySlopes<'_> {
     }
 }
 
-/// Equations with the whole derivatives with respect to the numbers of the model.
-pub(super) struct Whole {
-    pub equations: Normal,
-    /// Covariance matrix of the error of the negative gradient over the numbers of the model that comes from the choice of
-    /// some of the rows; zero if there were all.
-    pub sampled: DMatrix<f64>,
-}
-
-impl Whole {
-    /// Completes the equations `equations`. `part` are the equations of one sample in `times`. They have the missing parts of
-    /// the derivatives with respect to the numbers `incomplete` as further columns. With the columns `A` and their missing parts
-    /// `Δ`, the curvature is `(A + Δ)ᵀ (A + Δ)`.
-    pub(super) fn new(mut equations: Normal, part: &Normal, incomplete: &[usize], times: f64) -> Self {
-        let known = equations.gradient.len();
-        let mut sampled = DMatrix::zeros(equations.own, equations.own);
-        for (i, &a) in incomplete.iter().enumerate() {
-            equations.gradient[a] += times * part.gradient[known + i];
-            for k in 0..known {
-                let product = times * part.curvature[(k, known + i)];
-                equations.curvature[(k, a)] += product;
-                equations.curvature[(a, k)] += product;
-            }
-            for (j, &b) in incomplete.iter().enumerate() {
-                let product = times * part.curvature[(known + i, known + j)];
-                equations.curvature[(a, b)] += product;
-                // the error of a sum that is estimated from a part of its terms
-                sampled[(a, b)] = (times - 1.0) * product;
-            }
+/// The equations `parts` with the whole derivatives with respect to the numbers `incomplete`. The last columns of `parts` are
+/// the missing parts of the derivatives. With the other columns `A` and their missing parts `Δ`, the curvature becomes
+/// `(A + Δ)ᵀ (A + Δ)`.
+pub(super) fn completed(parts: &Normal, incomplete: &[usize]) -> Normal {
+    let known = parts.gradient.len() - incomplete.len();
+    let mut gradient = parts.gradient.rows(0, known).into_owned();
+    let mut curvature = parts.curvature.view((0, 0), (known, known)).into_owned();
+    for (i, &a) in incomplete.iter().enumerate() {
+        gradient[a] += parts.gradient[known + i];
+        for k in 0..known {
+            let product = parts.curvature[(k, known + i)];
+            curvature[(k, a)] += product;
+            curvature[(a, k)] += product;
         }
-        Self { equations, sampled }
+        for (j, &b) in incomplete.iter().enumerate() {
+            curvature[(a, b)] += parts.curvature[(known + i, known + j)];
+        }
     }
+    Normal { curvature, gradient, own: parts.own }
 }
 
 #[cfg(test)]
@@ -184,7 +170,7 @@ mod tests {
     use crate::reconcile::positions::loads::Deflection;
     use crate::reconcile::positions::tree::Tree;
     use crate::reconcile::readings::campaign::{Campaign, read_statement};
-    use nalgebra::DVector;
+    use nalgebra::{DMatrix, DVector};
     use std::sync::Arc;
 
     /// A lever of 0.8 m on a spring of 2e4 N m/rad holds 10 kg, level. Its end moves by `c m g l² cos q` at right angles to the
@@ -263,10 +249,9 @@ mod tests {
         let (plain, whole) = (columns(false), columns(true));
         let mut with_parts = plain.clone().insert_columns(4, 2, 0.0);
         (0..2).for_each(|c| with_parts.set_column(4 + c, &(whole.column(c) - plain.column(c))));
-        let found = Whole::new(of(&plain), &of(&with_parts), &[0, 1], 1.0);
+        let found = completed(&of(&with_parts), &[0, 1]);
         let expected = of(&whole);
-        assert!((found.equations.curvature - expected.curvature).amax() < 1e-12);
-        assert!((found.equations.gradient - expected.gradient).amax() < 1e-12);
-        assert_eq!(found.sampled.amax(), 0.0);
+        assert!((found.curvature - expected.curvature).amax() < 1e-12);
+        assert!((found.gradient - expected.gradient).amax() < 1e-12);
     }
 }

@@ -22,13 +22,10 @@
 //!   with the number of compliances that are named.
 //! - The mean and covariance of the compliances ([`NonNegative`]) give those of all other numbers, which are linear in them.
 //!
-//! In a long campaign `g_θ` has an error with the covariance `f² E` ([`Whole`]). It adds `f² H_θθ⁻¹ E H_θθ⁻¹` to `C`, and `w` counts
-//! for less.
-//!
 //! The interval of a number reaches over both cases. It always contains the fitted value.
 
-use super::geometry_slopes::Whole;
 use super::non_negative::NonNegative;
+use super::normal::Normal;
 use super::springs::Best;
 use crate::reconcile::model::estimate::Z_95;
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
@@ -63,22 +60,22 @@ struct Everywhere {
 }
 
 impl Posterior {
-    /// What the equations `whole` say about the numbers of the model. `best` is the step to the minimum, and `robust` the factor by
+    /// What the equations say about the numbers of the model. `best` is the step to the minimum, and `robust` the factor by
     /// which a robust fit scatters more. The columns behind those of the model belong to compliances outside it. `named` are
     /// the compliances of the model that are like them, each with the index of its number \[rad/(N m)\].
-    pub(super) fn new(whole: &Whole, best: &Best, robust: f64, named: &[(usize, f64)]) -> Self {
-        let own = whole.equations.own;
+    pub(super) fn new(equations: &Normal, best: &Best, robust: f64, named: &[(usize, f64)]) -> Self {
+        let own = equations.own;
         let unit = |i: usize| DVector::from_fn(own, |k, _| if k == i { 1.0 } else { 0.0 });
         let columns: Vec<DVector<f64>> = (0..own).map(|i| best.answer(&unit(i))).collect();
         let inverse = DMatrix::from_columns(&columns);
         let mut out = Self {
             mean: DVector::from_column_slice(&best.step),
-            covariance: (&inverse + &inverse * &whole.sampled * &inverse) * (robust * robust),
+            covariance: &inverse * (robust * robust),
             is_fixed: (0..own).map(|i| inverse[(i, i)] <= 0.0).collect(),
             everywhere: None,
         };
         out.everywhere =
-            Outside::new(whole, best, robust).and_then(|outside| Everywhere::new(&out, outside, named));
+            Outside::new(equations, best, robust).and_then(|outside| Everywhere::new(&out, outside, named));
         out
     }
 
@@ -120,8 +117,8 @@ struct Outside {
 }
 
 impl Outside {
-    /// `None` if there are none, or if the equations are singular.
-    fn new(Whole { equations, sampled }: &Whole, best: &Best, robust: f64) -> Option<Self> {
+    /// `None` if there are none.
+    fn new(equations: &Normal, best: &Best, robust: f64) -> Option<Self> {
         let own = equations.own;
         let count = equations.gradient.len() - own;
         if count == 0 {
@@ -134,10 +131,6 @@ impl Outside {
         let precision = not_negative((alone - cross.transpose() * &moves) / (robust * robust));
         let step = DVector::from_column_slice(&best.step);
         let pull = (equations.gradient.rows(own, count) - cross.transpose() * step) / (robust * robust);
-        let (precision, pull) = match sampled.amax() > 0.0 {
-            true => less_known(precision, pull, moves.transpose() * sampled * &moves / (robust * robust))?,
-            false => (precision, pull),
-        };
         Some(Self { moves, precision, pull })
     }
 }
@@ -147,20 +140,6 @@ fn not_negative(matrix: DMatrix<f64>) -> DMatrix<f64> {
     let mut eigen = SymmetricEigen::new((&matrix + matrix.transpose()) * 0.5);
     eigen.eigenvalues.apply(|e| *e = e.max(0.0));
     eigen.recompose()
-}
-
-/// Precision and pull of numbers of which the pull has an error with the covariance matrix `error` in addition; `None` if the
-/// equations are singular.
-fn less_known(
-    precision: DMatrix<f64>,
-    pull: DVector<f64>,
-    error: DMatrix<f64>,
-) -> Option<(DMatrix<f64>, DVector<f64>)> {
-    let mut spread = &precision + error;
-    // directions that the readings do not show have neither precision nor error
-    (0..pull.len()).for_each(|i| spread[(i, i)] += 1e-9 * spread[(i, i)].abs() + f64::MIN_POSITIVE);
-    let factor = Cholesky::new(spread)?;
-    Some((&precision * factor.solve(&precision), &precision * factor.solve(&pull)))
 }
 
 impl Everywhere {
@@ -258,15 +237,6 @@ mod tests {
                 assert!((found.covariance[(k, k)].sqrt() / 2e-6 - 1.0).abs() < 0.02, "{}", found.covariance);
             }
         }
-    }
-
-    #[test]
-    fn a_pull_with_an_error_of_its_own_counts_for_less() {
-        // a number that is seen twice as badly as by the pull alone
-        let one = |x: f64| DMatrix::from_element(1, 1, x);
-        let (precision, pull) =
-            less_known(one(4.0), DVector::from_element(1, 8.0), one(4.0)).expect("regular");
-        assert!((precision[(0, 0)] - 2.0).abs() < 1e-6 && (pull[0] - 4.0).abs() < 1e-6, "{precision} {pull}");
     }
 
     /// A model with the compliance `c` = 2 ± 0.01 and one number of the geometry that follows it, and a compliance outside that

@@ -49,16 +49,6 @@ fn scrambled(index: usize) -> u64 {
     z ^ (z >> 31)
 }
 
-/// Indices of all of `count` rows, or of [`SCREENED`] of them as if by chance if the campaign is long.
-pub(super) fn some_rows(count: usize) -> Vec<usize> {
-    let mut out: Vec<usize> = (0..count).collect();
-    if count > LONG {
-        out.sort_by_key(|&i| scrambled(i));
-        out.truncate(SCREENED);
-    }
-    out
-}
-
 /// The indices of [`SCREENED`] of the rows, whose strata are `strata`. Half of them are taken in equal numbers from
 /// each stratum, the others evenly from the remaining rows.
 fn spread(strata: &[Stratum]) -> Vec<usize> {

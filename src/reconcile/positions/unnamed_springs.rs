@@ -5,19 +5,17 @@
 
 use super::analysis::Positions;
 use super::fitted::Sample;
-use super::geometry_slopes::{GeometrySlopes, Whole};
+use super::geometry_slopes::{GeometrySlopes, completed};
 use super::kinematics::Geometry;
 use super::loads::CompliantPlace;
 use super::posterior::Posterior;
-use super::rows::{Further, normal};
-use super::screening::some_rows;
+use super::rows::normal;
 use super::shape::Shape;
 use super::springs::best_springs;
 use crate::arm::BASE;
 use crate::arm::effect::kind::ElasticRotation;
 use crate::arm::structure::Piece;
 use crate::reconcile::readings::campaign::Campaign;
-use nalgebra::Vector3;
 use std::sync::Arc;
 
 impl Positions {
@@ -68,24 +66,17 @@ impl Positions {
         let (unnamed, named) = (self.unnamed_springs(), self.named_springs());
         let from_level = self.fitted.geometry.level_to_instrument();
         let gravity = &self.fitted.geometry.gravity;
-        let push_unnamed = |sample: &Sample, columns: &mut Vec<Vector3<f64>>| {
+        let arms = |geometry: &Geometry| self.deflecting_arms(campaign, geometry);
+        let slopes = GeometrySlopes::new(&campaign.positions, &self.numbers, &self.fitted, arms);
+        let parts = normal(&all, &self.numbers, &self.fitted, &|sample, _, columns| {
             for &candidate in &unnamed {
                 sample.deflection.per_compliance(candidate, gravity, |by| columns.push(from_level * by));
             }
-        };
-        let arms = |geometry: &Geometry| self.deflecting_arms(campaign, geometry);
-        let slopes = GeometrySlopes::new(&campaign.positions, &self.numbers, &self.fitted, arms);
-        let some: Vec<&Sample> = some_rows(all.len()).into_iter().map(|i| &self.samples[i]).collect();
-        let of =
-            |samples: &[&Sample], further: Further| normal(samples, &self.numbers, &self.fitted, further);
-        let equations = of(&all, &|sample, _, columns| push_unnamed(sample, columns));
-        let part = of(&some, &|sample, _, columns| {
-            push_unnamed(sample, columns);
             slopes.push(sample, columns);
         });
-        let whole = Whole::new(equations, &part, &slopes.incomplete(), all.len() as f64 / some.len() as f64);
-        let best = best_springs(&whole.equations, self.numbers.len(), &self.fitted.compliances)?;
-        Some(Posterior::new(&whole, &best, self.fitted.robust_factor, &named))
+        let equations = completed(&parts, &slopes.incomplete());
+        let best = best_springs(&equations, self.numbers.len(), &self.fitted.compliances)?;
+        Some(Posterior::new(&equations, &best, self.fitted.robust_factor, &named))
     }
 
     /// Indices of the candidates with a single compliance that are neither in the model nor contained in a frame of
