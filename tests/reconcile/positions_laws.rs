@@ -2,7 +2,7 @@
 //! physics that is not an effect in positions but looks like one.
 
 use crate::positions_maker::{
-    DRIFT_MM_PER_ROW, LIFT_RAD_PER_NM, LOST_RAD, Made, PRELOAD_NM, WAVE, WAVE_PHASE_RAD, standard,
+    DRIFT_MM_PER_ROW, LIFT_RAD_PER_NM, LOST_RAD, Made, PRELOAD_NM, WAVE, WAVE_PHASE_RAD, standard, with_noise,
 };
 
 use armwright::catalog::Catalogs;
@@ -53,14 +53,20 @@ fn a_base_that_lifts_off_beyond_its_preload_is_no_tilt_and_no_transmission_error
 
 #[test]
 fn a_stiffness_that_varies_with_the_angle_is_found_with_its_phase() {
-    let outcome = outcome(standard().write(&Made::varying).path());
-    assert_eq!(outcome.verdict, Verdict::Explained, "{}", outcome.to_text());
-    let mut found = labels(&outcome);
-    found.sort();
-    assert_eq!(found, ["joint_compliance@q2", "joint_compliance@q3", "stiffness_waves@q3"]);
-    let once = only(&outcome, "stiffness_waves@q3", "once")[0];
-    let phase = only(&outcome, "stiffness_waves@q3", "phases_rad")[0];
-    assert!(holds(once, WAVE) && holds(phase, WAVE_PHASE_RAD), "{once:?} {phase:?}");
+    // an interval of 95 % may miss now and then
+    let mut missed = 0;
+    for seed in 1..=4 {
+        let outcome = outcome(with_noise(seed).write(&Made::varying).path());
+        assert_eq!(outcome.verdict, Verdict::Explained, "{}", outcome.to_text());
+        let mut found = labels(&outcome);
+        found.sort();
+        assert_eq!(found, ["joint_compliance@q2", "joint_compliance@q3", "stiffness_waves@q3"]);
+        let once = only(&outcome, "stiffness_waves@q3", "once")[0];
+        let phase = only(&outcome, "stiffness_waves@q3", "phases_rad")[0];
+        assert!(once.1 > Some(0.2) && once.2 < Some(0.7), "{once:?}");
+        missed += usize::from(!holds(once, WAVE)) + usize::from(!holds(phase, WAVE_PHASE_RAD));
+    }
+    assert!(missed <= 1, "{missed} of 8 intervals miss");
 }
 
 #[test]

@@ -4,11 +4,13 @@
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use serde_json::{Value, json};
 
-/// A true arm of three joints.
+/// A true arm of three joints, and how it is measured.
 pub struct Made {
     /// Noise of each coordinate \[mm\].
     pub sigma_mm: f64,
     poses: usize,
+    /// First state of the generator of poses and noise.
+    seed: u64,
 }
 
 /// The truth of one position, before noise.
@@ -26,12 +28,17 @@ const GRAVITY_M_S2: f64 = 9.81;
 
 /// The arm of the tests.
 pub fn standard() -> Made {
-    Made { sigma_mm: 0.05, poses: 120 }
+    Made { sigma_mm: 0.05, poses: 120, seed: 20_240_607 }
 }
 
 /// The same arm in so many poses.
 pub fn in_poses(poses: usize) -> Made {
     Made { poses, ..standard() }
+}
+
+/// The same arm in other poses and with other noise.
+pub fn with_noise(seed: u64) -> Made {
+    Made { seed, ..standard() }
 }
 
 /// What may be untrue of an arm in a row.
@@ -52,8 +59,6 @@ struct Truths {
     base_rad_per_nm: Matrix3<f64>,
     /// The base tilts beyond its preload.
     lifts: bool,
-    /// The compliance of the third joint varies with its angle.
-    varies: bool,
     /// The torsion of the second joint grows ever less with its torque.
     bends: bool,
     /// All points have moved by so much, in the frame of the arm.
@@ -96,6 +101,11 @@ impl Made {
 
     /// Joints yield by finite angles, until springs and weights are in equilibrium in the pose in which the arm hangs.
     pub fn hanging(&self, pose_rad: &[f64; 3], _row: usize) -> Truth {
+        self.at_rest(pose_rad, [1.0; 3])
+    }
+
+    /// Each joint is `softer` by a factor, and springs and weights are in equilibrium.
+    fn at_rest(&self, pose_rad: &[f64; 3], softer: [f64; 3]) -> Truth {
         let mut yielded_rad = [0.0; 3];
         let mut tip = Vector3::zeros();
         for _ in 0..60 {
@@ -115,7 +125,7 @@ impl Made {
                 let torque_nm: f64 = weights
                     .map(|(m, cg)| axis.dot(&(cg - pivot).cross(&(-Vector3::z() * GRAVITY_M_S2 * *m))))
                     .sum();
-                yielded_rad[j] = torque_nm / STIFFNESS_NM_PER_RAD[j];
+                yielded_rad[j] = softer[j] * torque_nm / STIFFNESS_NM_PER_RAD[j];
             }
         }
         Truth { position_m: askew() * tip + Vector3::new(1.0, -2.0, 0.5) }
@@ -187,7 +197,7 @@ impl Made {
 
     /// Joints yield, and the stiffness of the third varies once a turn.
     pub fn varying(&self, pose_rad: &[f64; 3], _row: usize) -> Truth {
-        self.truth(pose_rad, Truths { sag: true, varies: true, ..Truths::default() })
+        self.at_rest(pose_rad, [1.0, 1.0, 1.0 + WAVE * (pose_rad[2] + WAVE_PHASE_RAD).sin()])
     }
 
     /// The second joint yields, and the more the torque is, the less.
@@ -232,11 +242,7 @@ impl Made {
             let outboard = bodies[j..].iter();
             let torque: f64 = outboard.map(|(m, cg)| axis.dot(&(cg - pivot).cross(&(down * *m)))).sum();
             let lost_rad = if j == 2 { truths.lost_rad * (torque / LOST_NM).tanh() } else { 0.0 };
-            let softer = match j {
-                2 if truths.varies => 1.0 + WAVE * (pose_rad[2] + WAVE_PHASE_RAD).sin(),
-                _ => 1.0,
-            };
-            sag += axis.cross(&(point - pivot)) * (softer * torque / STIFFNESS_NM_PER_RAD[j] + lost_rad);
+            sag += axis.cross(&(point - pivot)) * (torque / STIFFNESS_NM_PER_RAD[j] + lost_rad);
         }
         if truths.bends {
             let (axis, pivot) = places[1];
@@ -278,7 +284,7 @@ impl Made {
     /// A campaign folder of a truth.
     pub fn write(&self, truth: &dyn Fn(&Self, &[f64; 3], usize) -> Truth) -> tempfile::TempDir {
         let folder = tempfile::tempdir().expect("temporary folder");
-        let mut noise = Noise(20_240_607);
+        let mut noise = Noise(self.seed);
         let mut rows = String::from("test,q_q1_deg,q_q2_deg,q_q3_deg,x_mm,y_mm,z_mm,sigma_mm\n");
         for row in 0..self.poses {
             let pose_deg = [170.0, 80.0, 140.0].map(|reach| (reach * (2.0 * noise.part() - 1.0)).round());

@@ -52,6 +52,18 @@ impl Truth {
     }
 }
 
+/// Standard deviations by which an arm is off its drawing.
+pub struct Off {
+    links_m: f64,
+    axes: f64,
+    zeros_rad: f64,
+}
+
+/// An arm that was built with care.
+pub const USUAL: Off = Off { links_m: 1e-3, axes: 1e-3, zeros_rad: 5e-3 };
+/// An arm that is as far off as the calibration thinks possible (docs/positions.md, `positions.geometry`).
+pub const FAR: Off = Off { links_m: 1e-2, axes: 1e-2, zeros_rad: 3e-2 };
+
 /// The arm as it was built: axes, links and zeros a little off.
 struct Built {
     axes: [Vector3<f64>; 6],
@@ -61,11 +73,11 @@ struct Built {
 }
 
 impl Built {
-    fn drawn(dice: &mut Dice, truth: Truth) -> Self {
+    fn drawn(dice: &mut Dice, truth: Truth, scatter: &Off) -> Self {
         let mut off = |nominal: [f64; 3], by: f64| Vector3::from(nominal.map(|x| x + by * dice.normal()));
-        let axes = AXES.map(|axis| off(axis, 1e-3).normalize());
-        let links_m = LINKS_M.map(|link| off(link, 1e-3));
-        let mut zeros_rad = [0; 6].map(|_| 5e-3 * dice.normal());
+        let axes = AXES.map(|axis| off(axis, scatter.axes).normalize());
+        let links_m = LINKS_M.map(|link| off(link, scatter.links_m));
+        let mut zeros_rad = [0; 6].map(|_| scatter.zeros_rad * dice.normal());
         zeros_rad[0] = 0.0;
         Self { axes, links_m, zeros_rad, truth }
     }
@@ -116,11 +128,11 @@ struct Hung {
     point_m: Vector3<f64>,
 }
 
-/// Writes a campaign of positions, of whose arm the drawing has rigid joints.
-pub fn make(folder: &Path, seed: u64) -> Truth {
+/// Writes a campaign of positions, of whose arm the drawing has rigid joints. The arm is `off` its drawing.
+pub fn make(folder: &Path, seed: u64, off: &Off) -> Truth {
     let dice = &mut Dice(seed);
     let truth = Truth::drawn(dice);
-    let built = Built::drawn(dice, truth);
+    let built = Built::drawn(dice, truth, off);
     let names: Vec<String> = (1..=6).map(|j| format!("q_j{j}_deg")).collect();
     let mut text = format!(
         "test,{},payload_kg,payload_cg_x_m,payload_cg_y_m,payload_cg_z_m,x_mm,y_mm,z_mm,sigma_mm\n",

@@ -9,6 +9,7 @@ use super::kinematics::{Geometry, Number, Pose, number_groups};
 use super::loads::{CompliantPlace, Loads, candidates};
 use super::moved::{Boundary, Kind};
 use super::points::{Point, points};
+use super::posterior::Posterior;
 use super::shaped::with_shapes;
 use super::tree::Tree;
 use crate::arm::effect::channel::Channel;
@@ -73,6 +74,8 @@ pub(crate) struct Positions {
     pub(super) held_out: Vec<Vector3<f64>>,
     /// Number of rows on which effects were screened; `None` if all rows were searched.
     pub(super) screened: Option<usize>,
+    /// What the readings say about the numbers of the final model; `None` before it is found, and without effects.
+    pub(super) posterior: Option<Arc<Posterior>>,
 }
 
 /// Arms whose geometry alone is calibrated, without a search for effects.
@@ -145,7 +148,7 @@ pub(crate) fn analyze(campaign: &Campaign) -> Positions {
     let errors = found.samples.iter().map(|s| found.fitted.error(s).norm()).enumerate();
     let gross = errors.filter(|(_, e)| *e > GROSS * found.fitted.scale_m).map(|(i, e)| (i, 1e3 * e));
     found.gross = gross.collect();
-    found.widen();
+    found.widen(campaign);
     found
 }
 
@@ -177,6 +180,7 @@ impl Positions {
             sessions: Vec::new(),
             held_out: Vec::new(),
             screened: None,
+            posterior: None,
         }
     }
 

@@ -3,11 +3,12 @@
 use super::analysis::{Positions, last_row};
 use super::fit::fit;
 use super::fitted::Sample;
+use super::intervals::within;
 use super::kinematics::Number;
 use super::sessions::telling_part;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::drift;
-use crate::reconcile::model::estimate::{Estimate, Finding, Z_95};
+use crate::reconcile::model::estimate::{Estimate, Finding};
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::Vector3;
 
@@ -92,12 +93,10 @@ impl Positions {
     /// The finding of the drift of the model; `None` if there is none.
     pub(super) fn drift_finding(&self, campaign: &Campaign) -> Option<Finding> {
         let per_row = 1e3 / last_row(campaign);
-        let fitted = self.numbers.iter().zip(self.fitted.moved.iter().zip(&self.fitted.number_deviations));
-        let own = fitted.filter(|(number, _)| matches!(number, Number::Drift(_)));
-        let rate = |(_, (value, deviation)): (&Number, (&f64, &f64))| Estimate {
-            value: per_row * value,
-            low: Some(per_row * (value - Z_95 * deviation)).filter(|x| x.is_finite()),
-            high: Some(per_row * (value + Z_95 * deviation)).filter(|x| x.is_finite()),
+        let fitted = self.numbers.iter().zip(&self.fitted.moved).enumerate();
+        let own = fitted.filter(|(_, (number, _))| matches!(number, Number::Drift(_)));
+        let rate = |(at, (_, value)): (usize, (&Number, &f64))| {
+            within(per_row * value, self.reach(&[(at, 1.0)]).map(|reach| per_row * reach))
         };
         let rates: Vec<Estimate> = own.map(rate).collect();
         (!rates.is_empty()).then(|| Finding {

@@ -21,7 +21,9 @@
 //! - `conventions` tests whether the file was written by another convention (`convention_changes`). `far_geometry` tests
 //!   whether calibration went further than its prior expects, and `structure` tests the errors that are left.
 //! - `declared_sigma` compares the standard deviations of the file with the scatter.
-//! - `unnamed_springs` widens intervals for compliances that are not in the model.
+//! - `posterior` says what the readings leave open about the numbers of the model, if compliances that are not in it
+//!   (`unnamed_springs`) are possible too; none is negative (`non_negative`). `geometry_slopes` completes the derivatives for
+//!   this, and `intervals` states the intervals.
 //! - `next_test` proposes what to measure, and [`outcome`] reaches the verdict.
 //! - [`predict`] predicts positions of several arms whose weights load each other's trunk.
 
@@ -39,6 +41,8 @@ pub(crate) mod eight_places;
 pub(crate) mod far_geometry;
 pub(crate) mod fit;
 pub(crate) mod fitted;
+mod geometry_slopes;
+mod intervals;
 pub(crate) mod kinematics;
 mod law;
 mod laws;
@@ -46,9 +50,11 @@ pub(crate) mod loads;
 pub(crate) mod moved;
 pub(crate) mod next_test;
 pub(crate) mod nominal;
+mod non_negative;
 pub(crate) mod normal;
 pub(crate) mod outcome;
 pub(crate) mod points;
+mod posterior;
 pub(crate) mod predict;
 pub(crate) mod rows;
 mod screening;

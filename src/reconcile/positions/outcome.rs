@@ -4,11 +4,10 @@ use super::analysis::{Positions, analyze};
 use super::angle_laws::Competing;
 use super::drift;
 use super::fitted::Fitted;
+use super::intervals::{frame_parameters, reciprocal, stiffness, within};
 use super::kinematics::Number;
-use super::loads::FRAME_ENTRIES;
 use super::search::TIE;
 use super::shape::Shape;
-use super::springs::frame_matrix;
 use super::structure::{MATERIAL_VARIANCE, mean_median_length};
 use super::transmission;
 use super::waves;
@@ -19,7 +18,7 @@ use crate::arm::effect::kind::ElasticRotation;
 use crate::arm::{Arm, BASE};
 use crate::reconcile::fit::held_out::{HeldOut, rms};
 use crate::reconcile::fit::noise::{FEW, Noise, Outlier};
-use crate::reconcile::model::estimate::{Estimate, Finding, Z_95};
+use crate::reconcile::model::estimate::{Estimate, Finding};
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::components::POSITION;
 use crate::reconcile::readings::rows::PositionRow;
@@ -334,12 +333,12 @@ impl Positions {
 
     fn finding(&self, i: usize, without: &Fitted, competitors: &[(usize, Fitted)]) -> Finding {
         let candidate = &self.candidates[self.fitted.effects[i]];
-        let (c, sd) = (&self.fitted.compliances[i], &self.fitted.deviations[i]);
+        let (c, reaches) = (&self.fitted.compliances[i], self.reaches(i));
         let parameters = match candidate.rotation {
             _ if candidate.shape != Shape::Spring => self.shape_parameters(i),
-            ElasticRotation::Frame => frame_parameters(c, sd),
+            ElasticRotation::Frame => frame_parameters(c, &reaches),
             ElasticRotation::AboutAxis | ElasticRotation::Tilt => {
-                vec![("stiffness_nm_per_rad".into(), vec![stiffness(c[0], sd[0])])]
+                vec![("stiffness_nm_per_rad".into(), vec![stiffness(c[0], reaches[0])])]
             }
         };
         let names = competitors.iter().map(|(r, _)| &self.candidates[*r]);
@@ -372,8 +371,8 @@ impl Positions {
     }
 
     fn transmission_finding(&self, joint: usize) -> Finding {
-        let fitted = self.numbers.iter().zip(self.fitted.moved.iter().zip(&self.fitted.number_deviations));
-        let own = fitted.filter(|(n, _)| matches!(n, Number::Transmission(j, _) if *j == joint));
+        let fitted = self.numbers.iter().zip(&self.fitted.moved).enumerate();
+        let own = fitted.filter(|(_, (n, _))| matches!(n, Number::Transmission(j, _) if *j == joint));
         let named = |j: usize| (transmission::EFFECT.to_string(), self.tree.driven[j].clone());
         let (effect, at) = named(joint);
         Finding {
@@ -381,7 +380,7 @@ impl Positions {
             at,
             parameters: vec![(
                 "sin_cos_sin2_cos2_rad".into(),
-                own.map(|(_, (value, sd))| within(*value, *sd)).collect(),
+                own.map(|(at, (_, value))| within(*value, self.reach(&[(at, 1.0)]))).collect(),
             )],
             indistinguishable_from: self
                 .transmission_competitors(joint)
@@ -531,49 +530,6 @@ pub(crate) fn located(campaign: &Campaign, residuals: &[ReadingResidual]) -> Vec
     poses.sort_by(|a, b| b.rms_before.total_cmp(&a.rms_before));
     rest.extend(poses.into_iter().take(WORST_POSES));
     rest
-}
-
-/// The value with its 95 % interval, from its standard deviation. An end is `None` if the deviation is infinite.
-fn within(value: f64, deviation: f64) -> Estimate {
-    let end = |by: f64| Some(value + by * deviation).filter(|e| e.is_finite());
-    Estimate { value, low: end(-Z_95), high: end(Z_95) }
-}
-
-/// Stiffness with its 95 % interval \[N m/rad\], as the reciprocal of a compliance with the standard deviation
-/// `deviation` \[rad/(N m)\]. An end is `None` where the compliance may be zero.
-fn stiffness(compliance: f64, deviation: f64) -> Estimate {
-    let end = |by: f64| Some(compliance + by * deviation);
-    reciprocal(Estimate { value: compliance, low: end(-Z_95), high: end(Z_95) })
-}
-
-/// Stiffness with its interval \[N m/rad\], as the reciprocal of a compliance. An end is `None` where the compliance may be
-/// zero.
-fn reciprocal(compliance: Estimate) -> Estimate {
-    let end = |c: f64| (c > 0.0).then(|| 1.0 / c);
-    Estimate {
-        value: end(compliance.value).unwrap_or(1e15),
-        low: compliance.high.and_then(end),
-        high: compliance.low.and_then(end),
-    }
-}
-
-/// The compliances of a frame as parameters of its effect, with 95 % intervals \[rad/(N m)\]. A compliance that is not
-/// fitted, because no weight loads it, has no interval.
-fn frame_parameters(compliances: &[f64], deviations: &[f64]) -> Vec<(String, Vec<Estimate>)> {
-    let matrix = frame_matrix(compliances);
-    let entry = |at: (usize, usize)| {
-        let known = FRAME_ENTRIES[..compliances.len()].iter().position(|e| *e == at);
-        within(matrix[at], known.map_or(f64::INFINITY, |k| deviations[k]))
-    };
-    // no element turns against its load, so the diagonal has no negative entry
-    let turning = |at: (usize, usize)| {
-        let found = entry(at);
-        Estimate { low: found.low.map(|low| low.max(0.0)), ..found }
-    };
-    vec![
-        ("diagonal_rad_per_nm".into(), [(0, 0), (1, 1), (2, 2)].map(turning).to_vec()),
-        ("coupling_rad_per_nm".into(), [(0, 1), (0, 2), (1, 2)].map(entry).to_vec()),
-    ]
 }
 
 /// The reason why an effect cannot be real, as a sentence: one of its numbers is beyond the range that an arm file may

@@ -119,6 +119,7 @@ impl Positions {
             points: self.points.clone(),
             held_out: Vec::new(),
             screened: None,
+            posterior: None,
         }
     }
 

@@ -7,6 +7,7 @@
 //! are fitted, and is computed again after that.
 
 use super::analysis::Positions;
+use super::kinematics::Geometry;
 use super::loads::{CompliantPlace, Loads};
 use super::shape::Shape;
 use super::springs::frame_matrix;
@@ -15,12 +16,23 @@ use crate::arm::effect::entry::Effect;
 use crate::arm::effect::kind::ElasticRotation;
 use crate::arm::effect::subject::Subject;
 use crate::reconcile::readings::campaign::Campaign;
+use nalgebra::Vector3;
 use rayon::prelude::*;
 
 impl Positions {
     /// Computes for each sample the difference between the true and the linear displacement, with the effects of the
     /// present fit.
     pub(super) fn hang(&mut self, campaign: &Campaign) {
+        let loads = self.deflecting_arms(campaign, &self.fitted.geometry);
+        let differences = campaign.positions.par_iter().zip(&self.samples);
+        let differences: Vec<Vector3<f64>> =
+            differences.map(|(row, sample)| loads.second_order_m(row, sample.point)).collect();
+        drop(loads);
+        self.samples.iter_mut().zip(differences).for_each(|(sample, by)| sample.second_order_m = by);
+    }
+
+    /// The arms with the geometry `geometry`, and with everything that deflects by the present fit as part of the arm.
+    pub(super) fn deflecting_arms(&self, campaign: &Campaign, geometry: &Geometry) -> Loads<'_> {
         let fitted = &self.fitted;
         let named = fitted.effects.iter().zip(&fitted.compliances);
         let as_effect = |(&c, own): (&usize, &Vec<f64>)| {
@@ -33,9 +45,7 @@ impl Positions {
             dependent.for_each(|(dependence, x)| dependence.change(*x, subject));
             effects.iter().for_each(|effect| subject.apply(effect));
         };
-        let loads = Loads::changed(campaign, &self.tree, &fitted.geometry, &[], &change);
-        let samples = self.samples.par_iter_mut().zip(&campaign.positions);
-        samples.for_each(|(sample, row)| sample.second_order_m = loads.second_order_m(row, sample.point));
+        Loads::changed(campaign, &self.tree, geometry, &[], &change)
     }
 }
 

@@ -47,6 +47,18 @@ impl Best {
         };
         (0..self.step.len()).map(deviation).collect()
     }
+
+    /// By how much the numbers of the model change to the minimum if half of chi-squared has the negative gradient
+    /// `gradient` over them. Numbers that are fixed at their constraint stay.
+    pub(crate) fn answer(&self, gradient: &DVector<f64>) -> DVector<f64> {
+        let along = |slope: &Slope| slope.entries().map(|(at, entry)| entry * gradient[at]).sum::<f64>();
+        let right = DVector::from_iterator(self.slopes.len(), self.slopes.iter().map(along));
+        let mut out = DVector::zeros(self.step.len());
+        for (slope, by) in self.slopes.iter().zip(self.factor.solve(&right).iter()) {
+            slope.entries().for_each(|(at, entry)| out[at] += entry * by);
+        }
+        out
+    }
 }
 
 /// Derivatives of the numbers of the model with respect to one free variable of the minimization: a number itself, or an

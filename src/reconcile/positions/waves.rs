@@ -4,6 +4,8 @@
 use super::analysis::Positions;
 use super::dependence::Dependence;
 use super::fitted::Fitted;
+use super::intervals::within;
+use super::kinematics::Number;
 use super::search::TIE;
 use super::shape::{Shape, Waves};
 use super::transmission;
@@ -11,7 +13,7 @@ use crate::arm::effect::{connection_compliance, joint_compliance, stiffness_wave
 use crate::arm::joint_law::Curve;
 use crate::arm::structure::Piece;
 use crate::reconcile::model::calibration::Calibration;
-use crate::reconcile::model::estimate::{Estimate, Z_95};
+use crate::reconcile::model::estimate::Estimate;
 use crate::reconcile::readings::campaign::Campaign;
 use std::f64::consts::PI;
 
@@ -48,6 +50,30 @@ impl Positions {
     /// Compliance of the joint `at` about its axis in the fit `fitted`, the mean over all angles \[rad/(N m)\]; `None` if it
     /// is not proportional to the torque.
     pub(super) fn mean_rad_per_nm(&self, fitted: &Fitted, at: &str) -> Option<f64> {
+        let [gear, connection] = self.nominal_rad_per_nm(at)?;
+        let factor = self.stiffness_factors(fitted, at).map(|(_, factor, _)| factor).product::<f64>();
+        let further: f64 = self.springs_about(fitted, at).map(|i| fitted.compliances[i][0]).sum();
+        Some(gear / factor + connection + further)
+    }
+
+    /// Derivatives of the mean compliance of the joint `at` with respect to the numbers of the model: the factor on its
+    /// stiffness and its compliances.
+    fn mean_slopes(&self, fitted: &Fitted, at: &str) -> Vec<(usize, f64)> {
+        let Some([gear, _]) = self.nominal_rad_per_nm(at) else { return Vec::new() };
+        let all = self.stiffness_factors(fitted, at).map(|(_, factor, _)| factor).product::<f64>();
+        // the compliance gear / factor is linear in the number, with the factor 1 / (1 - sd x)
+        let factors = self.stiffness_factors(fitted, at).filter_map(|(k, factor, sd)| {
+            let number = self.numbers.iter().position(|n| *n == Number::Tolerance(k))?;
+            Some((number, -gear / all * sd * factor))
+        });
+        let first = |i: usize| fitted.compliances[..i].iter().map(Vec::len).sum::<usize>();
+        let springs = self.springs_about(fitted, at).map(|i| (self.numbers.len() + first(i), 1.0));
+        factors.chain(springs).collect()
+    }
+
+    /// Compliance of the gear of the joint `at` and that of its connection, as in the arm file \[rad/(N m)\]; `None` if there is
+    /// no such joint or its gear is not proportional.
+    fn nominal_rad_per_nm(&self, at: &str) -> Option<[f64; 2]> {
         let joint = self.tree.pieces.iter().find_map(|piece| match piece {
             Piece::Joint(joint) if joint.name == at => Some(joint),
             _ => None,
@@ -57,21 +83,29 @@ impl Positions {
             Curve::Linear(nm_per_rad) => 1.0 / nm_per_rad,
             Curve::Windup(_) | Curve::WindupK1(_) => return None,
         };
-        let factors = self.dependences.iter().zip(&fitted.geometry.dependences);
-        let factor = factors.filter_map(|(dependence, x)| match dependence {
-            Dependence::Tolerance(Calibration::Stiffness(name), _) if name == at => {
-                Some(dependence.value(*x))
+        Some([gear, joint.law.connection_rad_per_nm])
+    }
+
+    /// The factors on the stiffness of the joint `at` in the fit `fitted`: index among the dependences, factor, and standard
+    /// deviation of its logarithm by the tolerance.
+    fn stiffness_factors(&self, fitted: &Fitted, at: &str) -> impl Iterator<Item = (usize, f64, f64)> {
+        let all = self.dependences.iter().zip(&fitted.geometry.dependences).enumerate();
+        all.filter_map(move |(k, (dependence, x))| match dependence {
+            Dependence::Tolerance(Calibration::Stiffness(name), sd) if name == at => {
+                Some((k, dependence.value(*x), *sd))
             }
             _ => None,
-        });
-        let springs = fitted.effects.iter().zip(&fitted.compliances);
-        let springs = springs.filter(|(e, _)| {
-            let candidate = &self.candidates[**e];
+        })
+    }
+
+    /// Which effects of the fit `fitted` are springs about the axis of the joint `at`.
+    fn springs_about(&self, fitted: &Fitted, at: &str) -> impl Iterator<Item = usize> {
+        let is_own = move |effect: usize| {
+            let candidate = &self.candidates[effect];
             let names = [joint_compliance::KIND.name, connection_compliance::KIND.name];
             candidate.at == at && names.contains(&candidate.effect)
-        });
-        let further: f64 = springs.map(|(_, own)| own[0]).sum();
-        Some(gear / factor.product::<f64>() + joint.law.connection_rad_per_nm + further)
+        };
+        (0..fitted.effects.len()).filter(move |i| is_own(fitted.effects[*i]))
     }
 
     /// Whether the candidate can be added to the model `fitted`. A stiffness that varies with the angle needs a joint
@@ -96,9 +130,17 @@ impl Positions {
     pub(super) fn wave_parameters(&self, position: usize, waves: Waves) -> Vec<(String, Vec<Estimate>)> {
         let at = &self.candidates[self.fitted.effects[position]].at;
         let mean = self.mean_rad_per_nm(&self.fitted, at).unwrap_or_default();
-        let (sizes, deviations) = (&self.fitted.compliances[position], &self.fitted.deviations[position]);
-        let own =
-            sizes.chunks(2).zip(deviations.chunks(2)).map(|(size, deviation)| wave(size, deviation, mean));
+        let slopes = self.mean_slopes(&self.fitted, at);
+        let sizes = &self.fitted.compliances[position];
+        let first = self.first_compliance(position);
+        let own = sizes.chunks(2).enumerate().map(|(k, size)| {
+            let reaches = slopes_of_wave(size, mean).map(|[sin, cos, by_mean]| {
+                let of_mean = slopes.iter().map(|(number, slope)| (*number, by_mean * slope));
+                let own = [(first + 2 * k, sin), (first + 2 * k + 1, cos)];
+                self.reach(&own.into_iter().chain(of_mean).collect::<Vec<_>>())
+            });
+            wave(size, mean, reaches)
+        });
         let known = waves.range().step_by(2).map(|k| k / 2).zip(own);
         let mut parameters = Vec::new();
         let none = Estimate { value: 0.0, low: None, high: None };
@@ -136,24 +178,28 @@ impl Positions {
     }
 }
 
-/// Amplitude and phase, with their 95 % intervals, of a compliance that varies by `size` (coefficients of sine and cosine) about
-/// the mean `mean`, both in rad/(N m).
-fn wave(size: &[f64], deviation: &[f64], mean: f64) -> [Estimate; 2] {
+/// Derivatives of the amplitude `a = hypot(S, C)/m` and of the phase `atan2(C, S)` of a wave with respect to the coefficients
+/// of sine `S` and cosine `C` and to the mean compliance `m`.
+fn slopes_of_wave(size: &[f64], mean: f64) -> [[f64; 3]; 2] {
     let [sin, cos] = [size[0], size[1]];
     let length = libm::hypot(sin, cos);
-    // the deviation along the wave, and that across it
-    let along = libm::hypot(sin * deviation[0], cos * deviation[1]) / length;
-    let across = libm::hypot(cos * deviation[0], sin * deviation[1]) / length;
-    let phase = libm::atan2(cos, sin);
-    let turn = Z_95 * across / length;
-    let end = |x: f64| Some(x).filter(|_| turn < PI);
     [
-        Estimate {
-            value: length / mean,
-            low: Some(((length - Z_95 * along) / mean).max(0.0)).filter(|x| x.is_finite()),
-            high: Some((length + Z_95 * along) / mean).filter(|x| x.is_finite()),
-        },
-        Estimate { value: phase, low: end(phase - turn), high: end(phase + turn) },
+        [sin / (length * mean), cos / (length * mean), -length / (mean * mean)],
+        [-cos / (length * length), sin / (length * length), 0.0],
+    ]
+}
+
+/// Amplitude and phase of a wave with the coefficients `size` about the mean compliance `mean` \[rad/(N m)\], with their 95 %
+/// intervals. `reaches` is how far each interval reaches below and above its value, over [`Z_95`](super::intervals::within).
+fn wave(size: &[f64], mean: f64, reaches: [[f64; 2]; 2]) -> [Estimate; 2] {
+    let (amplitude, phase) = (libm::hypot(size[0], size[1]) / mean, libm::atan2(size[1], size[0]));
+    let size = within(amplitude, reaches[0]);
+    let turned = within(phase, reaches[1]);
+    let is_known = turned.low.zip(turned.high).is_some_and(|(low, high)| high - low < 2.0 * PI);
+    let end = |x: Option<f64>| x.filter(|_| is_known);
+    [
+        Estimate { low: size.low.map(|low| low.max(0.0)), ..size },
+        Estimate { low: end(turned.low), high: end(turned.high), ..turned },
     ]
 }
 
@@ -181,17 +227,47 @@ pub(super) fn of(shape: Shape) -> Option<Waves> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::reconcile::model::estimate::Z_95;
+    use rand_xoshiro::Xoshiro256PlusPlus;
+    use rand_xoshiro::rand_core::{Rng, SeedableRng};
+
+    /// Amplitudes and phases of many draws scatter as the derivatives say: coefficients and mean that depend on each other,
+    /// drawn from three independent numbers by a matrix.
+    #[test]
+    fn amplitude_and_phase_scatter_with_the_coefficients_and_with_the_mean() {
+        const DRAWS: usize = 40_000;
+        let (size, mean) = ([3e-7, -4e-7], 2e-6);
+        let by = [[1e-8, 0.0, 0.0], [5e-9, 1e-8, 0.0], [-2e-8, 3e-8, 6e-8]];
+        let mut dice = Xoshiro256PlusPlus::seed_from_u64(5);
+        // uniform, with the standard deviation 1
+        let mut next = || ((dice.next_u64() >> 11) as f64 / (1u64 << 53) as f64 - 0.5) * 12f64.sqrt();
+        let draws: Vec<[f64; 2]> = (0..DRAWS)
+            .map(|_| {
+                let own = [next(), next(), next()];
+                let off = by.map(|row| row.iter().zip(own).map(|(b, x)| b * x).sum::<f64>());
+                let (sin, cos) = (size[0] + off[0], size[1] + off[1]);
+                [libm::hypot(sin, cos) / (mean + off[2]), libm::atan2(cos, sin)]
+            })
+            .collect();
+        for (k, slopes) in slopes_of_wave(&size, mean).into_iter().enumerate() {
+            let center = draws.iter().map(|d| d[k]).sum::<f64>() / DRAWS as f64;
+            let drawn = (draws.iter().map(|d| (d[k] - center).powi(2)).sum::<f64>() / DRAWS as f64).sqrt();
+            let per_number = |c: usize| (0..3).map(|row| slopes[row] * by[row][c]).sum::<f64>();
+            let said = (0..3).map(|c| per_number(c).powi(2)).sum::<f64>().sqrt();
+            assert!((drawn / said - 1.0).abs() < 0.02, "{k}: {drawn} drawn, {said} said");
+        }
+    }
 
     #[test]
     fn amplitude_and_phase_are_those_of_the_law() {
         // 2e-6 (0.3 sin(q + 0.8)) has the coefficients of sin q and cos q below
         let (mean, size, phase): (f64, f64, f64) = (2e-6, 0.3, 0.8);
         let sizes = [mean * size * phase.cos(), mean * size * phase.sin()];
-        let [found, turned] = wave(&sizes, &[1e-8, 1e-8], mean);
+        let [found, turned] = wave(&sizes, mean, [[0.02, 0.01], [0.04, 0.02]]);
         assert!((found.value - size).abs() < 1e-12 && (turned.value - phase).abs() < 1e-12);
-        // equal deviations of both coefficients are a circle about the wave
-        assert!((found.high.expect("bounded") - size - Z_95 * 1e-8 / mean).abs() < 1e-12);
-        assert!((turned.high.expect("bounded") - phase - Z_95 * 1e-8 / (mean * size)).abs() < 1e-12);
+        assert!((found.high.expect("bounded") - size - Z_95 * 0.01).abs() < 1e-12);
+        assert!((found.low.expect("bounded") - size + Z_95 * 0.02).abs() < 1e-12);
+        assert!((turned.high.expect("bounded") - phase - Z_95 * 0.02).abs() < 1e-12);
         let stated = as_parameters(Waves::Twice, &sizes, mean);
         assert_eq!((stated[0].0.as_str(), stated[1].1[0]), ("twice", 0.0));
         assert!((stated[0].1[0] - size).abs() < 1e-12 && (stated[1].1[1] - phase).abs() < 1e-12);
