@@ -28,7 +28,7 @@ use super::verdict::judgement::{
     shows_in_few_poses, too_many_alternatives,
 };
 use super::verdict::next_test;
-use super::verdict::outcome::{Calibrated, Evidence, Law, Located, Outcome, ReadingResidual, Verdict};
+use super::verdict::outcome::{Calibrated, Evidence, Law, Located, Outcome, ReadingResidual, Row, Verdict};
 use super::verdict::too_little::{rows, too_little};
 use super::verdict::{caution, correct, corrected_model, fitted, locate, unit_words};
 use crate::arm::Arm;
@@ -182,7 +182,7 @@ struct Analysis<'a> {
 struct Corrections {
     calibrated: Vec<Calibrated>,
     empirical: Vec<Law>,
-    models: Vec<corrected_model::Row>,
+    models: Vec<Row>,
     corrected: Arm,
     provenance: Value,
 }

@@ -70,7 +70,7 @@ pub(super) fn largest_speed(
     let (factor, Overload { piece, check }) = largest_held(1.0, &too_fast)?;
     Some(LargestSpeed {
         factor,
-        tip_speed_m_s: follows_the_tip.then(|| factor * space.motion.tip_speed_m_s),
+        tip_speed_m_s: follows_the_tip.then_some(factor * space.motion.tip_speed_m_s),
         own_speeds: hastened(&space, factor).pieces.iter().filter_map(own_speed).collect(),
         joint: piece,
         check,

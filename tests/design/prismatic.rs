@@ -140,7 +140,7 @@ pub fn add_prismatic(study: &mut Value, seed: u64) {
     for i in 0..1 + dice.below(2) {
         let place = dice.below(chain.len() as u64 + 1) as usize;
         let mut rail = random_prismatic(dice, &format!("slide{i}"));
-        if (seed + i) % 3 == 0 {
+        if (seed + i).is_multiple_of(3) {
             rail["max_speed_m_s"] = json!(0.2 + 0.4 * (seed % 5) as f64);
         }
         chain.insert(place, rail);

@@ -130,8 +130,8 @@ fn a_joint_with_a_speed_of_its_own_gives_no_speed_of_the_tip() {
 #[test]
 fn capacity_says_what_joints_hold_while_others_move_with_the_largest_payload() {
     let mut study = scara();
-    study["chain"][0] =
-        json!({"type": "joint", "name": "j1", "axis": [0, 0, 1], "drive": "first_fit", "max_speed_rad_s": 8});
+    study["chain"][0] = json!({"type": "joint", "name": "j1", "axis": [0, 0, 1], "drive": "first_fit", "max_speed_rad_s": 8,
+        "drives": {"gear_series": ["CSG"], "ratios": [50], "motors": ["electric"]}});
     let held_nm = |said: &str| -> f64 {
         let from = said.split("j2 must hold ").nth(1).unwrap_or_else(|| panic!("{said}"));
         from.split(' ').next().and_then(|nm| nm.parse().ok()).unwrap_or_else(|| panic!("{from}"))

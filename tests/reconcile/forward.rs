@@ -63,8 +63,11 @@ fn laws() -> [Effect; 8] {
     let turn: [(&str, &[f64]); 2] =
         [("base_turn_rad", &[1e-4, -2e-4, 3e-4]), ("base_turn_from_row", &[11.0])];
     let tilt = |at: &str| law(at, &[("tilt_rad_per_nm", &[1e-6, 4e-6])]);
-    let slip: [(&str, &[f64]); 3] =
-        [("slip_m", &[0.03, -0.02, 0.05]), ("static_slip_from_row", &[7.0]), ("modal_slip_from_row", &[9.0])];
+    let slip: [(&str, &[f64]); 3] = [
+        ("slip_m", &[0.004, -0.003, 0.006]),
+        ("static_slip_from_row", &[7.0]),
+        ("modal_slip_from_row", &[9.0]),
+    ];
     let twist = |at: &str| {
         let play: (&str, &[f64]) = ("load_play_nm", &[3.0]);
         law(at, &[("neighbour_twist_rad_per_nm", &[2e-6, -3e-6]), ("load_play_rad", &[1e-4]), play])

@@ -132,7 +132,7 @@ mod tests {
             assert!(off(&turned, &here) < 0.02, "{joint}: {}", off(&turned, &here));
             // far from the prepared pose a straight line is not enough, near it it is
             assert!(off(&forward, &here) > 0.2, "{joint}: {}", off(&forward, &here));
-            let near = subject(joint, zero_rad + 2e-4);
+            let near = subject(joint, zero_rad + 2e-3);
             assert_eq!(turned.coefficients(&near).turned_deg.len(), 6);
             assert!(off(&turned, &near) < 0.02, "{joint}: {}", off(&turned, &near));
             let moved = turned.predict(&turned.coefficients(&here));

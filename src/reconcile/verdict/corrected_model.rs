@@ -5,6 +5,7 @@
 //! The verdict stays `unexplained`: a model that predicts better is no explanation.
 
 use super::fitted;
+use super::outcome::Row;
 use crate::arm::effect::empirical::KIND;
 use crate::reconcile::fit::descent::{Fit, Weights};
 use crate::reconcile::fit::held_out::{self, rms};
@@ -16,32 +17,11 @@ use crate::reconcile::model::parameters::Candidate;
 use crate::reconcile::select::added_laws::with_laws;
 use crate::reconcile::select::empirical;
 use crate::reconcile::select::search::Search;
-use serde_json::{Value, json};
 use std::sync::Arc;
 
 /// A model with more parameters is taken only if it lowers the error on held-out readings by at least this fraction
 /// compared with the simpler one.
 const LEAST_IMPROVEMENT: f64 = 0.02;
-
-/// A model that the corrected arm could have, with its error on held-out readings.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Row {
-    /// Description of the model in words.
-    pub model: String,
-    /// Root mean square of the residuals that the model leaves on held-out readings \[standard deviations\].
-    pub kept_out_rms_sigma: f64,
-    /// Whether this model was chosen for `arm.corrected.json`.
-    pub is_written: bool,
-}
-
-impl Row {
-    /// The entry of the model in `verdict.json`.
-    pub(crate) fn json(&self) -> Value {
-        json!({
-            "model": self.model, "kept_out_rms_sigma": self.kept_out_rms_sigma, "is_written": self.is_written,
-        })
-    }
-}
 
 /// The models that the corrected arm could have, as a table, and the one that was chosen.
 pub(crate) struct Choice<'a> {

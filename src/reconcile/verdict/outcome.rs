@@ -1,6 +1,5 @@
 //! The result of a reconciliation, and its JSON and CSV files.
 
-use super::corrected_model::Row;
 use super::files::{CORRECTED_FILE, corrected_files};
 use super::joint_record::JointRecord;
 use super::stage::Stage;
@@ -137,6 +136,26 @@ pub struct Law {
     pub law: String,
     /// Possible physical causes, as a sentence.
     pub may_be: &'static str,
+}
+
+/// A model that the corrected arm could have, with its error on held-out readings.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// Description of the model in words.
+    pub model: String,
+    /// Root mean square of the residuals that the model leaves on held-out readings \[standard deviations\].
+    pub kept_out_rms_sigma: f64,
+    /// Whether this model was chosen for `arm.corrected.json`.
+    pub is_written: bool,
+}
+
+impl Row {
+    /// The entry of the model in `verdict.json`.
+    pub(crate) fn json(&self) -> Value {
+        json!({
+            "model": self.model, "kept_out_rms_sigma": self.kept_out_rms_sigma, "is_written": self.is_written,
+        })
+    }
 }
 
 /// Everything that `reconcile` found.
