@@ -139,7 +139,7 @@ mod tests {
             let further = turned.predict(&turned.coefficients(&near));
             let moves =
                 moved.iter().zip(&further).zip(&turned.data).map(|((a, b), d)| ((a - b) / d.sigma).abs());
-            assert!(moves.fold(0.0, f64::max) > 0.05, "{joint} shows");
+            assert!(moves.fold(0.0, f64::max) > 0.005, "{joint} shows");
         }
     }
 }

@@ -117,7 +117,7 @@ struct Outside {
 }
 
 impl Outside {
-    /// `None` if there are none.
+    /// `None` if there are none, or if the equations overflow.
     fn new(equations: &Normal, best: &Best, robust: f64) -> Option<Self> {
         let own = equations.own;
         let count = equations.gradient.len() - own;
@@ -128,18 +128,21 @@ impl Outside {
         let mut moves = DMatrix::zeros(own, count);
         (0..count).for_each(|k| moves.set_column(k, &best.answer(&cross.column(k).into_owned())));
         let alone = equations.curvature.view((own, own), (count, count));
-        let precision = not_negative((alone - cross.transpose() * &moves) / (robust * robust));
+        let precision = not_negative((alone - cross.transpose() * &moves) / (robust * robust))?;
         let step = DVector::from_column_slice(&best.step);
         let pull = (equations.gradient.rows(own, count) - cross.transpose() * step) / (robust * robust);
         Some(Self { moves, precision, pull })
     }
 }
 
-/// The matrix without its negative eigenvalues, which come from rounding.
-fn not_negative(matrix: DMatrix<f64>) -> DMatrix<f64> {
+/// The matrix without its negative eigenvalues, which come from rounding. `None` if it has an entry that is not finite.
+fn not_negative(matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
+    if matrix.iter().any(|entry| !entry.is_finite()) {
+        return None;
+    }
     let mut eigen = SymmetricEigen::new((&matrix + matrix.transpose()) * 0.5);
     eigen.eigenvalues.apply(|e| *e = e.max(0.0));
-    eigen.recompose()
+    Some(eigen.recompose())
 }
 
 impl Everywhere {
