@@ -169,7 +169,7 @@ fn changes(asked: [&Asked; 2], found: &[Written], catalogs: &Catalogs) -> Change
     let problems = spaces.each_ref().map(|space| ArmProblem::new(space, catalogs));
     let judge = |model: Model, id: &str| {
         let problem = &problems[model as usize];
-        let here = number(problem.level_sizes(), &problem.options_of_whole(number_of(id)?)?);
+        let here = number(problem.level_sizes(), &problem.options_of_id(id)?);
         let objectives = evaluate(problem, here)?.objectives;
         Some(Values {
             tip_deflection_mm: objectives.tip_deflection_m * 1e3,

@@ -5,8 +5,8 @@
 use super::bearing::BearingDemand;
 use super::duty::{HeatWeights, MeanTorqueWeights};
 use super::fit::{FitRequirement, LinkRoom};
+use super::rpm_from_rad_s;
 use super::stated::{StatedDemand, StatedDuty};
-use super::{RAD_S_PER_RPM, rpm_from_rad_s};
 use crate::arm::transmission::Stage;
 use crate::catalog::gear::Gear;
 
@@ -100,7 +100,7 @@ impl JointMotion {
             motion.heat.standing = 0.0;
         }
         let Some(duty) = duty else { return motion };
-        let speed_rad_s = max_speed_rad_s.unwrap_or(0.0).max(duty.fastest_rpm() * RAD_S_PER_RPM);
+        let speed_rad_s = max_speed_rad_s.unwrap_or(0.0).max(duty.fastest_rad_s());
         let ramp_time_s = duty.ramp_time_s(self.ramp_time_s);
         let acceleration_rad_s2 = speed_rad_s / ramp_time_s;
         Self {

@@ -78,7 +78,7 @@ pub use sheet::{JointSizingRow, render_rows};
 pub use stated::{StatedDemand, StatedDuty, StatedHeat, StatedPhase};
 
 /// 1 rpm in rad/s.
-pub(crate) const RAD_S_PER_RPM: f64 = std::f64::consts::PI / 30.0;
+const RAD_S_PER_RPM: f64 = std::f64::consts::PI / 30.0;
 
 /// Converts a speed from rad/s to rpm, the unit of the vendors.
 pub fn rpm_from_rad_s(speed_rad_s: f64) -> f64 {

@@ -67,6 +67,11 @@ impl StatedDuty {
         self.phases.iter().map(|phase| phase.speed_rpm.abs()).fold(0.0, f64::max)
     }
 
+    /// Largest speed of a phase \[rad/s\].
+    pub(crate) fn fastest_rad_s(&self) -> f64 {
+        self.fastest_rpm() * RAD_S_PER_RPM
+    }
+
     /// Mean speed, rests included \[rpm\] (Eq 18.5 of the vendor).
     pub fn mean_speed_rpm(&self) -> f64 {
         self.phases.iter().map(StatedPhase::travel).sum::<f64>() / self.duration_s()

@@ -4,7 +4,7 @@
 //! [`ArmProblem`] has tables of every option in every pose, so that an `ArmProblem` of an excerpt is much smaller. A
 //! design keeps the number that it has in the whole space, and with it its name.
 
-use super::design::{number, options};
+use super::design::{number, number_of, options};
 use super::design_space::{DesignSpace, Excerpt, LinkChoice, LinkOption, SpacePiece};
 use super::joints::TabulatedJoints;
 use super::problem::ArmProblem;
@@ -164,6 +164,12 @@ impl ArmProblem<'_> {
             })
             .unzip();
         number(&sizes, &places)
+    }
+
+    /// Options, in this (reduced) space, of the design with the name `design_id`, one for each level. `None` if there is no
+    /// such design, or if it uses an option that was not kept.
+    pub(crate) fn options_of_id(&self, design_id: &str) -> Option<Vec<u32>> {
+        self.options_of_whole(number_of(design_id)?)
     }
 
     /// Options, in this (reduced) space, of a design of the whole space, one for each level; `None` if the design

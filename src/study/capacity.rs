@@ -12,10 +12,12 @@
 
 use super::chosen::{chosen_design, why_not_held};
 use super::definition::Study;
+use super::guide_remarks::guide_limits_remark;
 use super::largest_speed::{LargestSpeed, largest_speed, with_these_drives};
 use super::overload::{Overload, overload};
 use super::reaction_remarks::reaction_remark_on;
 use super::refusal::Refusal;
+use super::stated_bearing_remarks::unchecked_bearings;
 use super::window::{Window, window_around};
 use crate::arm::Arm;
 use crate::arm::load::LoadCase;
@@ -114,6 +116,8 @@ pub fn capacity_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Resu
     found.largest_speed = largest_speed(&problem, arm.slot_options(), catalogs);
     found.remarks.extend(duty_remark(&space));
     found.remarks.extend(unjudged_remark(&problem, catalogs));
+    found.remarks.extend(unchecked_bearings(&problem, catalogs));
+    found.remarks.extend(guide_limits_remark(&problem));
     found.remarks.extend(reactions_remark(
         &problem,
         arm.slot_options(),

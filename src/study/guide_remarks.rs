@@ -1,14 +1,13 @@
 //! Remarks on the loads on the guides of a study's prismatic joints. Where the study does not state what a guide holds,
 //! a reader can compare its load with the ratings of the maker.
 
+use super::picked::options_of_picks;
 use crate::arm::Arm;
 use crate::arm::load::LoadCase;
 use crate::arm::prismatic::{GuideLimits, Prismatic};
 use crate::mechanics::GuideLoad;
 use crate::report::front_table::FrontTable;
 use crate::report::number::{percent, significant};
-use crate::report::picks::{designs, picks};
-use crate::space::design::number_of;
 use crate::space::design_space::SpacePiece;
 use crate::space::guide::guide_load;
 use crate::space::problem::ArmProblem;
@@ -56,10 +55,7 @@ struct OnGuide<'s> {
 /// Sentences on the force across the travel and the moment on every guide: the largest of the picks of `front` in the
 /// cases of the study.
 pub(super) fn guide_remarks(problem: &ArmProblem, front: &FrontTable) -> Vec<String> {
-    let picks = picks(&designs(front));
-    let picked: Option<Vec<Vec<u32>>> =
-        picks.iter().map(|pick| problem.options_of_whole(number_of(&pick.design.design_id)?)).collect();
-    picked.map_or_else(Vec::new, |picked| sentences(problem, &picked, " of the picks"))
+    sentences(problem, &options_of_picks(problem, front), " of the picks")
 }
 
 /// Sentences on the loads on every guide in the design with the options `chosen`, one for each level, tip first.
@@ -84,15 +80,24 @@ fn sentences(problem: &ArmProblem, designs: &[Vec<u32>], whose: &str) -> Vec<Str
     });
     let bear = format!("Guides bear across their travel, at most in all cases{whose}");
     let mut out = vec![format!("{bear}: {}.", words.collect::<Vec<_>>().join("; "))];
+    out.extend(unknown_limits(&guides));
+    out
+}
+
+/// A sentence that names the guides of which the study does not state all that they hold; `None` if there are none.
+pub(super) fn guide_limits_remark(problem: &ArmProblem) -> Option<String> {
+    unknown_limits(&guides(problem))
+}
+
+fn unknown_limits(guides: &[OnGuide]) -> Option<String> {
     let lacking: Vec<String> = guides.iter().filter_map(OnGuide::unknown).collect();
-    if !lacking.is_empty() {
-        out.push(format!(
+    (!lacking.is_empty()).then(|| {
+        format!(
             "Whether guides hold their loads is not checked where nothing is stated of it: {}. Compare with the ratings of \
              the maker over its safety factor.",
             lacking.join("; ")
-        ));
-    }
-    out
+        )
+    })
 }
 
 /// The guides of the study, base to tip, each with the deceleration of its stop and without a load.

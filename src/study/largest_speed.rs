@@ -7,7 +7,7 @@
 use super::overload::{Overload, overload};
 use super::window::largest_held;
 use crate::catalog::Catalogs;
-use crate::sizing::RAD_S_PER_RPM;
+use crate::sizing::stated::StatedDuty;
 use crate::space::design_space::{DesignSpace, DriveChoice, SpacePiece};
 use crate::space::problem::ArmProblem;
 use serde_json::{Value, json};
@@ -82,7 +82,7 @@ pub(super) fn largest_speed(
 fn own_speed(piece: &SpacePiece) -> Option<OwnSpeed> {
     let (speed, slides) = match piece {
         SpacePiece::Joint(joint) => {
-            let of_duty = joint.duty.as_ref().map_or(0.0, |duty| duty.fastest_rpm() * RAD_S_PER_RPM);
+            let of_duty = joint.duty.as_ref().map_or(0.0, StatedDuty::fastest_rad_s);
             (joint.max_speed_rad_s?.max(of_duty), false)
         }
         SpacePiece::Prismatic(rail) => (rail.max_speed_m_s?, true),

@@ -49,6 +49,7 @@ mod overload;
 pub(crate) mod page;
 pub(crate) mod partial_materials;
 pub(crate) mod pick_poses;
+mod picked;
 mod piece_names;
 pub(crate) mod pose_search;
 pub mod question;

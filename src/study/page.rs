@@ -14,7 +14,6 @@ use crate::report::picks;
 use crate::report::section::Figure;
 use crate::report::summary::SummaryInput;
 use crate::report::svg::plot::Series;
-use crate::space::design::number_of;
 use crate::space::problem::ArmProblem;
 
 /// The content of the page of a finished study, except for the facts of the run.
@@ -49,7 +48,7 @@ fn picked(
     summary: &SummaryInput,
     pick: picks::Pick,
 ) -> Option<PickedArm> {
-    let chosen = problem.options_of_whole(number_of(&pick.design.design_id)?)?;
+    let chosen = problem.options_of_id(&pick.design.design_id)?;
     let mut arm = problem.arm(&chosen)?;
     arm.name = format!("{} {}", study.name, pick.design.design_id);
     let row = &summary.overall.rows[pick.design.row];

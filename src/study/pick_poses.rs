@@ -13,7 +13,6 @@ use crate::report::small_displacement::too_far;
 use crate::report::supplement::Supplement;
 use crate::report::table::{Column, Table};
 use crate::report::words::{TERMINAL, wrap};
-use crate::space::design::number_of;
 use crate::space::problem::ArmProblem;
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
@@ -72,7 +71,7 @@ pub fn picks_in_poses(problem: &ArmProblem, front: &FrontTable) -> PicksInPoses 
     let space = problem.space();
     let (cases, ranges) = (problem.load_cases(), ranges(space));
     let of_pick = |pick: Pick| {
-        let arm = problem.arm(&problem.options_of_whole(number_of(&pick.design.design_id)?)?)?;
+        let arm = problem.arm(&problem.options_of_id(&pick.design.design_id)?)?;
         let worst = worst_poses(&arm, &cases, &ranges)?;
         let divided_hz = cases.iter().filter_map(|case| divided_lowest_hz(&arm, case)).reduce(f64::min);
         Some(PickPoses { pick, reach_m: arm.reach_m(), worst, divided_hz })

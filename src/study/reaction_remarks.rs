@@ -1,14 +1,13 @@
 //! Remarks on reactions: the torques that the drives of a design must hold while another joint moves. Drives are sized
 //! for the ramps and stops of their own joints, so no check of the search includes these torques.
 
+use super::picked::options_of_picks;
 use super::table::{DrivenJoint, driven_joints};
 use crate::catalog::Catalogs;
 use crate::report::front_table::FrontTable;
 use crate::report::number::significant;
-use crate::report::picks::{designs, picks};
 use crate::sizing::check::{Check, CheckKind, CheckState};
 use crate::sizing::checks::{binding, reaction_checks};
-use crate::space::design::number_of;
 use crate::space::problem::ArmProblem;
 use crate::space::reaction::Reaction;
 
@@ -159,8 +158,7 @@ pub(super) fn reaction_remark(
     catalogs: &Catalogs,
     front: &FrontTable,
 ) -> Option<String> {
-    let of_pick = |id: &str| held(problem, catalogs, &problem.options_of_whole(number_of(id)?)?);
-    let picks = picks(&designs(front));
-    let all = picks.iter().filter_map(|pick| of_pick(&pick.design.design_id)).flatten();
+    let picked = options_of_picks(problem, front);
+    let all = picked.iter().filter_map(|chosen| held(problem, catalogs, chosen)).flatten();
     sentence(all.collect(), "in the sizing cases of the picks")
 }

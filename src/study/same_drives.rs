@@ -10,7 +10,7 @@ use crate::report::section::PageSection;
 use crate::report::supplement::Supplement;
 use crate::report::words::{TERMINAL, and, wrap};
 use crate::search::same_drives::OnSameDrives;
-use crate::space::design::{Part, full_objectives, number_of};
+use crate::space::design::{Part, full_objectives};
 use crate::space::problem::ArmProblem;
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -36,7 +36,7 @@ pub struct PicksOnSameDrives(Vec<Beaten>);
 /// Searches for a lighter arm with the drives of each pick, among the options of `problem`.
 pub fn picks_on_same_drives(problem: &ArmProblem, front: &FrontTable) -> PicksOnSameDrives {
     let beaten = |pick: Pick| {
-        let options = problem.options_of_whole(number_of(&pick.design.design_id)?)?;
+        let options = problem.options_of_id(&pick.design.design_id)?;
         Beaten::new(problem, pick, &problem.lighter_on_same_drives(&options)?)
     };
     PicksOnSameDrives(picks(&designs(front)).into_par_iter().filter_map(beaten).collect())

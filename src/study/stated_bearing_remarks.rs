@@ -1,13 +1,12 @@
 //! Remarks on the output bearings of joints whose drives are given and are not checked as a whole. Checks of such a
 //! bearing exclude no design, so a reader must be told where it carries too much.
 
+use super::picked::options_of_picks;
 use crate::catalog::Catalogs;
 use crate::report::front_table::FrontTable;
 use crate::report::number::significant;
-use crate::report::picks::{designs, picks};
-use crate::sizing::bearing_checks::bearing_margin;
+use crate::sizing::bearing_checks::{BlankRatings, bearing_margin};
 use crate::sizing::check::{Check, CheckState};
-use crate::space::design::number_of;
 use crate::space::design_space::SpaceJoint;
 use crate::space::problem::ArmProblem;
 
@@ -38,7 +37,7 @@ pub(super) fn stated_bearing_remarks_on(
     chosen: &[u32],
 ) -> Vec<String> {
     let mut out = sentences(in_design(problem, catalogs, chosen), "in the sizing cases");
-    out.extend(of_passive_joints(problem));
+    out.extend(unchecked_bearings(problem, catalogs));
     out
 }
 
@@ -48,15 +47,22 @@ pub(super) fn stated_bearing_remarks(
     catalogs: &Catalogs,
     front: &FrontTable,
 ) -> Vec<String> {
-    let of_pick = |id: &str| {
-        let options = problem.options_of_whole(number_of(id)?)?;
-        Some(in_design(problem, catalogs, &options))
-    };
-    let picks = picks(&designs(front));
-    let all = picks.iter().filter_map(|pick| of_pick(&pick.design.design_id)).flatten();
+    let picked = options_of_picks(problem, front);
+    let all = picked.iter().flat_map(|chosen| in_design(problem, catalogs, chosen));
     let mut out = sentences(all.collect(), "in the sizing cases of the picks");
     out.extend(of_passive_joints(problem));
     out
+}
+
+/// Sentences on the bearings of given drives that are not checked, or not in full: those that lack ratings, and those of
+/// passive joints.
+pub(super) fn unchecked_bearings(problem: &ArmProblem, catalogs: &Catalogs) -> Vec<String> {
+    let blank = |(_, joint): (usize, &SpaceJoint)| {
+        let bearing = joint.bearing.stated().filter(|_| joint.has_bearing_of_its_own(catalogs))?;
+        let whose = format!("the bearing of {}", joint.name);
+        Some(format!("Output {}.", BlankRatings::of_stated(bearing)?.words(&[&whose])))
+    };
+    problem.space().joints().filter_map(blank).chain(of_passive_joints(problem)).collect()
 }
 
 /// A sentence that names the passive joints whose stated bearings are not checked; `None` if there are none.

@@ -154,33 +154,15 @@ pub(super) fn driven_joints<'c>(
     let options: Vec<u32> = problem.options(&complete).collect();
     let inward_kg = problem.masses_inward_kg(&complete);
     let driven = |(piece, demand): (usize, JointDemand)| {
-        let inward_kg = inward_kg[piece];
-        Some(match problem.sized_joint(piece) {
-            Some(sized) => {
-                let (drive, motion) = (sized.table.drive(options[piece] as usize), *sized.table.motion());
-                DrivenJoint {
-                    piece,
-                    drive,
-                    motion,
-                    demand,
-                    gain_after_gear: 1.0,
-                    stated_mass_kg: None,
-                    inward_kg,
-                }
-            }
+        let (drive, motion, gain_after_gear, stated_mass_kg) = match problem.sized_joint(piece) {
+            Some(sized) => (sized.table.drive(options[piece] as usize), *sized.table.motion(), 1.0, None),
             None => {
                 let fixed = problem.fixed_drive(piece, catalogs)?;
-                DrivenJoint {
-                    piece,
-                    drive: fixed.drive,
-                    motion: fixed.motion,
-                    demand,
-                    gain_after_gear: fixed.gain_after_gear(),
-                    stated_mass_kg: Some(fixed.mass_kg),
-                    inward_kg,
-                }
+                (fixed.drive, fixed.motion, fixed.gain_after_gear(), Some(fixed.mass_kg))
             }
-        })
+        };
+        let inward_kg = inward_kg[piece];
+        Some(DrivenJoint { piece, drive, motion, demand, gain_after_gear, stated_mass_kg, inward_kg })
     };
     Ok(demands.into_iter().filter_map(driven).collect())
 }

@@ -70,6 +70,15 @@ struct MeanTorque {
     of_difference: f64,
 }
 
+/// Ratio of the deceleration in an emergency stop to the acceleration in a ramp. `at_tip_m_s2` is the acceleration of
+/// the tip in a ramp of the joint or rail \[m/s²\].
+pub(super) fn stop_ratio(motion: &AskedMotion, at_tip_m_s2: f64) -> f64 {
+    match motion.emergency_deceleration_m_s2 {
+        Some(stop_m_s2) if at_tip_m_s2 > 0.0 => stop_m_s2 / at_tip_m_s2,
+        _ => 2.0,
+    }
+}
+
 impl Duty {
     /// The motion of `joint` that follows from the motion of the tip. `reach_m` is the largest distance of the tip from
     /// the joint's axis \[m\].
@@ -79,10 +88,7 @@ impl Duty {
         let acceleration_rad_s2 = speed_rad_s / ramp_s;
         let tip_m_s2 = motion.tip_acceleration_m_s2();
         let lever_m = reach_m.max(motion.min_lever_m);
-        let stop_ratio = match motion.emergency_deceleration_m_s2 {
-            Some(stop_m_s2) if acceleration_rad_s2 > 0.0 => stop_m_s2 / (lever_m * acceleration_rad_s2),
-            _ => 2.0,
-        };
+        let stop_ratio = stop_ratio(motion, lever_m * acceleration_rad_s2);
         let (linear_per_inertia, linear_per_static) = match motion.linear_torque {
             LinearTorque::OfInertia => (acceleration_rad_s2, 0.0),
             LinearTorque::OfStaticTorque => (0.0, tip_m_s2 / motion.gravity_m_s2),

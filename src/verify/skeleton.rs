@@ -3,7 +3,7 @@
 use super::bearing_loads::{Mover, PosedBearing, bearings};
 use super::carriers::{carriers, is_tube};
 use super::drives::{DriveOptions, Ties};
-use super::duty::Duty;
+use super::duty::{Duty, stop_ratio};
 use super::layout::{Coordinate, Layout, coordinates};
 use super::offers::JointOffers;
 use super::parts_box::Place;
@@ -201,11 +201,10 @@ fn movers(question: &Question) -> Vec<Mover> {
 /// ramp time and the tip's emergency stop.
 fn sliding(number: usize, rail: &AskedRail, motion: &AskedMotion) -> Mover {
     let acceleration_m_s2 = rail.max_speed_m_s.unwrap_or(motion.tip_speed_m_s) / motion.ramp_time_s;
-    let stop_m_s2 = motion.emergency_deceleration_m_s2.unwrap_or(2.0 * acceleration_m_s2);
     Mover {
         coordinate: Coordinate::Rail(number),
         acceleration_per_s2: acceleration_m_s2,
-        stop_factor: (stop_m_s2 / acceleration_m_s2).max(1.0),
+        stop_factor: stop_ratio(motion, acceleration_m_s2).max(1.0),
     }
 }
 
