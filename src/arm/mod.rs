@@ -46,6 +46,9 @@ pub(crate) mod write;
 /// element of the chain is called so.
 pub(crate) const BASE: &str = "base";
 
+/// The word that means the payload where the name of an element may stand.
+pub(crate) const PAYLOAD: &str = "payload";
+
 pub use bearing::{Bearing, BearingSource};
 pub use body::{JointBodies, RigidBody};
 pub use case_keys::CASES_FILE;

@@ -126,7 +126,7 @@ const fn optional(name: &'static str, count: usize, low: f64, high: f64, default
 /// Entry of this effect in the list of all effects: its name, places, parameters, and how it changes an arm.
 pub(crate) const KIND: Kind = Kind {
     name: "empirical",
-    summary: "a law without a name, as found in readings: a further twist of a joint, or a reading that bends",
+    summary: "a law without a name, as found in readings: a further twist of a joint, a reading that bends, or something that moved in the tests",
     scope: Scope::Product,
     places: &[
         Place::Joint,
@@ -254,14 +254,22 @@ fn added(before: Option<FurtherTwist>, twist: FurtherTwist) -> FurtherTwist {
 mod tests {
     use super::*;
 
+    /// The numbers of a law of a joint: a further twist, and a tilt of the housing. All others change nothing.
+    fn of_joint(twist: [f64; 5], lean: [f64; 2]) -> Vec<f64> {
+        let [softening, further] = [[0.0, 1.0, 0.0, 1.0, 1.0], [0.0, 0.0, 0.0, 0.0, 1.0]];
+        let out = [&twist[..], &softening, &lean, &further].concat();
+        assert_eq!(out.len(), OF_JOINT.iter().map(|parameter| parameter.count).sum::<usize>());
+        out
+    }
+
     #[test]
     fn two_laws_of_one_joint_add_up_whatever_their_torques() {
         let mut subject = super::super::validate::testing::two_link_subject();
         let twist = |odd_rad, even_rad, torque_nm| FurtherTwist { odd_rad, even_rad, torque_nm };
         let (first, second) =
             (twist([1e-4, -2e-5], [3e-5, 1e-5], 20.0), twist([0.0, 4e-5], [0.0, 2e-5], 50.0));
-        apply(&[1e-4, -2e-5, 3e-5, 1e-5, 20.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], "j1", &mut subject);
-        apply(&[0.0, 4e-5, 0.0, 2e-5, 50.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], "j1", &mut subject);
+        apply(&of_joint([1e-4, -2e-5, 3e-5, 1e-5, 20.0], [0.0; 2]), "j1", &mut subject);
+        apply(&of_joint([0.0, 4e-5, 0.0, 2e-5, 50.0], [0.0; 2]), "j1", &mut subject);
         let law = subject.structure.joint_mut("j1").expect("j1").law;
         for torque_nm in [-70.0, -10.0, 5.0, 60.0] {
             let sum = first.angle_rad(torque_nm) + second.angle_rad(torque_nm);
@@ -285,7 +293,7 @@ mod tests {
         use std::f64::consts::FRAC_PI_2;
         let share_of = |lean: [f64; 2]| {
             let mut subject = super::super::validate::testing::two_link_subject();
-            apply(&[0.0, 0.0, 0.0, 0.0, 1.0, lean[0], lean[1], 0.0, 0.0, 0.0, 0.0, 1.0], "j2", &mut subject);
+            apply(&of_joint([0.0, 0.0, 0.0, 0.0, 1.0], lean), "j2", &mut subject);
             subject.structure.gravity_m_s2 = 0.0;
             let chain = crate::mechanics::chain::Chain::new(&subject.structure, LinkModel::Rigid);
             // j1 has turned the upper arm into the direction of world y; the forearm hangs down from j2

@@ -1,9 +1,9 @@
 //! Finds the pieces of an arm by name, and the places where an effect can be.
 
 use super::kind::Place;
-use crate::arm::BASE;
 use crate::arm::prismatic::PrismaticPiece;
 use crate::arm::structure::{JointPiece, LinkPiece, Piece, Structure};
+use crate::arm::{BASE, PAYLOAD};
 
 impl Structure {
     /// Which kind of place the name `at` denotes in this arm. Only the kinds in `allowed` are tried; `None` if `at`
@@ -18,7 +18,7 @@ impl Structure {
             Place::Link => self.links().any(|l| l.name == at),
             Place::Tube => self.links().any(|l| l.name == at && l.beam.is_some()),
             Place::Base => false, // decided above
-            Place::Payload => at == "payload",
+            Place::Payload => at == PAYLOAD,
             Place::Arm => at == "arm",
             Place::Channel(channel) => at == channel.word(),
         })
@@ -32,7 +32,7 @@ impl Structure {
             Place::Link => self.links().map(|l| l.name.clone()).collect(),
             Place::Tube => self.links().filter(|l| l.beam.is_some()).map(|l| l.name.clone()).collect(),
             Place::Base => vec![BASE.into()],
-            Place::Payload => vec!["payload".into()],
+            Place::Payload => vec![PAYLOAD.into()],
             Place::Arm => vec!["arm".into()],
             Place::Channel(channel) => vec![channel.word().into()],
         }

@@ -53,7 +53,10 @@ impl Forward {
             let readings = there.predict(&there.coefficients(&further));
             readings.iter().zip(&here).map(|(there, here)| (there - here) / STEP_DEG).collect()
         };
-        let turns: Vec<(usize, f64)> = subject.turns_rad().into_iter().enumerate().collect();
+        // without any zero the list of turns is empty, and the slopes of all entries are known
+        let off = subject.turns_rad();
+        let turns: Vec<(usize, f64)> =
+            (0..entries.len()).map(|entry| (entry, off.get(entry).copied().unwrap_or(0.0))).collect();
         // the cell is new, so that setting it cannot fail
         let _ = out.turn_slopes.set(turns.into_par_iter().map(slope).collect());
         out
@@ -125,6 +128,9 @@ mod tests {
             let pairs = fast.iter().zip(by_mechanics(&campaign, subject)).zip(&prepared.data);
             pairs.map(|((fast, slow), datum)| ((fast - slow) / datum.sigma).abs()).fold(0.0, f64::max)
         };
+        // an arm that stands as stated keeps the slopes
+        let back = forward.turned(&campaign, &forward.nominal);
+        assert_eq!(back.turn_slopes.get(), forward.turn_slopes.get());
         for (joint, zero_rad) in [("j2", 0.05), ("j4", -0.08)] {
             let here = subject(joint, zero_rad);
             let turned = forward.turned(&campaign, &here);

@@ -3,10 +3,10 @@
 use super::calibration::Nuisance;
 use super::estimate::Estimate;
 use super::estimate::Interval;
-use crate::arm::BASE;
 use crate::arm::effect::entry::{Effect, word_of};
 use crate::arm::effect::kind::{Absent, Kind, Parameter, Place, Scale};
 use crate::arm::effect::subject::Subject;
+use crate::arm::{BASE, PAYLOAD};
 use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::prepared::Forward;
 
@@ -263,7 +263,7 @@ impl Candidate {
         let is_own = |place: &&Place| match place {
             Place::Channel(channel) => channel.word() == self.at,
             Place::Base => self.at == BASE && count(Place::Base) == self.numbers.len(),
-            Place::Payload => self.at == "payload" && count(Place::Payload) == self.numbers.len(),
+            Place::Payload => self.at == PAYLOAD && count(Place::Payload) == self.numbers.len(),
             _ => false,
         };
         let place = self.kind.places.iter().find(is_own).or(self.kind.places.first());

@@ -58,16 +58,16 @@ impl Positions {
 
     /// Derivatives of the mean compliance of the joint `at` with respect to the numbers of the model: the factor on its
     /// stiffness and its compliances.
-    fn mean_slopes(&self, fitted: &Fitted, at: &str) -> Vec<(usize, f64)> {
+    fn mean_slopes(&self, at: &str) -> Vec<(usize, f64)> {
         let Some([gear, _]) = self.nominal_rad_per_nm(at) else { return Vec::new() };
+        let fitted = &self.fitted;
         let all = self.stiffness_factors(fitted, at).map(|(_, factor, _)| factor).product::<f64>();
         // the compliance gear / factor is linear in the number, with the factor 1 / (1 - sd x)
         let factors = self.stiffness_factors(fitted, at).filter_map(|(k, factor, sd)| {
             let number = self.numbers.iter().position(|n| *n == Number::Tolerance(k))?;
             Some((number, -gear / all * sd * factor))
         });
-        let first = |i: usize| fitted.compliances[..i].iter().map(Vec::len).sum::<usize>();
-        let springs = self.springs_about(fitted, at).map(|i| (self.numbers.len() + first(i), 1.0));
+        let springs = self.springs_about(fitted, at).map(|i| (self.first_compliance(i), 1.0));
         factors.chain(springs).collect()
     }
 
@@ -130,7 +130,7 @@ impl Positions {
     pub(super) fn wave_parameters(&self, position: usize, waves: Waves) -> Vec<(String, Vec<Estimate>)> {
         let at = &self.candidates[self.fitted.effects[position]].at;
         let mean = self.mean_rad_per_nm(&self.fitted, at).unwrap_or_default();
-        let slopes = self.mean_slopes(&self.fitted, at);
+        let slopes = self.mean_slopes(at);
         let sizes = &self.fitted.compliances[position];
         let first = self.first_compliance(position);
         let own = sizes.chunks(2).enumerate().map(|(k, size)| {

@@ -13,7 +13,6 @@
 //! - a base that turned, an instrument that moved, or a payload that slipped, once in the course of the tests.
 
 use super::event_rows;
-use crate::arm::BASE;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::empirical::{
     BASE_TURN, BEND, EVEN_TWIST, GAIN, KIND, LEAN, LOAD_PLAY, LOAD_PLAY_TORQUE, MIX, NEIGHBOUR_TWIST,
@@ -21,6 +20,7 @@ use crate::arm::effect::empirical::{
 };
 use crate::arm::effect::kind::{Absent, Parameter, Scale};
 use crate::arm::structure::Piece;
+use crate::arm::{BASE, PAYLOAD};
 use crate::reconcile::fit::descent::{Fit, Weights};
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::candidates::largest_torque_nm;
@@ -47,8 +47,6 @@ const USUAL_ZERO_RAD: f64 = 0.01;
 const LARGEST_SLIP_M: f64 = 1.0;
 /// Usual displacement of a payload's centre of gravity \[m\].
 const USUAL_SLIP_M: f64 = 0.01;
-/// The word in files for the place of a payload.
-const PAYLOAD: &str = "payload";
 
 /// Places of parameters among the numbers of a law of a joint.
 const IN_JOINT: Joint = Joint {
@@ -61,6 +59,8 @@ const IN_JOINT: Joint = Joint {
     neighbours: 13,
     play: 15..17,
 };
+/// Places of the rows of the static and of the modal tests among the numbers of a slip of the payload.
+const ROWS_OF_SLIP: [usize; 2] = [3, 5];
 /// Places of parameters among the numbers of a law of displacements.
 const IN_STATIC: Static =
     Static { bend: 0..2, scale: 2, gain: 3..6, turn: 6..9, from_row: 9, mix: 10, shift: 16..19, file: 19 };
@@ -401,7 +401,7 @@ fn stated(candidate: &Candidate, index: usize) -> f64 {
 }
 
 fn slip_in_words(candidate: &Candidate) -> String {
-    let [statics, modal] = [3, 5].map(|index| stated(candidate, index));
+    let [statics, modal] = ROWS_OF_SLIP.map(|index| stated(candidate, index));
     let place = match modal {
         0.0 => format!("row {statics} of the static readings"),
         1.0 => format!("row {statics} of the static readings, and before the modal readings"),

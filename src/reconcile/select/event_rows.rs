@@ -14,6 +14,9 @@ const FEWEST_POSES: usize = 2;
 /// Smallest number of rows that must come before an event that may be between any two rows, and of rows that must come
 /// after it.
 const FEWEST_ROWS: usize = 4;
+/// Part of the sum of the curvatures that is added to each, so that the equations are regular where a parameter does not
+/// show.
+const RIDGE: f64 = 1e-9;
 /// Displacement of a payload's centre of gravity by which its influence on the readings is computed \[m\].
 const SLIP_STEP_M: f64 = 1e-3;
 
@@ -59,9 +62,12 @@ impl Equations {
         Self { curvature: self.curvature + other.curvature, gradient: self.gradient + other.gradient }
     }
 
-    /// Fall of chi-squared if the parameters are fitted; 0 if the readings do not determine them.
+    /// Fall of chi-squared if the parameters are fitted; 0 if the readings show none of them. A parameter that no reading
+    /// shows, such as a direction that was not measured, stays at zero.
     fn gain(&self) -> f64 {
-        self.curvature.cholesky().map_or(0.0, |factor| self.gradient.dot(&factor.solve(&self.gradient)))
+        let ridge = Matrix3::from_diagonal_element(RIDGE * self.curvature.trace());
+        let factor = (self.curvature + ridge).cholesky();
+        factor.map_or(0.0, |factor| self.gradient.dot(&factor.solve(&self.gradient)))
     }
 }
 
@@ -105,7 +111,8 @@ impl Influence {
     }
 
     /// The row of `rows`, which rise, from which on the event explains most of the residuals of the readings `range`; the
-    /// last of those that explain as much. `known` are the normal equations of other readings.
+    /// last of those that explain as much. `known` are the normal equations of other readings. `None` if it explains nothing
+    /// from any row on.
     fn best_row(&self, range: &Range<usize>, rows: &[usize], known: &Equations) -> Option<usize> {
         let mut before = self.by_row(range);
         let mut after = *known;
@@ -113,7 +120,7 @@ impl Influence {
         for row in rows.iter().rev() {
             after = before.split_off(row).values().fold(after, |sum, own| sum.plus(own));
             let gain = after.gain();
-            if best.is_none_or(|(largest, _)| gain > largest) {
+            if gain > best.map_or(0.0, |(largest, _)| largest) {
                 best = Some((gain, *row));
             }
         }
@@ -144,10 +151,7 @@ pub(super) fn of_shift(forward: &Forward, fit: &Fit, weights: &Weights, rows: &[
         forward.data.iter().map(|datum| datum.component).enumerate().map(moved).collect()
     };
     let influence = Influence::new(forward, fit, weights, [0, 1, 2].map(column));
-    // a component that nobody measured cannot be fitted
-    let mut known = Equations::none();
-    (0..3).for_each(|k| known.curvature[(k, k)] = 1e-12);
-    influence.best_row(&statics, rows, &known)
+    influence.best_row(&statics, rows, &Equations::none())
 }
 
 /// The rows, in the static and in the modal tests, before which a slip of the payload would explain most of the residuals
@@ -170,4 +174,29 @@ pub(super) fn of_slip(forward: &Forward, fit: &Fit, weights: &Weights) -> [Optio
     let starts: Vec<usize> = starts.into_iter().chain([usize::MAX]).collect();
     let in_modal = influence.best_row(&modal, &starts, &known).filter(|row| *row != usize::MAX);
     [Some(row), in_modal]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Twelve readings of one direction, which shows two of the three parameters. From the sixth row on they are off.
+    #[test]
+    fn the_row_is_found_where_one_parameter_does_not_show() {
+        let readings = 0..12;
+        let lever = |i: usize| 1.0 + 0.1 * (i % 4) as f64;
+        let influence = Influence {
+            columns: [
+                readings.clone().map(lever).collect(),
+                readings.clone().map(|i| 2.0 - lever(i % 3)).collect(),
+                vec![0.0; 12],
+            ],
+            residuals: readings.clone().map(|i| if i >= 6 { 3.0 * lever(i) } else { 0.0 }).collect(),
+            rows: readings.clone().collect(),
+        };
+        let rows: Vec<usize> = (2..11).collect();
+        assert_eq!(influence.best_row(&readings, &rows, &Equations::none()), Some(6));
+        let silent = Influence { residuals: vec![0.0; 12], ..influence };
+        assert_eq!(silent.best_row(&readings, &rows, &Equations::none()), None);
+    }
 }

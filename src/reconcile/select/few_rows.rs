@@ -256,7 +256,8 @@ fn is_as_stiff(subject: &Subject, nominal: &Subject) -> bool {
     };
     let base =
         |s: &Subject| (s.structure.base_tilt_rad_per_nm, s.structure.base_lift, s.structure.base_frame);
-    let soft = |setup: &Setup| (setup.servo_rad_per_nm.clone(), setup.softening.clone());
+    let soft =
+        |setup: &Setup| (setup.servo_rad_per_nm.clone(), setup.softening.clone(), setup.load_twists.clone());
     let of_tests = |s: &Subject| (s.setups.each_ref().map(soft), s.warming);
     base(subject) == base(nominal) && of_tests(subject) == of_tests(nominal) && pieces.into_iter().all(same)
 }
