@@ -5,8 +5,8 @@
 //! links, for example, give the weights longer levers. This part is small, of the order of deflection over reach. But it is
 //! the only derivative of some combinations of numbers, such as the height of the base and the length of the first link
 //! along a vertical axis. The readings leave these combinations as uncertain as their priors, and the compliances share in
-//! it. The intervals therefore use these derivatives too. The missing part is a difference quotient. Waves of the
-//! transmission and turns between sessions are left out: they are small turns that other readings determine.
+//! it. The intervals therefore use these derivatives too. The missing part is a difference quotient. Those
+//! with respect to waves of the transmission and to turns between sessions are left out.
 
 use super::fitted::{Fitted, Sample};
 use super::kinematics::{Geometry, Number, rate};
