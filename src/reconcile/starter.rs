@@ -1,7 +1,7 @@
 //! The files of a new campaign: `campaign.json` with a note on each block, tables with column names and no rows, and
-//! `STARTER.md`. This page explains what to measure and what each column means.
+//! `STARTER.md`, which explains what to measure and what each column means.
 
-use super::positions::outcome::FEWEST as FEWEST_POSITIONS;
+use super::positions::outcome::FEWEST_POSITIONS;
 use super::readings::source::{DEFAULT_FILES, columns_for};
 use super::select::few_rows::FEWEST_ROWS;
 use super::verdict::too_little::FEWEST_POSES;

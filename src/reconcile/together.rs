@@ -1,9 +1,9 @@
 //! Reconciles all kinds of readings of a campaign together.
 //!
 //! Absolute positions determine the geometry of the arm. The analysis of displacements, frequencies and bench readings
-//! takes the geometry as given. These readings determine compliances under various loads, while positions are loaded by
-//! little more than gravity. Each of the two kinds is therefore reconciled with the findings of the other. Records
-//! against time are judged separately.
+//! takes the geometry as given. These readings determine compliances under various loads, while absolute positions are
+//! mostly measured under gravity alone. Each of the two kinds is therefore reconciled with the findings of the other.
+//! Records against time are judged separately.
 
 use super::analysis;
 use super::fit::held_out::HeldOut;
@@ -12,7 +12,7 @@ use super::model::direct::subject;
 use super::model::estimate::Finding;
 use super::positions;
 use super::positions::analysis::Calibrated;
-use super::positions::outcome::FEWEST;
+use super::positions::outcome::FEWEST_POSITIONS;
 use super::positions::setups;
 use super::readings::campaign::Campaign;
 use super::records;
@@ -63,8 +63,8 @@ fn beyond_the_file(campaign: &Campaign, outcome: &Outcome) -> Option<String> {
     })
 }
 
-/// Reconciles the records against time and all other readings, as far as the campaign has them, and joins the two
-/// outcomes.
+/// Reconciles the records against time, and separately all other readings, and joins the two outcomes. Either kind may
+/// be missing.
 fn of_all(campaign: &Campaign) -> Outcome {
     let has_others = campaign.has_displacements() || !campaign.positions.is_empty();
     if campaign.records.is_empty() {
@@ -89,8 +89,9 @@ fn of_readings(campaign: &Campaign) -> Outcome {
         outcome.reasons.push(format!("{what}: they are left out"));
         outcome
     };
-    if count < FEWEST {
-        let what = format!("{count} positions are too few to calibrate an arm, give at least {FEWEST}");
+    if count < FEWEST_POSITIONS {
+        let what =
+            format!("{count} positions are too few to calibrate an arm, give at least {FEWEST_POSITIONS}");
         return left_out(analysis::reconcile(&loaded), what);
     }
     if rows < FEWEST_ROWS {
@@ -104,8 +105,9 @@ fn of_readings(campaign: &Campaign) -> Outcome {
 /// and `placed` is the campaign with positions alone.
 ///
 /// First, the geometry of the arm is calibrated from the positions, and effects are found from the other readings. If
-/// these are explained, effects that the positions still need are sought on the arm with the effects found. If not,
-/// effects are sought from the positions alone, and the other readings are reconciled again on the arm with these.
+/// the other readings are explained, their effects are added to the arm, and the positions are searched for further
+/// effects. If not, effects are sought from the positions alone, and the other readings are reconciled again with the
+/// arm that has these effects.
 fn of_both(campaign: &Campaign, mut loaded: Campaign, placed: Campaign) -> Outcome {
     let calibrated = positions::analysis::calibrated(&placed);
     loaded.arm = calibrated.arms[0].clone();

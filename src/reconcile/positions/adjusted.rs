@@ -1,5 +1,5 @@
-//! What the calibration of positions adjusted, in words and numbers: factors within tolerance, effects on the nominal
-//! deflection, zeros of joints that moved far, and joints that stood still.
+//! Reports what the calibration of positions adjusted: factors within tolerance, effects on the nominal deflection,
+//! joint zeros that moved far, and joints that hardly turned.
 
 use super::analysis::Positions;
 use super::dependence::{Dependence, parameter};
@@ -11,24 +11,25 @@ use crate::reconcile::verdict::correct::calibrate;
 use crate::reconcile::verdict::outcome::Calibrated;
 
 /// A zero that moved by more than this many standard deviations of its prior is mentioned.
-const FAR: f64 = 3.0;
+const FAR_SIGMAS: f64 = 3.0;
 /// A joint whose angles in all poses differ by less than this hardly turns \[rad\].
 const STILL_RAD: f64 = 0.09;
 
 impl Positions {
-    /// Value of a number of the model that belongs to a dependence, with its 95 % interval.
+    /// The factor, or the parameter of the effect, that the dependence `dependence` has in the fit, with its 95 %
+    /// interval. `number` is the fitted number of this dependence. `None` if the model does not have this number.
     fn estimate(&self, fitted: &Fitted, number: &Number, dependence: &Dependence) -> Option<Estimate> {
         let at = self.numbers.iter().position(|n| n == number)?;
         let (x, sd) = (*fitted.moved.get(at)?, fitted.number_deviations[at]);
         let ends =
             [x - Z_95 * sd, x + Z_95 * sd].map(|end| Some(dependence.value(end)).filter(|e| e.is_finite()));
-        // a factor falls where the reciprocal that is fitted rises
+        // a parameter whose reciprocal is fitted falls as the fitted number rises
         let falls = dependence.value(1.0) < dependence.value(0.5);
         let [low, high] = if falls { [ends[1], ends[0]] } else { ends };
         Some(Estimate { value: dependence.value(x), low, high })
     }
 
-    /// The factors within tolerance that were calibrated, as in the fit `fitted`.
+    /// The calibrated factors within tolerance, with the values of the fit `fitted`.
     pub(super) fn adjusted(&self, fitted: &Fitted) -> Vec<Calibrated> {
         let of = |(k, dependence): (usize, &Dependence)| {
             let Dependence::Tolerance(calibration, _) = dependence else { return None };
@@ -43,7 +44,8 @@ impl Positions {
         self.dependences.iter().enumerate().filter_map(of).collect()
     }
 
-    /// For each factor of [`adjusted`](Self::adjusted), the standard deviation of its logarithm by the tolerance.
+    /// For each factor of [`adjusted`](Self::adjusted), the standard deviation of its logarithm that follows from the
+    /// tolerance.
     pub(super) fn tolerances(&self) -> impl Iterator<Item = f64> + '_ {
         self.dependences.iter().filter_map(|dependence| match dependence {
             Dependence::Tolerance(_, sd) => Some(*sd),
@@ -60,7 +62,7 @@ impl Positions {
         }
     }
 
-    /// The finding of effect number `k` on the nominal deflection.
+    /// The finding for the dependence with index `k`, which must be an effect on the nominal deflection.
     pub(super) fn dependence_finding(&self, k: usize) -> Finding {
         let dependence = &self.dependences[k];
         let (kind, at) = dependence.effect().expect("only effects are named");
@@ -73,12 +75,12 @@ impl Positions {
         }
     }
 
-    /// A sentence on the zeros of joints that calibration moved further than zeros usually are off; `None` if there are
-    /// none.
+    /// A sentence on the joint zeros that calibration moved by more than [`FAR_SIGMAS`] standard deviations of their
+    /// prior; `None` if there are none.
     pub(super) fn moved_zeros(&self) -> Option<String> {
         let numbers = self.numbers.iter().zip(&self.fitted.moved);
         let far = numbers.filter_map(|(number, moved)| match number {
-            Number::Zero(j) if moved.abs() > FAR * number.prior() => {
+            Number::Zero(j) if moved.abs() > FAR_SIGMAS * number.prior() => {
                 Some(format!("that of {} by {:+.2} deg", self.tree.driven[*j], moved.to_degrees()))
             }
             _ => None,

@@ -16,10 +16,11 @@ const ROUGH_M: f64 = 0.3;
 /// fewer, a fit from several attitudes is used.
 const FEWEST_WHOLE: usize = 10;
 
-/// Finds a first placement of the arms, one by one, and stores it in `geometry`. If an arm has a link of unknown
-/// mounting, the part outboard of the first such link is put into each of the 24 attitudes of a cube. A fit starts from
-/// each of these attitudes, and the best fit is used. Otherwise the rigid motion is used that brings the nominal points
-/// nearest to the measured ones.
+/// Finds a first placement of the base, which all arms share, and a first attitude of links of unknown mounting. Stores
+/// both in `geometry`. If an arm has a link of unknown mounting, the part outboard of the first such link is put into
+/// each of the 24 attitudes of a cube. A fit starts from each of these attitudes, and the best fit is used. If the
+/// first arms have no such link, the base is placed by the rigid motion that brings the nominal points nearest to the
+/// measured ones.
 pub(crate) fn align(tree: &Tree, spec: &PositionsSpec, samples: &[Sample], geometry: &mut Geometry) {
     let mounts = mount_numbers(tree, spec);
     let mut placed = false;
@@ -107,8 +108,9 @@ fn cube() -> Vec<Rotation3<f64>> {
     out
 }
 
-/// Finds the rotation and the origin of the base that move the nominal points onto the measured ones (Kabsch), and
-/// stores them in `geometry`. The computation is repeated with the 90 % of points that lie nearest.
+/// Finds the rotation and the origin of the base that move the nominal points onto the measured ones (Kabsch's
+/// algorithm), and stores them in `geometry`. The computation is repeated with the 90 % of points that have the
+/// smallest errors. If too few positions have all three coordinates, [`nearest_attitude`] is used instead.
 pub(super) fn nearest_motion(samples: &[&Sample], geometry: &mut Geometry) {
     let whole: Vec<&Sample> = samples.iter().copied().filter(|s| s.readings() == 3).collect();
     if whole.len() < FEWEST_WHOLE.min(samples.len()) {
@@ -137,7 +139,7 @@ pub(super) fn nearest_motion(samples: &[&Sample], geometry: &mut Geometry) {
         let error = |i: usize| (samples[i].measured_m - origin - rotation * nominal[i]).norm();
         let mut order: Vec<usize> = (0..samples.len()).collect();
         order.sort_by(|&i, &j| error(i).total_cmp(&error(j)));
-        // the 10 % that lie farthest are left out, because gross errors must not turn the arm
+        // the 10 % with the largest errors are left out, because gross errors must not turn the arm
         order.truncate((samples.len() * 9).div_ceil(10).max(4));
         kept = order;
     }

@@ -28,8 +28,8 @@ use serde_json::{Value, json};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Number of folds among which the poses are divided. One fold is held out at a time.
-const HANDS: usize = 5;
+/// Number of folds into which the poses are divided. One fold is held out at a time.
+const FOLDS: usize = 5;
 /// A position is a gross error if its residual is more than this many times the fitted scale of the position errors.
 const GROSS: f64 = 8.0;
 /// Scale of the position errors that is assumed before anything is fitted \[m\].
@@ -82,7 +82,7 @@ pub(crate) struct Positions {
 pub(crate) struct Calibrated {
     /// The arms with calibrated geometry. Everything else about them is unchanged.
     pub arms: Vec<Arm>,
-    /// The same arms as files have them: with the drift of the instrument, if it drifted.
+    /// The same arms, as they are written to files: with the effect `drift` if the instrument drifted.
     pub written: Vec<Arm>,
     /// The table of position errors, one row for each stage of the calibration.
     pub stages: Vec<Stage>,
@@ -114,22 +114,22 @@ pub(crate) fn calibrated(campaign: &Campaign) -> Calibrated {
 /// Analyses the positions of a campaign: calibrates the geometry, finds sessions, and finds compliances and
 /// transmission errors.
 ///
-/// A compliance can look like a change of session if the rows were taken in one configuration of the arm after the
-/// other. So each session is examined again once the effects are in the model. It is suspect if it is no longer worth
-/// its price, or if it begins at a row where something else changes. The analysis is then repeated with two other sets
-/// of sessions: those that remain, and those that are needed in addition to effects that were found without sessions.
-/// The model with the best score is kept.
+/// If the rows were taken in one configuration of the arm after the other, a compliance can look like a change of
+/// session. So each session is examined again once the effects are in the model. A session is suspect if it is no
+/// longer worth its price, or if it begins at a row where something else changes. If some session is suspect, the
+/// analysis is repeated with two other sets of sessions: those that remain, and those that are needed in addition to
+/// effects that were found without sessions. The model with the best score is kept.
 pub(crate) fn analyze(campaign: &Campaign) -> Positions {
     let mut calibrated = Positions::in_declared_sessions(campaign);
     let mut found = calibrated.clone();
-    calibrated.forget_deflections();
+    calibrated.drop_deflections();
     found.tell_sessions(campaign);
     found.rigid = found.fitted.clone();
     found.find_effects(campaign);
     let mut reviewed = found.clone();
     let is_other = reviewed.drop_needless_sessions();
     if is_other || found.has_doubtful_session(campaign) {
-        calibrated.recall_deflections(campaign);
+        calibrated.recompute_deflections(campaign);
         let mut late = calibrated.clone();
         late.find_effects(campaign);
         late.tell_sessions(campaign);
@@ -184,7 +184,7 @@ impl Positions {
         }
     }
 
-    /// Calibrates the geometry, first without sessions and then with those that campaign.json declares.
+    /// Calibrates the geometry, first without sessions and then with the sessions that campaign.json declares.
     fn in_declared_sessions(campaign: &Campaign) -> Self {
         let mut found = Self::new(campaign);
         found.calibrate(campaign);
@@ -231,7 +231,7 @@ impl Positions {
     }
 
     /// A copy of this calibrated model in which sessions begin at `boundaries` (what was moved, and the first row of
-    /// the later session). It has a drift if it `drifts`. The effects that are then found are added.
+    /// the later session). The copy has a drift if `drifts` is true. The effects that are then found are added to it.
     fn with_sessions(&self, campaign: &Campaign, (boundaries, drifts): &(Vec<(Kind, usize)>, bool)) -> Self {
         let mut out = self.clone();
         if *drifts {
@@ -247,12 +247,12 @@ impl Positions {
         out
     }
 
-    /// Adds compliances and transmission errors to the model, one by one, as long as one is worth its price. In a long campaign
-    /// it begins with those that a part of the rows shows.
+    /// Adds compliances and transmission errors to the model, one by one, as long as one is worth its price. In a long
+    /// campaign, the effects that a subset of the rows shows are added first.
     pub(super) fn find_effects(&mut self, campaign: &Campaign) {
         self.take_screened(campaign);
-        // Effects that follow a joint's angle can hide a compliance, so the search starts again after each one that is
-        // found.
+        // Effects that follow a joint's angle can hide a compliance, so the search for compliances starts again after
+        // each such effect that is found.
         loop {
             for class in CLASSES {
                 while self.add(campaign, class) {}
@@ -299,7 +299,7 @@ impl Positions {
         }
     }
 
-    /// This model without those of its numbers for which `is_gone` is true. It is not fitted again.
+    /// This model without the numbers for which `is_gone` is true. The other numbers are not fitted again.
     pub(super) fn without_numbers(&self, is_gone: impl Fn(&Number) -> bool) -> Self {
         let mut out = self.clone();
         let kept = self.numbers.iter().zip(&self.fitted.moved).filter(|(number, _)| !is_gone(number));
@@ -361,11 +361,11 @@ impl Positions {
     /// fold of poses.
     fn held_out_errors_m(&self, fitted: &Fitted) -> Vec<Vector3<f64>> {
         let mut out = vec![Vector3::zeros(); self.samples.len()];
-        let hands: Vec<Vec<(usize, Vector3<f64>)>> = (0..HANDS)
+        let folds: Vec<Vec<(usize, Vector3<f64>)>> = (0..FOLDS)
             .into_par_iter()
-            .map(|hand| {
+            .map(|fold| {
                 let (own, rest): (Vec<(usize, &Sample)>, Vec<_>) =
-                    self.samples.iter().enumerate().partition(|(_, s)| s.group % HANDS == hand);
+                    self.samples.iter().enumerate().partition(|(_, s)| s.group % FOLDS == fold);
                 let rest: Vec<&Sample> = rest.into_iter().map(|(_, s)| s).collect();
                 let again = match self.is_long() {
                     true => fit_within(STEPS_TO_FOLD, &rest, &self.numbers, &fitted.effects, fitted),
@@ -374,27 +374,27 @@ impl Positions {
                 own.into_iter().map(|(i, s)| (i, again.error(s))).collect()
             })
             .collect();
-        hands.into_iter().flatten().for_each(|(i, error)| out[i] = error);
+        folds.into_iter().flatten().for_each(|(i, error)| out[i] = error);
         out
     }
 }
 
 /// Weight of each coordinate's error in a fit, from 0.1 to 1; 0 if the coordinate was not measured. The weight is the
-/// smallest standard deviation of the row over that of the coordinate. It is at least a tenth, because the error of
-/// the model is often larger than that of the instrument.
+/// smallest standard deviation in the row, divided by the standard deviation of the coordinate. It is at least a tenth,
+/// because the error of the model is often larger than that of the instrument.
 fn precision(measured: &Components) -> Vector3<f64> {
     const LEAST: f64 = 0.1;
     let best_mm = measured.iter().flatten().map(|read| read.sigma_mm).fold(f64::INFINITY, f64::min);
     Vector3::from(measured.map(|read| read.map_or(0.0, |read| (best_mm / read.sigma_mm).max(LEAST))))
 }
 
-/// Number of the last row of the file, from 0, at least 1.
+/// Number of the last row of the file, counted from 0, and at least 1 because row numbers are divided by it.
 pub(super) fn last_row(campaign: &Campaign) -> f64 {
     campaign.positions.iter().map(|row| row.row).max().unwrap_or_default().max(1) as f64
 }
 
-/// The measured positions as samples: each with the deflection of its point under gravity and with what each of the
-/// `candidates` would add. `points` lists the measured points on the tools.
+/// The measured positions as samples. Each has the deflection of its point under gravity, and the deflection that each
+/// of the `candidates` would add. `points` lists the measured points on the tools.
 pub(super) fn samples(
     campaign: &Campaign,
     tree: &Tree,
@@ -428,7 +428,7 @@ pub(super) fn samples(
         .collect()
 }
 
-/// The number of the pose of each row, counted over different poses.
+/// For each row, the index of its pose among the different poses of the campaign.
 fn groups(campaign: &Campaign) -> Vec<usize> {
     let mut poses: HashMap<Vec<u64>, usize> = HashMap::new();
     let group = |row: &PositionRow| {

@@ -1,9 +1,9 @@
-//! Competing laws of a joint's angle: errors that are no transmission error once and twice a turn, but look like one where
-//! the joint turns through a part of a turn only.
-//! A sensor with a wrong scale makes an error in proportion to the angle. The error of a cable or a magnet is a smooth
-//! curve. That of a gear's teeth repeats many times a turn. Each law is tried in the place of a transmission error that
-//! was found, with the model made linear. If a law fits clearly better, the transmission error is not named. If it fits
-//! as well with fewer numbers, the verdict says so.
+//! Competing laws of a joint's angle: errors of the angle that are not a transmission error once and twice a turn, but
+//! look like one if the joint turns through only a part of a turn. A sensor with a wrong scale makes an error in
+//! proportion to the angle. The error of a cable or a magnet is a smooth function of the angle. The error of a gear's
+//! teeth repeats many times a turn. Each law is tried in the place of a transmission error that was found, and fitted
+//! with all other numbers of the model. If a law fits clearly better, the transmission error is not named. If the law
+//! fits as well with fewer numbers, the verdict says so.
 
 use super::analysis::Positions;
 use super::fit::fit;
@@ -18,16 +18,16 @@ use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// Orders of the waves that are tried: how often they repeat in a turn.
+/// Orders of the waves that are tried: the number of periods per turn.
 const ORDERS: std::ops::RangeInclusive<usize> = 3..=12;
-/// Number of Gauss-Newton steps with which a law is fitted. The errors of angles are small, so that two are enough.
+/// Number of Gauss-Newton steps with which a law is fitted. The errors of angles are small, so a few steps are enough.
 const STEPS: usize = 3;
 
 /// A law of a joint's angle: an error of the angle as a sum of functions of the angle.
 enum AngleLaw {
     /// A polynomial of the angle, up to this power. It has no constant term, because the zero is calibrated already.
     Powers(i32),
-    /// A sine and a cosine that repeat so often in a turn.
+    /// A sine and a cosine with this number of periods per turn.
     Waves(usize),
 }
 
@@ -58,15 +58,16 @@ impl AngleLaw {
     }
 }
 
-/// A law of a joint's angle that competes with a transmission error that was found: it fits in the place of the error.
+/// A law of a joint's angle that competes with a transmission error that was found: the law is fitted in place of the
+/// transmission error.
 pub(super) struct Competing {
     /// Name of the joint.
     joint: String,
     /// The law in words.
     words: String,
-    /// Rise of the logarithm of the likelihood over that of the model with the transmission error.
+    /// Logarithm of the likelihood with the law, less the logarithm of the likelihood with the transmission error.
     likelihood_gain: f64,
-    /// This rise, less the price of the law, plus the price of the transmission error.
+    /// `likelihood_gain`, less the price of the law, plus the price of the transmission error.
     score_gain: f64,
 }
 
@@ -147,8 +148,8 @@ impl Positions {
     }
 
     /// The logarithm of the likelihood of this model with the law `law` of the angle of the driven joint `joint`. The
-    /// amplitudes are found by Gauss-Newton steps, with all other numbers of the model fitted again after each. `None` if
-    /// the positions do not determine them.
+    /// amplitudes are found by Gauss-Newton steps, with all other numbers of the model fitted again after each. `None`
+    /// if the positions do not determine the amplitudes.
     fn with_angle_law(&self, joint: usize, law: &AngleLaw) -> Option<f64> {
         let mut samples = self.samples.clone();
         let mut sizes = vec![0.0; law.at(0.0).len()];

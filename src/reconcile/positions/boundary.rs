@@ -11,7 +11,7 @@ use crate::reconcile::fit::stats::median;
 use crate::reconcile::readings::campaign::Campaign;
 use rayon::prelude::*;
 
-/// A jump of the measured points of at least this size is too large to come from a reflector that was put back
+/// A jump of the measured points of at least this size is larger than a reflector that is taken off and put back causes
 /// \[mm\].
 const LARGE_MM: f64 = 1.0;
 /// The evidence for a session is strong if its gain exceeds its price by at least this much \[ln of the likelihood\].
@@ -141,7 +141,7 @@ impl Positions {
         (!apart.is_empty()).then(|| apart.join(", "))
     }
 
-    /// Whether some undeclared session begins at a row where something else changes, as `changes_at` finds it.
+    /// Whether some undeclared session begins at a row where something else changes, according to `changes_at`.
     pub(crate) fn has_doubtful_session(&self, campaign: &Campaign) -> bool {
         self.sessions.iter().any(|b| !b.declared && self.changes_at(campaign, b).is_some())
     }
@@ -169,7 +169,8 @@ impl Positions {
         out
     }
 
-    /// What a session is worth beyond its price \[ln of the likelihood\], and the model without its boundary.
+    /// The telling part of the rise of the logarithm of the likelihood that a session brings, less the price of the
+    /// session \[ln of the likelihood\]; and the model without its boundary.
     fn session_gain(&self, boundary: &Boundary) -> (f64, Self) {
         let without = self.without_session(boundary);
         let own = boundary.earlier;
@@ -211,7 +212,7 @@ impl Positions {
         let firsts: Vec<_> = kinds.par_iter().map(|&moved| without.best_first(moved, &whole)).collect();
         let best = kinds.iter().zip(firsts).filter_map(|(&moved, first)| {
             let (first, gain) = first?;
-            // a robust fit gains at most a few times what the linearized one promises
+            // a robust fit raises the likelihood by at most a few times the rise that the linearized model expects
             (3.0 * gain > missing).then(|| without.split(moved, first, kinds.len()))
         });
         let as_good = best.filter(|s| s.fitted.ln_likelihood > self.fitted.ln_likelihood - tie);

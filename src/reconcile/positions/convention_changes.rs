@@ -1,6 +1,6 @@
-//! Conventions by which a file of positions can differ from the one that is asked for: another unit, a frame whose axes are
-//! swapped or left-handed, joint angles of another sign or zero, columns of two joints that are swapped, and columns that
-//! have the sum or the difference of two joints' angles.
+//! The ways in which the convention of a file of positions can differ from the required one: another unit, a frame
+//! whose axes are swapped or left-handed, joint angles of another sign or zero, columns of two joints that are swapped,
+//! and columns that have the sum or the difference of two joints' angles.
 
 use super::fitted::Sample;
 use super::kinematics::Pose;
@@ -27,12 +27,12 @@ pub(super) enum Change {
     LeftHanded,
     /// The angles of the joint with this index have the other sign.
     Sign(usize),
-    /// The zero of the joint with this index is elsewhere: this angle \[rad\] is added to the joint's angles.
+    /// The zero of the joint with this index is elsewhere: this angle \[rad\] must be added to the joint's angles.
     Zero(usize, f64),
     /// The columns of the joints with these two indices are swapped.
     Swapped(usize, usize),
-    /// The joint with the first index turns by its column plus that of the second, as if their axes were coupled. With
-    /// `true` the second column is subtracted.
+    /// The joint with the first index turns by the sum of its own column and the column of the second joint, as if
+    /// their axes were coupled. With `true` it turns by the difference of the two columns.
     Coupled(usize, usize, bool),
 }
 
@@ -110,7 +110,8 @@ impl Change {
 }
 
 /// The changes of convention that are tried for the arms of `tree`. If the base placement is free, the fit itself turns
-/// the frame, so only a left-handed frame is tried. A zero that other free numbers replace is not tried.
+/// the frame, so only a left-handed frame is tried. The zero of a joint is not tried if other free numbers turn the arm
+/// in the same way.
 pub(super) fn changes(spec: &PositionsSpec, tree: &Tree) -> Vec<Change> {
     let joints = tree.driven.len();
     let mut out: Vec<Change> = (0..UNITS.len()).map(Change::Unit).collect();

@@ -25,14 +25,14 @@ use crate::report::number::significant;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-/// Other conventions are tested if the scale of the position errors after calibration exceeds the declared standard
-/// deviation by this factor.
-const FAR: f64 = 5.0;
+/// Other conventions are tested if the scale of the position errors after calibration is at least this multiple of the
+/// declared standard deviation.
+const SUSPECT_RATIO: f64 = 5.0;
 /// A convention is reported if the errors after calibration with it are smaller than with the file as it is by at
 /// least this factor.
 const TELLING: f64 = 5.0;
-/// Limit for a file that needs a geometry far from nominal. A convention with which no link or axis moves far is
-/// reported if its errors, relative to the spread of the positions, are larger by no more than this factor.
+/// Limit for a file that fits only with a geometry far from nominal. A convention with which no link or axis moves far
+/// is then reported, unless its errors, relative to the spread of the positions, are larger by more than this factor.
 const AS_GOOD: f64 = 2.0;
 /// A change of convention is kept in the search if it lowers the errors of the quick fit to less than this fraction
 /// of those without it.
@@ -64,9 +64,9 @@ struct Tried {
     made: Vec<Change>,
     /// Scale of the position errors \[m\].
     scale_m: f64,
-    /// The number by which sets of changes are compared: the smaller, the better. It is the scale of the errors over
-    /// the spread of the positions, so it does not depend on the unit. A calibration that is improbable before the
-    /// readings has a larger number, and so has (by the factor [`AS_GOOD`]) one whose geometry is far from nominal.
+    /// The number by which sets of changes are compared: the smaller, the better. It is the scale of the errors divided
+    /// by the spread of the positions, so it does not depend on the unit. The number is larger for a calibration with a
+    /// low prior probability. It is also larger, by the factor [`AS_GOOD`], for a geometry far from nominal.
     judged: f64,
     /// Whether a link or an axis moved further than its prior expects.
     is_far: bool,
@@ -81,7 +81,7 @@ impl Tried {
 
 impl Asked<'_> {
     /// A fit of the positions with the `changes` of convention made, and the numbers of the geometry that were fitted:
-    /// those in the first `groups` lists of `self.groups`. About `most` samples (measured positions) are used.
+    /// those in the first `groups` lists of `self.groups`. At most `most` samples (measured positions) are used.
     fn fitted(&self, changes: &[Change], groups: usize, most: usize) -> (Fitted, Vec<Number>) {
         let step = self.samples.len().div_ceil(most).max(1);
         let written = self.samples.iter().step_by(step).cloned();
@@ -108,7 +108,7 @@ impl Asked<'_> {
 
     fn full(&self, made: Vec<Change>) -> Tried {
         let (fitted, numbers) = self.fitted(&made, self.groups.len(), LONG);
-        // a scale that is smaller by the factor e raises the logarithm of the likelihood by one for every reading
+        // for each reading, the logarithm of the likelihood rises by one if the scale falls by the factor e
         let part = fitted.improbability(&numbers) / readings(&self.samples).max(1) as f64;
         let is_far = fitted.is_far_from_nominal(&numbers);
         let far = if is_far { AS_GOOD } else { 1.0 };
@@ -116,9 +116,10 @@ impl Asked<'_> {
         Tried { made, scale_m: fitted.scale_m, judged, is_far }
     }
 
-    /// Greedy search: adds to the changes `made` those of `all` that lower the errors of the quick fit, and returns
-    /// the set after every step. If no single change helps and the fit is still far off, pairs are tried. Pairs are
-    /// needed where two parallel joints both turn the other way, because either change alone is no better.
+    /// Greedy search: in each step, adds to the changes `made` the change of `all` that lowers the errors of the quick
+    /// fit most. Returns the set after every step, and last the final set without unnecessary changes. If no single
+    /// change helps and the fit is still far off, pairs are tried. Pairs are needed where two parallel joints both turn
+    /// the other way, because either change alone is no better.
     fn search(&self, all: &[Change], mut made: Vec<Change>) -> Vec<Vec<Change>> {
         let mut steps = vec![made.clone()];
         let singles: Vec<Vec<Change>> = all.iter().map(|change| vec![*change]).collect();
@@ -137,8 +138,8 @@ impl Asked<'_> {
         steps
     }
 
-    /// Of the sets of changes `found`, the smallest of those that fit about as well as the best, without the changes
-    /// that it does not need. `None` if `found` is empty.
+    /// The smallest of those sets of changes in `found` that fit about as well as the best. Changes that it does not
+    /// need are removed. `None` if `found` is empty.
     fn simplest(&self, found: Vec<Vec<Change>>) -> Option<Tried> {
         let tried: Vec<Tried> = found.into_par_iter().map(|made| self.full(made)).collect();
         let best = tried.iter().min_by(|a, b| a.judged.total_cmp(&b.judged))?;
@@ -173,9 +174,9 @@ impl Asked<'_> {
         tried.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// The unit in which the positions spread about as much as those of the nominal arm; `None` for millimetres. The
-    /// spread shows the unit even if the file differs in other conventions too. The unit must be known first, because
-    /// no other change can be judged in a wrong unit.
+    /// The unit in which the spread of the positions is about the same as for the nominal arm; `None` for millimetres.
+    /// The spread shows the unit even if the file differs in other conventions too. The unit must be known first,
+    /// because no other change can be judged in a wrong unit.
     fn unit_by_size(&self) -> Option<Change> {
         let nominal = Fitted::rigid(self.nominal.clone(), ROUGH_M);
         // a coordinate that was not measured is zero in both
@@ -213,7 +214,7 @@ impl Asked<'_> {
     }
 
     /// The set `known`, and sets of changes that cannot be told from it: one of its changes is replaced by one of
-    /// `all`, and the positions fit about as well. They are in the order of their errors.
+    /// `all`, and the positions fit about as well. The set with the smallest errors comes first.
     fn equals(&self, all: &[Change], known: Tried) -> Vec<Tried> {
         let quick_m = self.quick_m(&known.made);
         let others = || all.iter().filter(|change| !known.made.iter().any(|m| m.replaces(change)));
@@ -244,14 +245,14 @@ fn spread_m(points_m: impl Iterator<Item = Vector3<f64>>) -> f64 {
 }
 
 impl Positions {
-    /// Sentence on a convention by which the positions of the file would fit far better, or with a geometry that is
-    /// near the arm file's. `None` if calibration fits the positions well enough, if a mounting is unknown (too many
-    /// combinations), or if no convention is found.
+    /// Sentence on a convention with which the positions of the file would fit far better, or would fit with a geometry
+    /// near that in the arm file. `None` if calibration fits the positions well enough, if a mounting is unknown (too
+    /// many combinations), or if no convention is found.
     pub(super) fn other_convention(&self, campaign: &Campaign) -> Option<String> {
         let spec = &campaign.statement.positions;
         let declared_mm: f64 = campaign.positions.iter().map(|row| row.sigma_mm()).sum();
         let declared_m = 1e-3 * declared_mm / campaign.positions.len().max(1) as f64;
-        let is_off = self.rigid.scale_m >= FAR * declared_m || self.has_far_geometry();
+        let is_off = self.rigid.scale_m >= SUSPECT_RATIO * declared_m || self.has_far_geometry();
         // each attitude of an unknown mounting would have to be tried with each convention
         if !is_off || !spec.mounts.is_empty() {
             return None;
@@ -277,8 +278,8 @@ impl Positions {
         self.told(&asked, &equals)
     }
 
-    /// The sentence on the conventions `equals`, which fit about equally well, the best first. `None` if the positions do
-    /// not fit far better with the best one, or are far off with it too.
+    /// The sentence on the conventions `equals`, which fit about equally well, the best first. `None` if the positions
+    /// do not fit far better with the best one, or are far off with this one too.
     fn told(&self, asked: &Asked, equals: &[Tried]) -> Option<String> {
         let best = equals.first()?;
         let ratio = self.rigid.scale_m / best.scale_m;

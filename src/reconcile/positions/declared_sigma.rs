@@ -5,13 +5,14 @@ use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::median::median;
 use crate::report::number::significant;
 
-/// Standard deviations that are this many times larger than the scatter are reported. The specification of an instrument
-/// is rarely more careful, and the next unit is 25.4 times away or further.
+/// Declared standard deviations are reported if they are more than this many times larger than the scatter. The
+/// specification of an instrument is rarely so cautious, and numbers in micrometres would be a thousand times too
+/// large.
 const FAR_LARGER: f64 = 10.0;
 
 impl Positions {
     /// Sentence on declared standard deviations that are far larger than the scatter of the positions. `None` if they
-    /// are not. Standard deviations that are too small are the test for lack of fit.
+    /// are not. Standard deviations that are too small are found by the test for lack of fit.
     pub(crate) fn too_careful(&self, campaign: &Campaign) -> Option<String> {
         let declared_mm = median(campaign.positions.iter().map(|row| row.sigma_mm()).collect());
         sentence(declared_mm, 1e3 * self.fitted.scale_m)

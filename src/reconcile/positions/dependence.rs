@@ -15,12 +15,12 @@ const LEAST: f64 = 0.02;
 /// Something on which the nominal deflection depends, described by one number that is 0 for the nominal arm.
 #[derive(Clone)]
 pub(crate) enum Dependence {
-    /// A factor on a property of the arm, and the standard deviation of its logarithm by the tolerance. The number is
-    /// the relative increase of a mass, or the relative decrease of a compliance, in these standard deviations. For
-    /// small changes it is also the change of the logarithm.
+    /// A factor on a property of the arm, and the standard deviation of its logarithm that follows from the tolerance.
+    /// The number is the relative increase of a mass, or the relative decrease of a compliance, in these standard
+    /// deviations. For small changes it is also the change of the logarithm.
     Tolerance(Calibration, f64),
-    /// An effect of one parameter at a place. The number is the parameter, or its reciprocal less 1 if the parameter is
-    /// a factor.
+    /// An effect with one parameter, and its place. The number is the parameter, or its reciprocal less 1 if the
+    /// parameter is a factor.
     Effect(&'static Kind, String),
 }
 
@@ -38,7 +38,8 @@ impl Dependence {
     /// The factor, or the parameter of the effect, for the number `x`.
     pub(crate) fn value(&self, x: f64) -> f64 {
         match self {
-            // the deflection, which is linear in the number, follows a compliance or a mass
+            // the deflection is linear in the number, so the number is proportional to the change of a compliance or a
+            // mass
             Self::Tolerance(Calibration::Mass(_), sd) => (1.0 + sd * x).max(LEAST),
             Self::Tolerance(_, sd) => 1.0 / (1.0 - sd * x).max(LEAST),
             Self::Effect(kind, _) if parameter(kind).scale == Scale::Reciprocal => 1.0 / (1.0 + x),
@@ -97,8 +98,8 @@ pub(super) fn dependences(campaign: &Campaign) -> Vec<Dependence> {
     out
 }
 
-/// Adds a factor within tolerance to the list. If the list has it, because arms share a part or a material, the links of
-/// the material are united.
+/// Adds a factor within tolerance to the list. If the list already has the factor, because arms share a part or a
+/// material, the links of the material are added to its links.
 fn add_tolerance(list: &mut Vec<Dependence>, calibration: Calibration, sd: f64) {
     let known = list.iter_mut().find_map(|one| match one {
         Dependence::Tolerance(known, _) if known.name() == calibration.name() => Some(known),

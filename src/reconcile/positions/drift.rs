@@ -1,4 +1,5 @@
-//! A steady drift of the instrument in the course of the rows: it looks like a few sessions, but needs fewer numbers.
+//! A steady drift of the instrument in the course of the rows. A drift looks like a few sessions, but has fewer
+//! numbers.
 
 use super::analysis::{Positions, last_row};
 use super::fit::fit;
@@ -14,8 +15,8 @@ use nalgebra::Vector3;
 
 /// Name of the effect.
 pub(super) const EFFECT: &str = drift::KIND.name;
-/// A drift is named only if it is worth this much beyond its price \[ln of the likelihood\], as a session for which the
-/// evidence is strong.
+/// A drift is named only if its gain exceeds its price by at least this much \[ln of the likelihood\]. The evidence for
+/// a session is called strong at the same excess.
 const STRONG: f64 = 10.0;
 
 /// The calibrated numbers of a drift.
@@ -63,7 +64,8 @@ impl Positions {
         out
     }
 
-    /// Drops the drift if it is no longer worth its price, with effects in the model. Returns whether it was dropped.
+    /// Drops the drift if it is no longer worth its price once effects are in the model. Returns whether it was
+    /// dropped.
     pub(super) fn drop_needless_drift(&mut self) -> bool {
         if !self.drifts() {
             return false;
@@ -85,7 +87,7 @@ impl Positions {
             .then(|| "the measured points move in the order of the readings, but not steadily".into())
     }
 
-    /// Price of the drift of the model \[ln of the likelihood\]; 0 if there is none.
+    /// Price of a drift \[ln of the likelihood\], whether or not the model has one.
     pub(super) fn drift_price(&self) -> f64 {
         self.price(numbers().count(), 1)
     }

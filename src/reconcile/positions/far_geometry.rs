@@ -1,15 +1,15 @@
-//! Links and axes that calibration moved much further than its prior expects. A geometry that is free can absorb a wrong
-//! unit of the positions, or lengths of another arm.
+//! Links and axes that calibration moved much further than their priors expect. A free geometry can absorb a wrong unit
+//! of the positions, or the lengths of another arm.
 
 use super::analysis::Positions;
 use super::fitted::Fitted;
 use super::kinematics::Number;
 use crate::report::number::significant;
 
-/// A link's vector or a joint's axis that moved by more than this many standard deviations of its prior moved far.
-/// On the measured arms of docs/positions.md none moves by more than one. In a simulated campaign with parallel axes
-/// and a transmission error, the error tilted the axes by 2.9.
-const FAR: f64 = 3.0;
+/// A link's vector or a joint's axis has moved far if it moved by more than this many standard deviations of its prior.
+/// On the measured arms of docs/positions.md none moves by more than one. In a simulated campaign with parallel axes, a
+/// transmission error tilted the axes by 2.9 standard deviations.
+const FAR_SIGMAS: f64 = 3.0;
 
 /// A link or a joint whose vector or axis was moved by calibration.
 struct Move {
@@ -22,7 +22,8 @@ struct Move {
     is_link: bool,
 }
 
-/// The vectors and axes that moved far, if the `numbers` of the geometry moved by `moved`, in the order of the pieces.
+/// The vectors and axes that moved far if the `numbers` of the geometry moved by `moved`. They are in the order of the
+/// numbers.
 fn far_moves(numbers: &[Number], moved: &[f64]) -> Vec<Move> {
     let mut all: Vec<Move> = Vec::new();
     for (number, by) in numbers.iter().zip(moved) {
@@ -36,12 +37,12 @@ fn far_moves(numbers: &[Number], moved: &[f64]) -> Vec<Move> {
             None => all.push(Move { piece, by: by.abs(), prior: number.prior(), is_link }),
         }
     }
-    all.retain(|m| m.by > FAR * m.prior);
+    all.retain(|m| m.by > FAR_SIGMAS * m.prior);
     all
 }
 
 impl Fitted {
-    /// Whether calibration moved a link's vector or a joint's axis far, if `numbers` are those that were fitted.
+    /// Whether calibration moved a link's vector or a joint's axis far. `numbers` are the numbers that were fitted.
     pub(super) fn is_far_from_nominal(&self, numbers: &[Number]) -> bool {
         !far_moves(numbers, &self.moved).is_empty()
     }

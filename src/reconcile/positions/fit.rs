@@ -3,26 +3,29 @@
 //! The standard deviation of a laser tracker is far below the errors of any model of an arm, so the scale `s` of the
 //! errors is fitted too. The error `r` of each position follows a Student distribution with ν = 4 degrees of freedom,
 //! in as many dimensions `d` as coordinates were measured. Its weight `(ν+d)/(ν + |r|²/s²)` reduces the influence of
-//! gross errors. A compliance `c` moves the point by `c P ĝ`, where `P` is the displacement of the point at unit
-//! compliance per direction of gravity `ĝ` ([`loads`](super::loads)).
+//! gross errors. A compliance `c` moves the point by `c P ĝ`. Here `ĝ` is the direction of gravity, and the columns of
+//! the 3x3 matrix `P` are the displacements of the point at unit compliance under gravity along each axis
+//! ([`loads`](super::loads)).
 
 use super::fitted::{Fitted, Miss, NU, Sample, misses, weight};
 use super::kinematics::Number;
 use super::rows::normal_of_fit;
-use super::springs::{Best, best_springs};
+use super::springs::{ConstrainedStep, best_springs};
 
 const MOST_STEPS: usize = 40;
-/// Number of steps from a fit to all rows of a long campaign to the fit without one fold of the rows. The two fits
-/// differ by less than the standard deviations, and each step leaves a small part of the difference.
+/// Number of Gauss-Newton steps of a fit without one fold of the rows of a long campaign. It starts from the fit to all
+/// rows. The two fits differ by less than the standard deviations, and each step leaves a small part of the difference.
 pub(super) const STEPS_TO_FOLD: usize = 3;
-/// Largest number of times that a step is halved because the fit is worse after it.
+/// Largest number of lengths that are tried for a step. Each is half of the length before it, at which the fit was
+/// worse.
 const MOST_HALVINGS: i32 = 10;
 /// Largest rotation of a frame (base or mounting) in one step of a fit \[rad\].
 const MOST_TURN_RAD: f64 = 0.3;
 
 impl Fitted {
-    /// The model after the fraction `part` of a step from this model to `goal`: the geometry's `numbers` change by
-    /// this fraction of `step`, and the compliances go this fraction of the way to those of `goal`.
+    /// The model after the fraction `part` of a step from this model to `goal`: the geometry's `numbers` change by this
+    /// fraction of `step`, and the compliances go this fraction of the way to the compliances of `goal`. Also returns
+    /// the errors of the samples with the new model.
     fn towards(
         &self,
         goal: &Self,
@@ -61,7 +64,8 @@ impl Fitted {
         self.ln_likelihood - self.improbability(numbers)
     }
 
-    /// By how much the prior probability of the geometry's `numbers` is lower than that of the nominal geometry \[ln\].
+    /// Natural logarithm of the prior probability of the nominal geometry, less that of the geometry's present
+    /// `numbers`.
     pub(super) fn improbability(&self, numbers: &[Number]) -> f64 {
         numbers.iter().zip(&self.moved).map(|(n, moved)| 0.5 * (moved / n.prior()).powi(2)).sum()
     }
@@ -93,14 +97,14 @@ pub(super) fn fit_within(
     here.deviations = here.compliances.iter().map(|own| vec![f64::INFINITY; own.len()]).collect();
     here.effects = effects.to_vec();
     here.moved.resize(numbers.len(), 0.0);
-    // kept for comparison: the start can be better than where a first bad step leads
+    // kept for comparison: the start can be better than the model to which a bad first step leads
     let (begin, first_misses) = here.clone().judged(samples);
     // the errors of the samples with the present model
     let mut misses = first_misses.clone();
     // The first step is taken even if it makes the fit worse, because the quadratic approximation is poor far from the
     // best fit.
     let mut merit = f64::NEG_INFINITY;
-    let mut last: Option<Best> = None;
+    let mut last: Option<ConstrainedStep> = None;
     for _ in 0..steps {
         let before = here.clone();
         let best = step(samples, &misses, numbers, &mut here);
@@ -135,9 +139,9 @@ pub(super) fn fit_within(
 }
 
 /// Sandwich factor: square root of the variance factor of the M-estimator (Huber, Robust Statistics, ch. 7). Standard
-/// deviations from the weighted curvature take the weights as known and are too small by this factor. It is the root
-/// mean square of the weighted errors `misses`, divided by their mean slope and corrected for `free`, the number of
-/// free parameters.
+/// deviations from the weighted curvature take the weights as known and are too small by this factor. It is the root of
+/// the mean weight times the mean square of the weighted errors `misses`, divided by the mean slope of the weighted
+/// error. The mean square is corrected for `free`, the number of free parameters.
 fn sandwich_factor(misses: &[Miss], scale_m: f64, free: usize) -> f64 {
     let count: f64 = misses.iter().map(|miss| miss.readings).sum();
     let (mut weights, mut squares, mut slopes) = (0.0, 0.0, 0.0);
@@ -152,8 +156,8 @@ fn sandwich_factor(misses: &[Miss], scale_m: f64, free: usize) -> f64 {
     (weights * squares * count / left).sqrt() / slopes
 }
 
-/// Shortens the step of the geometry's `numbers` if it would turn a frame by more than [`MOST_TURN_RAD`], too far for
-/// a linearization.
+/// Shortens the step of the geometry's `numbers` if it would turn a frame by more than [`MOST_TURN_RAD`]. The
+/// linearization does not hold for a larger rotation.
 fn shortened(numbers: &[Number], step: Vec<f64>) -> Vec<f64> {
     let turns = numbers.iter().zip(&step).filter(|(n, _)| n.turns()).map(|(_, s)| s.abs());
     let part = (MOST_TURN_RAD / turns.fold(0.0, f64::max)).min(1.0);
@@ -186,7 +190,12 @@ pub(crate) fn ln_likelihood(misses: &[Miss], scale_m: f64) -> f64 {
 /// Takes one weighted Gauss-Newton step from the model `here`, with which the samples have the errors `misses`. Sets its
 /// compliances to the best values that are physically possible, and returns the step of all numbers and compliances;
 /// `None` if the equations are singular.
-fn step(samples: &[&Sample], misses: &[Miss], numbers: &[Number], here: &mut Fitted) -> Option<Best> {
+fn step(
+    samples: &[&Sample],
+    misses: &[Miss],
+    numbers: &[Number],
+    here: &mut Fitted,
+) -> Option<ConstrainedStep> {
     let normal = normal_of_fit(samples, misses, numbers, here);
     let best = best_springs(&normal, numbers.len(), &here.compliances)?;
     let compliances = here.compliances.iter_mut().flatten();

@@ -1,7 +1,7 @@
 //! A measured position with the effect of gravity on it, and a fitted model of geometry and compliances.
 
-use super::eight_places::EightPlacer;
 use super::kinematics::{Geometry, Placer, Placing, Pose};
+use super::kinematics_lanes::EightPlacer;
 use super::loads::Deflection;
 use crate::mechanics::lanes::LANES;
 use nalgebra::Vector3;
@@ -40,7 +40,7 @@ pub(crate) struct Sample {
     /// Change of the known deflection per unit of each dependence of it, in the level frame \[m\].
     pub nominal_m: Arc<[Vector3<f64>]>,
     /// Difference between the true displacement by the whole model and the linear one, in the level frame \[m\]. It was
-    /// computed with the model before the present fit.
+    /// computed with the model of the fit before the present one.
     pub second_order_m: Vector3<f64>,
 }
 
@@ -143,8 +143,8 @@ impl Fitted {
         sample.error(self.predicted_m(sample))
     }
 
-    /// Displacement of the measured point of a sample by gravity, in the level frame \[m\]: the known deflection,
-    /// plus the deflection by the effects of the model, plus what the linear statics lack.
+    /// Displacement of the measured point of a sample by gravity, in the level frame \[m\]: the known deflection, plus
+    /// the deflection by the effects of the model, plus the part that linear statics lack.
     pub(crate) fn displacement(&self, sample: &Sample) -> Vector3<f64> {
         let gravity = &self.geometry.gravity;
         let [by_x, by_y] = &sample.deflection.known_slopes_m;
@@ -165,7 +165,8 @@ impl Fitted {
 
     /// Derivative of the elastic displacement by the effects of the model with respect to a tilt of gravity along the
     /// axis with index `axis` \[m/rad\]. Play is left out: it is closed in most poses, and its displacement then does
-    /// not change with the tilt. So is a base that lifts off: most of its moment does not change with the tilt.
+    /// not change with the tilt. A base that lifts off is left out too, because most of its moment does not change with
+    /// the tilt.
     pub(crate) fn leaning(&self, sample: &Sample, axis: usize) -> Vector3<f64> {
         let effects = self.effects.iter().zip(&self.compliances);
         let springs = effects.filter(|(effect, _)| sample.deflection.is_proportional(**effect));
@@ -190,7 +191,7 @@ pub(crate) fn misses(samples: &[&Sample], fitted: &Fitted) -> Vec<Miss> {
     out
 }
 
-/// The errors of those samples that have the indices `portion`, arm by arm.
+/// The errors of the samples with the indices `portion`, in this order. The indices are sorted by arm.
 fn misses_of(portion: &[usize], samples: &[&Sample], fitted: &Fitted) -> Vec<Miss> {
     let mut placer = EightPlacer::new(&fitted.geometry);
     let from_level = fitted.geometry.level_to_instrument();
@@ -206,7 +207,8 @@ fn misses_of(portion: &[usize], samples: &[&Sample], fitted: &Fitted) -> Vec<Mis
     out
 }
 
-/// The indices of the samples arm by arm, because the numbers of one arm move no point of another.
+/// The indices of the samples, sorted by arm. Blocks of samples of one arm have many columns of zeros, because the
+/// numbers of one arm move no point of another.
 pub(crate) fn by_arm(samples: &[&Sample]) -> Vec<usize> {
     let mut out: Vec<usize> = (0..samples.len()).collect();
     out.sort_by_key(|&i| samples[i].arm);

@@ -1,12 +1,13 @@
 //! How the deflection of a point changes with the calibrated geometry.
 //!
-//! A fit moves the geometry while the deflection stays as it was computed for the geometry of the fit before; after each
-//! stage it is computed again. So the steps of a fit lack a part of the derivatives with respect to the geometry: longer
-//! links, for example, give the weights longer levers. This part is small, of the order of deflection over reach. But it is
-//! the only derivative of some combinations of numbers, such as the height of the base and the length of the first link
-//! along a vertical axis. The readings leave these combinations as uncertain as their priors, and the compliances share in
-//! it. The intervals therefore use these derivatives too. The missing part is a difference quotient. Those
-//! with respect to waves of the transmission and to turns between sessions are left out.
+//! A fit changes the geometry, while the deflection stays as it was computed for the geometry of the fit before. It is
+//! computed again after each stage. So the steps of a fit lack a part of the derivatives with respect to the geometry:
+//! longer links, for example, give the weights longer levers. This part is small, of the order of deflection over
+//! reach. But it is the only derivative of some combinations of numbers, such as the height of the base and the length
+//! of the first link along a vertical axis. Without it the readings would leave these combinations as uncertain as
+//! their priors, and this would widen the intervals of the compliances. The intervals therefore use these derivatives
+//! too. The missing part is computed as a difference quotient, and for rotations of the base from the displacement. It
+//! is left out for transmission errors and for rotations between sessions.
 
 use super::fitted::{Fitted, Sample};
 use super::kinematics::{Geometry, Number, rate};
@@ -28,7 +29,7 @@ pub(super) struct GeometrySlopes<'a> {
     here: Loads<'a>,
     /// The numbers on which the deflection depends.
     moved: Vec<Moved<'a>>,
-    /// The index of each number that turns the base, and the axis about which it does.
+    /// The index of each number that turns the base, and the instrument axis about which it turns the base.
     turned: Vec<(usize, usize)>,
 }
 
@@ -39,14 +40,14 @@ struct Moved<'a> {
     number: &'a Number,
     /// The arms after the step.
     loads: Loads<'a>,
-    /// For each arm, whether the number belongs to it. Numbers of another arm move only its weights on the trunk, which is
-    /// neglected.
+    /// For each arm, whether the number belongs to it. A number of another arm only moves the weights of that arm on
+    /// the trunk. This influence is neglected.
     is_of_arm: Vec<bool>,
 }
 
 impl<'a> GeometrySlopes<'a> {
-    /// Prepares the derivatives for the samples of `rows`. `arms` are the arms with a given geometry, and with everything that
-    /// deflects by the fit `fitted` as part of them.
+    /// Prepares the derivatives for the samples of `rows`. `arms` prepares the arms for a given geometry. They must
+    /// contain everything that deflects according to the fit `fitted`.
     pub(super) fn new(
         rows: &'a [PositionRow],
         numbers: &'a [Number],
@@ -118,7 +119,7 @@ fn moves_weights(number: &Number) -> bool {
 }
 
 impl GeometrySlopes<'_> {
-    /// Indices of the numbers whose derivatives lack a part.
+    /// Indices of the numbers whose derivatives lack a part in a fit.
     pub(super) fn incomplete(&self) -> Vec<usize> {
         self.moved.iter().map(|moved| moved.index).chain(self.turned.iter().map(|(k, _)| *k)).collect()
     }
@@ -129,7 +130,7 @@ impl GeometrySlopes<'_> {
         let row = &self.rows[sample.index];
         let here_m = self.here.known_m(row, sample.point);
         columns.extend(self.moved.iter().map(|moved| match moved.number {
-            // the offset of another point moves nothing of this one
+            // the offset of another point does not move this point
             Number::Tool(point, _) if *point != sample.point => Vector3::zeros(),
             _ if !moved.is_of_arm[sample.arm] => Vector3::zeros(),
             _ => self.from_level * (moved.loads.known_m(row, sample.point) - here_m) / STEP,
@@ -139,9 +140,9 @@ impl GeometrySlopes<'_> {
     }
 }
 
-/// The equations `parts` with the whole derivatives with respect to the numbers `incomplete`. The last columns of `parts` are
-/// the missing parts of the derivatives. With the other columns `A` and their missing parts `Δ`, the curvature becomes
-/// `(A + Δ)ᵀ (A + Δ)`.
+/// The normal equations `parts`, completed with the missing parts of the derivatives with respect to the numbers
+/// `incomplete`. The last columns of `parts` are the missing parts of the derivatives. With the other columns `A` and
+/// their missing parts `Δ`, the curvature becomes `(A + Δ)ᵀ (A + Δ)`.
 pub(super) fn completed(parts: &Normal, incomplete: &[usize]) -> Normal {
     let known = parts.gradient.len() - incomplete.len();
     let mut gradient = parts.gradient.rows(0, known).into_owned();
@@ -224,11 +225,11 @@ mod tests {
         let mut columns = Vec::new();
         slopes.push(&sample, &mut columns);
         let expected = [
-            // twice as much for each part of the length
+            // the deflection is proportional to the square of the length
             Vector3::new(0.0, 0.0, -2.0 * down_m / 0.8),
-            // a lever that points down by q moves back by sin q of it; the cosines change nothing
+            // a lever that points down by q deflects backwards by sin q of the deflection; to first order cos q is 1
             Vector3::new(-down_m, 0.0, 0.0),
-            // the base turns what has moved
+            // a rotation of the base also turns the displacement
             Vector3::new(-down_m, 0.0, 0.0),
         ];
         for (k, (found, expected)) in columns.iter().zip(expected).enumerate() {

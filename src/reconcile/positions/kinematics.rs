@@ -40,7 +40,7 @@ pub(crate) enum Number {
     Ratio(usize, usize),
     /// Factor within tolerance on a stiffness, modulus or mass \[standard deviations\]: index of the dependence.
     Tolerance(usize),
-    /// Effect on the nominal deflection, in the unit of its parameter: index of the dependence.
+    /// Effect on the nominal deflection, in the unit that its dependence defines: index of the dependence.
     Effect(usize),
     /// Horizontal component of the unit vector of gravity \[-\]: index of the axis, x or y, of the level frame.
     Gravity(usize),
@@ -72,7 +72,7 @@ impl Number {
         }
     }
 
-    /// Whether the number acts through the deflection or the row of a point, and not through the geometry of its arm.
+    /// Whether the number acts through a point's deflection or its row in the file, and not through the geometry.
     pub(crate) fn acts_beyond_geometry(&self) -> bool {
         matches!(self, Number::Gravity(_) | Number::Tolerance(_) | Number::Effect(_) | Number::Drift(_))
     }
@@ -129,9 +129,9 @@ fn is_mount(piece: &Piece, spec: &PositionsSpec) -> bool {
     matches!(piece, Piece::Link(link) if spec.mounts.contains(&link.name))
 }
 
-/// The numbers of axes and link vectors between the first and the last joint. Of consecutive links only the last
-/// vector is free, because the readings depend on their sum only. Links before the first joint and after the last are
-/// covered by base placement and tool offsets.
+/// The numbers of all joint axes and coupling ratios, and of the link vectors between the first and the last joint. If
+/// links follow one another, only the last vector is free, because the readings depend on the sum of their vectors
+/// only. Links before the first joint and after the last are covered by base placement and tool offsets.
 fn geometry_numbers(tree: &Tree, spec: &PositionsSpec) -> Vec<Number> {
     let is_joint = |i: usize| matches!(tree.pieces[i], Piece::Joint(_));
     let between = |i: usize| {
@@ -318,7 +318,7 @@ impl Geometry {
     /// frame.
     ///
     /// A joint's zero and a mounting turn everything outboard, so later axes and vectors turn with them. Returns the
-    /// rotation of the arm's last frame that results from this.
+    /// resulting rotation of the arm's last frame.
     pub(crate) fn write_into(&self, index: usize, arm: &mut Arm) -> Rotation3<f64> {
         let mut turned = self.level;
         for (&i, element) in self.arms[index].iter().zip(&mut arm.chain) {
@@ -421,7 +421,7 @@ impl Placer<'_> {
                 Some(angle) => last.rotation *= turn(&own.axes[i], self.sin_cos(angle, asked.pose)),
                 None => {
                     last.at_m += last.rotation * own.vectors_m[i];
-                    // skips the product for the usual link, which is no mounting
+                    // most links have a known mounting, and the product can be skipped
                     if own.mounts[i] != Rotation3::identity() {
                         last.rotation *= own.mounts[i];
                     }
@@ -434,9 +434,9 @@ impl Placer<'_> {
         own.origin_m + turn * (self.at_m - own.origin_m) + shift_m
     }
 
-    /// Sine and cosine of the joint angle `angle` in a pose. For a joint without transmission error they follow, by
-    /// the addition theorems, from the sines and cosines of its commanded angle and of its zero. Computing sines
-    /// would otherwise take most of the time.
+    /// Sine and cosine of the joint angle `angle` in a pose. For a driven joint without transmission error they follow,
+    /// by the addition theorems, from those of its stated angle and of its zero. Computing sines would otherwise take
+    /// most of the time.
     fn sin_cos(&self, angle: &JointAngle, pose: &Pose) -> (f64, f64) {
         match angle {
             JointAngle::Driven(j) if self.geometry.transmissions_rad[*j] == EVEN => {
@@ -450,7 +450,7 @@ impl Placer<'_> {
     /// Appends to `out` the derivatives of the position of the point that was placed last with respect to the
     /// `numbers` of the geometry, one vector per number \[m per unit of the number\]. `asked` must be this point.
     pub(crate) fn slopes(&self, asked: Placing, numbers: &[Number], out: &mut Vec<Vector3<f64>>) {
-        // the rotation of a session is small, so its derivatives are those of the first session
+        // the rotation of a session is small, so the derivatives of the first session are used for all sessions
         out.extend(numbers.iter().map(|number| self.slope(number, asked)));
     }
 
@@ -545,7 +545,7 @@ fn across(axis: &Unit<Vector3<f64>>) -> [Unit<Vector3<f64>>; 2] {
 
 #[cfg(test)]
 pub(crate) mod testing {
-    /// An arm with two driven joints and a passive one that both turn.
+    /// An arm with two driven joints, and a passive joint whose angle depends on both.
     pub(crate) const ARM: &str = r#"{"name": "a", "chain": [
         {"type": "joint", "name": "j1", "axis": [0, 0, 1], "stiffness_nm_per_rad": null},
         {"type": "link", "name": "l1", "vector_m": [0.1, 0, 0.4]},

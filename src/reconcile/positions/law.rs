@@ -1,4 +1,4 @@
-//! The laws that compete with effects: displacements that are linear in their amplitudes.
+//! The laws that compete with effects in absolute positions. The displacement by a law is linear in its amplitudes.
 
 use super::analysis::Positions;
 use super::fitted::Sample;
@@ -8,21 +8,24 @@ use crate::arm::effect::kind::ElasticRotation;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::{Rotation3, Vector3};
 
-/// Torques at which a bent torsion curve has half of its first slope, as fractions of the largest torque on the joint.
+/// Torques `T_b` of a bent torsion curve, as fractions of the largest torque on the joint. At `T_b` the twist is half
+/// of what the slope at zero torque gives.
 const BEND_PARTS: [f64; 3] = [0.1, 0.3, 1.0];
 /// A joint that turns by less than this from one row to the next stands still \[deg\].
 const STILL_DEG: f64 = 1e-6;
 
-/// A law that is no effect in positions.
+/// A competing law: physics that is no effect in absolute positions.
 #[derive(Debug, Clone)]
 pub(super) enum Law {
-    /// The joint of this candidate (a spring) turns by `c T / (1 + |T|/T_b)`, with this torque `T_b` \[N m\].
+    /// The joint of the candidate (a spring) with this index turns by `c T / (1 + |T|/T_b)`, with this torque `T_b`
+    /// \[N m\].
     Bent(usize, f64),
-    /// The joint of this candidate turns by a polynomial of third order of its torque.
+    /// The joint of the candidate with this index turns by `a x + b x|x| + c x³`. Here `x` is the torque on it, divided
+    /// by this largest torque \[N m\].
     Curve(usize, f64),
-    /// The driven joint lags by a constant angle against the direction in which it turned into the pose.
+    /// The driven joint with this index lags by a constant angle behind the direction in which it turned into the pose.
     Direction(usize),
-    /// The zero of the driven joint changes in the course of the rows.
+    /// The zero of the driven joint with this index changes in the course of the rows.
     Zero(usize),
     /// The tool bends under the payload, differently along the three axes of the last frame.
     Tool,
@@ -43,14 +46,14 @@ impl Law {
         }
     }
 
-    /// Number of parameters of the law: its amplitudes, and the torque that is chosen.
+    /// Number of parameters of the law: its amplitudes, and the torque `T_b` of a bent torsion curve.
     pub(super) fn numbers(&self) -> usize {
         self.count() + usize::from(matches!(self, Law::Bent(..)))
     }
 }
 
-/// The laws that are tried, and what they depend on.
-pub(super) struct Book<'a> {
+/// The laws that are tried, and the data from which their columns are computed.
+pub(super) struct CompetingLaws<'a> {
     found: &'a Positions,
     /// All laws.
     pub laws: Vec<Law>,
@@ -59,8 +62,8 @@ pub(super) struct Book<'a> {
     payloads_kg: Vec<f64>,
 }
 
-impl<'a> Book<'a> {
-    /// The laws that the campaign can show.
+impl<'a> CompetingLaws<'a> {
+    /// Lists the laws that the readings of the campaign can show.
     pub(super) fn new(found: &'a Positions, campaign: &Campaign) -> Self {
         let payloads_kg: Vec<f64> = campaign.positions.iter().map(|row| row.payload.mass_kg).collect();
         let mut laws = Vec::new();
@@ -151,8 +154,8 @@ impl<'a> Book<'a> {
     }
 }
 
-/// For each row and driven joint, the direction in which the joint turned into the pose, since the row before it. A joint that
-/// stood still keeps its direction.
+/// For each row and driven joint, the direction in which the joint turned from the pose of the row before into this
+/// one: 1, -1, or 0 before its first motion. A joint that stood still keeps its direction.
 fn directions(campaign: &Campaign) -> Vec<Vec<f64>> {
     let joints = campaign.positions.first().map_or(0, |row| row.pose_deg.len());
     let mut now = vec![0.0; joints];

@@ -1,16 +1,17 @@
-//! Competing laws: physics that is no effect in positions, but looks like effects that were found, or like sessions.
+//! Tries competing laws: physics that is no effect in absolute positions, but looks like effects that were found, or
+//! like sessions.
 //!
-//! A joint whose torsion curve is bent looks like lost motion, and so does a backlash that follows the direction of
-//! motion. A tool that bends looks like two joints that are compliant. A tracker that drifts, or links that grow, look
-//! like sessions. Each law is linear in its amplitudes. It is tried in the place of every single effect that was found,
-//! of all effects at one place, of all effects together, and of the sessions that nobody declared. If a law fits
-//! clearly better, these effects and sessions are not named, and the verdict says which law fits better.
+//! A bent torsion curve of a joint looks like lost motion, and so does a backlash that follows the direction of motion.
+//! A tool that bends looks like two compliant joints. A tracker that drifts, or links that grow, look like sessions.
+//! Each law is linear in its amplitudes. It is tried in the place of every single effect that was found, of all effects
+//! at one place, of all effects together, and of the sessions that nobody declared. If a law fits clearly better, these
+//! effects and sessions are not named, and the verdict says which law fits better.
 
 use super::analysis::Positions;
 use super::fit::fit;
 use super::fitted::{Fitted, Sample};
 use super::kinematics::{Number, Placer};
-use super::law::{Book, Law};
+use super::law::{CompetingLaws, Law};
 use super::normal::Factor;
 use super::rows::normal;
 use super::search::{FULL_FITS, TIE};
@@ -19,7 +20,8 @@ use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-/// Number of Gauss-Newton steps with which a law is fitted. The displacements by a law are small, so that a few are enough.
+/// Number of Gauss-Newton steps with which a law is fitted. The displacements by a law are small, so a few steps are
+/// enough.
 const STEPS: usize = 3;
 
 /// Effects and sessions of the model in whose place a law is tried.
@@ -51,7 +53,7 @@ impl Group {
         Self { dependences: vec![k], ..Self::default() }
     }
 
-    /// This group and another one together.
+    /// This group with the effects of another one added.
     fn with(mut self, other: &Self) -> Self {
         self.effects.extend(&other.effects);
         self.transmissions.extend(&other.transmissions);
@@ -64,12 +66,16 @@ impl Positions {
     /// Why effects or sessions of the model must not be named, as a sentence: a law that is no effect explains the positions
     /// better. `None` if no law does.
     pub(super) fn better_law(&self, campaign: &Campaign) -> Option<String> {
-        let book = Book::new(self, campaign);
+        let competing = CompetingLaws::new(self, campaign);
         let better = self.groups().into_iter().filter_map(|group| {
-            let (law, gain) = self.best_law(&book, &group)?;
+            let (law, gain) = self.best_law(&competing, &group)?;
             Some((
                 gain,
-                format!("{} explains the positions better than {}", book.words(&law), self.words(&group)),
+                format!(
+                    "{} explains the positions better than {}",
+                    competing.words(&law),
+                    self.words(&group)
+                ),
             ))
         });
         better.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, sentence)| sentence)
@@ -141,40 +147,44 @@ impl Positions {
         Self { fitted, ..out }
     }
 
-    /// The law that fits best in the place of a group, and by how much it is better than the group \[ln of the
-    /// likelihood\]. `None` if no law is clearly better. All laws are screened with the linearized model, and the most
-    /// promising are fitted in full.
-    fn best_law(&self, book: &Book, group: &Group) -> Option<(Law, f64)> {
+    /// The law that fits best in the place of a group, and how much more the law raises the logarithm of the likelihood
+    /// than the group does, each less its price. `None` if no law is clearly better. All laws are screened with the
+    /// linearized model, and the most promising are fitted in full.
+    fn best_law(&self, competing: &CompetingLaws, group: &Group) -> Option<(Law, f64)> {
         let without = self.without_group(group);
-        let counts: Vec<usize> = book.laws.iter().map(Law::count).collect();
+        let counts: Vec<usize> = competing.laws.iter().map(Law::count).collect();
         let from_level = without.fitted.geometry.level_to_instrument();
         let gains = without.linear_gains(&without.fitted, &counts, true, &|sample, placer, columns| {
-            book.laws.iter().for_each(|law| book.push_columns(law, sample, placer, &from_level, columns));
+            competing
+                .laws
+                .iter()
+                .for_each(|law| competing.push_columns(law, sample, placer, &from_level, columns));
         });
         let missing = self.fitted.ln_likelihood - without.fitted.ln_likelihood;
-        let mut order: Vec<(&Law, f64)> = book.laws.iter().zip(gains).collect();
+        let mut order: Vec<(&Law, f64)> = competing.laws.iter().zip(gains).collect();
         order.sort_by(|a, b| b.1.total_cmp(&a.1));
         order.truncate(FULL_FITS);
         order.retain(|(_, gain)| without.keeps_its_promise(*gain, missing));
         let named_price = self.price_of_group(group);
         let judged = order.into_par_iter().filter_map(|(law, _)| {
-            let rise = without.with_law(book, law)? - self.fitted.ln_likelihood;
-            let worth = rise + named_price - self.price(law.numbers(), book.laws.len());
+            let rise = without.with_law(competing, law)? - self.fitted.ln_likelihood;
+            let worth = rise + named_price - self.price(law.numbers(), competing.laws.len());
             (worth > 0.0 && rise > TIE).then(|| (law.clone(), worth))
         });
         judged.collect::<Vec<_>>().into_iter().max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// The logarithm of the likelihood of this model with the law `law`. Its amplitudes are found by Gauss-Newton steps, with
-    /// all other numbers of the model fitted again after each. `None` if the positions do not determine them.
-    fn with_law(&self, book: &Book, law: &Law) -> Option<f64> {
+    /// The logarithm of the likelihood of this model with the law `law`. Its amplitudes are found by Gauss-Newton
+    /// steps, with all other numbers of the model fitted again after each. `None` if the positions do not determine the
+    /// amplitudes.
+    fn with_law(&self, competing: &CompetingLaws, law: &Law) -> Option<f64> {
         let mut samples = self.samples.clone();
         let mut sizes = vec![0.0; law.count()];
         let mut fitted: Fitted = self.fitted.clone();
         for _ in 0..STEPS {
             let from_level = fitted.geometry.level_to_instrument();
             let columns_of = |sample: &Sample, placer: &Placer, out: &mut Vec<Vector3<f64>>| {
-                book.push_columns(law, sample, placer, &from_level, out);
+                competing.push_columns(law, sample, placer, &from_level, out);
             };
             let all: Vec<&Sample> = samples.iter().collect();
             let normal = normal(&all, &self.numbers, &fitted, &|s, p, out| columns_of(s, p, out));

@@ -1,7 +1,7 @@
 //! Computes the deflection of the arm under gravity in each measured pose: the displacement by compliances that the arm
 //! file already has, and the displacement by each candidate per unit of its compliance.
 //!
-//! A joint of compliance `c` about an axis `u` through `p` moves a point `x` by `c g (u x (x - p)) (u x (S - m p))ᵀ ĝ`.
+//! A joint of compliance `c` about an axis `u` through `p` moves a point `r` by `c g (u × (r - p)) (u × (S - m p))ᵀ ĝ`.
 //! Here `m` and `S` are mass and first moment of everything outboard, `g` the strength and `ĝ` the direction of
 //! gravity. The mass of other arms on the same trunk is included.
 
@@ -42,8 +42,7 @@ pub(crate) struct CompliantPlace {
     pub rotation: ElasticRotation,
     /// Place of the effect: the name of a joint or link, or `base`.
     pub at: String,
-    /// How the displacement depends on the torque. For play the candidate's parameter is the half width \[rad\] and not a
-    /// compliance.
+    /// How the displacement depends on the torque. The parameter of play is a half width \[rad\] and not a compliance.
     pub shape: Shape,
 }
 
@@ -55,16 +54,16 @@ pub(crate) struct Deflection {
     /// Derivatives of the known displacement with respect to the two horizontal components of the unit vector of
     /// gravity \[m\].
     pub known_slopes_m: [Vector3<f64>; 2],
-    /// The rotations of all candidates, those of the first candidate first.
-    swings: Arc<[Swing]>,
+    /// The rotations of all candidates, in the order of the candidates.
+    rotations: Arc<[UnitRotation]>,
     slots: Arc<[Slot]>,
-    /// For each driven joint, sine and cosine of its angle and of twice its angle.
+    /// For each driven joint, sine and cosine of its angle and of twice its angle; empty if no candidate needs them.
     waves: Arc<[[f64; 4]]>,
 }
 
-/// One rotation by which a candidate can deflect: how it moves the point, and the torque about it.
+/// One rotation by which a candidate can deflect: how the rotation moves the point, and the torque about its axis.
 #[derive(Debug, Clone, Copy, Default)]
-struct Swing {
+struct UnitRotation {
     /// Displacement of the point per angle of the rotation \[m/rad\].
     motion_m: Vector3<f64>,
     /// Torque about the axis of rotation, one entry for gravity along each axis of the level frame \[N m\].
@@ -72,23 +71,24 @@ struct Swing {
 }
 
 /// Where a candidate is among the rotations of all candidates: index of its first rotation, the number of its
-/// rotations, and the number of its compliances. A candidate that is no spring shares the rotations of the spring at its
-/// place.
+/// rotations, and the number of its compliances. A candidate that is no spring uses the rotations of the spring at the
+/// same place.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Slot {
     first: usize,
-    swings: usize,
+    rotations: usize,
     compliances: usize,
     shape: Shape,
-    /// Index of the driven joint of this name, on whose angle the compliance may depend.
+    /// Index of the driven joint at the candidate's place, on whose angle the compliance may depend; 0 if there is
+    /// none.
     driven: usize,
 }
 
 impl Deflection {
     /// A deflection with the known displacement `known_m` and without candidates.
     pub(crate) fn known(known_m: Vector3<f64>) -> Self {
-        let (known_slopes_m, swings, slots, waves) = Default::default();
-        Self { known_m, known_slopes_m, swings, slots, waves }
+        let (known_slopes_m, rotations, slots, waves) = Default::default();
+        Self { known_m, known_slopes_m, rotations, slots, waves }
     }
 
     /// Number of compliances of a candidate.
@@ -101,7 +101,8 @@ impl Deflection {
         self.slots[candidate].shape.is_proportional()
     }
 
-    /// The candidates of this deflection, with the threshold `nm` of one of them \[N m\] (torque scale of play, or preload).
+    /// The candidates of this deflection, with the threshold (torque scale of play, or preload) of the candidate
+    /// `candidate` set to `nm` \[N m\].
     pub(super) fn slots_with_threshold(&self, candidate: usize, nm: f64) -> Arc<[Slot]> {
         let mut slots = self.slots.to_vec();
         slots[candidate].shape = slots[candidate].shape.with_threshold(nm);
@@ -113,14 +114,14 @@ impl Deflection {
         Self { slots: Arc::clone(slots), ..self.clone() }
     }
 
-    /// The largest torque about an axis of a candidate under gravity along -z, without its sign \[N m\].
+    /// The largest magnitude of the torques about the axes of a candidate, under gravity along -z \[N m\].
     pub(crate) fn torque_nm(&self, candidate: usize) -> f64 {
-        self.swings(candidate).iter().map(|swing| swing.pull_nm.z.abs()).fold(0.0, f64::max)
+        self.rotations(candidate).iter().map(|rotation| rotation.pull_nm.z.abs()).fold(0.0, f64::max)
     }
 
-    fn swings(&self, candidate: usize) -> &[Swing] {
+    fn rotations(&self, candidate: usize) -> &[UnitRotation] {
         let slot = &self.slots[candidate];
-        &self.swings[slot.first..slot.first + slot.swings]
+        &self.rotations[slot.first..slot.first + slot.rotations]
     }
 
     /// Calls `each` once for each compliance of a candidate, with the displacement of the point per unit of this
@@ -131,9 +132,9 @@ impl Deflection {
         gravity: &Vector3<f64>,
         mut each: impl FnMut(Vector3<f64>),
     ) {
-        let own = self.swings(candidate);
+        let own = self.rotations(candidate);
         let mut torques_nm = [0.0; 3];
-        torques_nm.iter_mut().zip(own).for_each(|(nm, swing)| *nm = swing.pull_nm.dot(gravity));
+        torques_nm.iter_mut().zip(own).for_each(|(nm, rotation)| *nm = rotation.pull_nm.dot(gravity));
         let along = |i: usize, j: usize| own[i].motion_m * torques_nm[j];
         let slot = &self.slots[candidate];
         match (slot.shape, slot.compliances) {
@@ -173,12 +174,12 @@ impl Deflection {
     /// about this axis under gravity along -z \[N m\]. For a joint's axis, an error of the joint angle moves the
     /// point in the same direction.
     pub(crate) fn lever(&self, candidate: usize) -> (Vector3<f64>, f64) {
-        self.swings(candidate).first().map_or_else(Default::default, |s| (s.motion_m, -s.pull_nm.z))
+        self.rotations(candidate).first().map_or_else(Default::default, |s| (s.motion_m, -s.pull_nm.z))
     }
 }
 
-/// All candidates of compliance: about the axis and across the axis of every joint, of the base, and of the link
-/// behind every joint.
+/// All candidates that are springs: every joint about and across its axis, the base, and a frame behind every joint at
+/// the link that follows it.
 pub(crate) fn candidates(tree: &Tree) -> Vec<CompliantPlace> {
     let mut out = Vec::new();
     for piece in &tree.pieces {
@@ -282,8 +283,8 @@ struct Ready {
 
 /// Places of a candidate's elements in an arm: indices among the elastic elements, counted from the tip to the base.
 /// `own` is the candidate's own element; it is `None` if the candidate is on another arm. A passive joint turns with
-/// its driving joint. So the candidate at the driving joint also includes the elements of the passive joints: their
-/// indices, and the factors of their angles.
+/// its driving joint. So the candidate at the driving joint also includes the elements of the passive joints: `passive`
+/// has their indices, and the factors of their angles.
 struct Place {
     own: Option<usize>,
     passive: Vec<(usize, f64)>,
@@ -346,7 +347,7 @@ impl<'a> Loads<'a> {
             waves: angles.map(|angle| transmission_waves(angle.to_radians())).collect(),
             known_m: self.known_of(&hung, row).displaced().0,
             known_slopes_m: [Vector3::zeros(); 2],
-            swings: hung.own.swings(&unit, &self.slots).into(),
+            rotations: hung.own.rotations(&unit, &self.slots).into(),
             slots: Arc::clone(&self.slots),
         }
     }
@@ -357,9 +358,9 @@ impl<'a> Loads<'a> {
         self.known_of(&self.hung(row, point), row).displaced().0
     }
 
-    /// What the linear displacement of [`known_m`](Self::known_m) lacks: displacement of the point as the arm hangs, with
-    /// the levers of the deflected pose, less the linear one \[m\]. The bodies of other arms stay where they are without
-    /// deflection.
+    /// The error of the linear displacement of [`known_m`](Self::known_m): the displacement of the point with the
+    /// levers of the deflected pose, less the linear displacement \[m\]. The bodies of other arms keep their places
+    /// without deflection.
     pub(crate) fn second_order_m(&self, row: &PositionRow, point: usize) -> Vector3<f64> {
         let hung = self.hung(row, point);
         let payload = seen_from_tool(&row.payload, &hung.own.point_m);
@@ -370,7 +371,7 @@ impl<'a> Loads<'a> {
         })
     }
 
-    /// The arm as it is in the file, in the pose and with the payload of `row`, without deflection.
+    /// The arm with the compliances of its file, in the pose and with the payload of `row`. The pose is not deflected.
     fn known_of<'b>(&self, hung: &Hung<'b>, row: &PositionRow) -> Posed<'b> {
         let mut known = hung.own.pose(&hung.own.known, &hung.pose_rad, &row.payload);
         hung.load_trunk(&mut known, self.trunk[1]);
@@ -488,7 +489,7 @@ fn compliant_everywhere(structure: &Structure, known: &Chain, joints: usize) -> 
     unit
 }
 
-/// The places of the candidates among the rotations. The springs come first among the candidates.
+/// For each candidate, its place among the rotations. In `candidates`, the springs must come first.
 fn slots(tree: &Tree, candidates: &[CompliantPlace]) -> Arc<[Slot]> {
     let mut first = 0;
     let mut out: Vec<Slot> = Vec::with_capacity(candidates.len());
@@ -499,7 +500,7 @@ fn slots(tree: &Tree, candidates: &[CompliantPlace]) -> Arc<[Slot]> {
         let own = candidates[..out.len()].iter().position(is_spring_there);
         out.push(Slot {
             first: own.map_or(first, |spring| out[spring].first),
-            swings: candidate.axes(),
+            rotations: candidate.axes(),
             compliances: candidate.count(),
             shape: candidate.shape,
             driven: tree.driven.iter().position(|name| *name == candidate.at).unwrap_or_default(),
@@ -527,8 +528,8 @@ fn trunk_items(campaign: &Campaign, tree: &Tree, ready: &[Vec<Ready>]) -> [usize
     [of(&first.unit_structure), of(&first.structure)]
 }
 
-/// Places of each candidate's elements in an arm. The elements of an arm are the same in every pose, so they are
-/// sought in one.
+/// Places of each candidate's elements in an arm. An arm has the same elements in every pose, so they are looked up in
+/// one pose.
 fn places(unit: &Chain, arm: &Arm, candidates: &[CompliantPlace]) -> Vec<Place> {
     let rest = vec![0.0; arm.driven_joint_names().len()];
     let posed = unit.pose_rad(&rest, &Payload::default(), Vector3::zeros());
@@ -546,15 +547,16 @@ fn places(unit: &Chain, arm: &Arm, candidates: &[CompliantPlace]) -> Vec<Place> 
 impl Ready {
     /// The rotations of all candidates in a pose, in the order of `slots`. `unit` is the posed arm with unit
     /// compliances.
-    fn swings(&self, unit: &Posed, slots: &[Slot]) -> Vec<Swing> {
-        let (elements, swings) = self.swings_of_elements(unit);
-        let mut out: Vec<Swing> = Vec::new();
+    fn rotations(&self, unit: &Posed, slots: &[Slot]) -> Vec<UnitRotation> {
+        let (elements, rotations) = self.rotations_of_elements(unit);
+        let mut out: Vec<UnitRotation> = Vec::new();
         for (place, slot) in self.places.iter().zip(slots).filter(|(_, slot)| slot.shape == Shape::Spring) {
             // a candidate on another arm does not move this point
-            let own = |k: usize| place.own.map_or_else(Swing::default, |at| swings[elements[at] + k]);
-            out.extend((0..slot.swings).map(own));
+            let own =
+                |k: usize| place.own.map_or_else(UnitRotation::default, |at| rotations[elements[at] + k]);
+            out.extend((0..slot.rotations).map(own));
             for (at, factor) in &place.passive {
-                let (driver, passive) = (&mut out[slot.first], &swings[elements[*at]]);
+                let (driver, passive) = (&mut out[slot.first], &rotations[elements[*at]]);
                 driver.motion_m += passive.motion_m * *factor;
                 driver.pull_nm += passive.pull_nm * *factor;
             }
@@ -564,11 +566,11 @@ impl Ready {
 
     /// The rotations of every elastic element in a pose, from the tip to the base. The first result is, for each
     /// element, the index of its first rotation.
-    fn swings_of_elements(&self, unit: &Posed) -> (Vec<usize>, Vec<Swing>) {
-        let (mut elements, mut swings) = (Vec::new(), Vec::new());
-        // weight and its first moment of everything outboard so far
+    fn rotations_of_elements(&self, unit: &Posed) -> (Vec<usize>, Vec<UnitRotation>) {
+        let (mut elements, mut rotations) = (Vec::new(), Vec::new());
+        // weight, and its first moment, of the bodies passed so far
         let (mut weight_n, mut moment_nm) = (0.0, Vector3::zeros());
-        // from the tip to the base: what has been passed is outboard
+        // from the tip to the base: all items that were passed are outboard
         for item in unit.items.iter().rev() {
             match item {
                 Item::Body(body) if self.gravity_m_s2 > 0.0 => {
@@ -578,15 +580,15 @@ impl Ready {
                 // campaigns of positions refuse arms with springs
                 Item::Body(_) | Item::Load(_) => {}
                 Item::Elastic(element) => {
-                    elements.push(swings.len());
-                    swings.extend(element.twists.iter().map(|t| Swing {
+                    elements.push(rotations.len());
+                    rotations.extend(element.twists.iter().map(|t| UnitRotation {
                         motion_m: displacement_at(t, &unit.tip_m),
                         pull_nm: pull(t, weight_n, &moment_nm),
                     }));
                 }
             }
         }
-        (elements, swings)
+        (elements, rotations)
     }
 }
 

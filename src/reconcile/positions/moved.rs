@@ -1,4 +1,4 @@
-//! What changes its placement from one session to another, and the boundary at which a session begins.
+//! What can be moved between two sessions, and the boundary at which a session begins.
 
 use super::fitted::Sample;
 use super::kinematics::Number;

@@ -1,5 +1,5 @@
-//! Proposes what to measure next: the pose in which the model differs most from the models it competes with.
-//! Where no pose tells them apart, or nothing in the library fits, it proposes another kind of test.
+//! Proposes what to measure next: the pose in which the model differs most from the competing models. If no pose tells
+//! them apart, or if no effect of the library fits, another kind of test is proposed.
 
 use super::analysis::{Positions, samples};
 use super::fitted::Fitted;
@@ -10,7 +10,7 @@ use crate::reconcile::verdict::next_test::{LEAST_SIGMAS, readings_needed, spread
 use crate::reconcile::verdict::outcome::{NextTest, Verdict};
 use std::collections::HashSet;
 
-/// Number of poses among which the next test is chosen.
+/// Number of poses, for each point, among which the next test is chosen.
 const PROPOSED_POSES: usize = 60;
 
 impl Positions {
@@ -79,8 +79,8 @@ impl Positions {
         })
     }
 
-    /// The campaign with proposed poses in place of the measured ones. The proposed joint angles lie within the range
-    /// of the measured ones, and the payload is the largest that was measured.
+    /// A campaign with proposed poses in place of the measured ones. The proposed joint angles lie within the range of
+    /// the measured ones, and the payload is the largest that was measured.
     fn proposals(&self, campaign: &Campaign) -> Campaign {
         let mut out = campaign.clone();
         let range = |j: usize| {
@@ -103,9 +103,9 @@ impl Positions {
         out
     }
 
-    /// Proposes a test if no effect of the library fits, so that no pose can separate models. The kind of test
-    /// depends on the quantity that the errors follow (`left` lists these). The test is made in the pose in which the
-    /// best model has its largest error, gross errors not counted.
+    /// Proposes a test if no effect of the library fits, so that no pose can separate models. The kind of test depends
+    /// on the quantity that the errors follow (`left` lists such quantities). The test is made in the pose in which the
+    /// best model has its largest error, gross errors excepted.
     fn after_unexplained(&self, campaign: &Campaign, left: &LackOfFit) -> Option<NextTest> {
         let gross: HashSet<usize> = self.gross.iter().map(|(row, _)| *row).collect();
         let errors = self.samples.iter().map(|s| self.fitted.error(s).norm()).enumerate();

@@ -1,9 +1,10 @@
-//! What the deflection of the nominal arm depends on: stiffnesses, moduli and masses.
+//! Fits the stiffnesses, moduli and masses on which the deflection of the nominal arm depends.
 //!
 //! An arm whose file has compliances deflects under gravity in the nominal model too. A stiffness within its tolerance
 //! changes this deflection, which is calibration. A mass at a joint, cables along a link or a link with another modulus
-//! change it further. If the model had none of them, such a change would look like compliances elsewhere. All changes
-//! are small, so the deflection is linear in them: it is computed once with each of them, and compared.
+//! change it further. Without these in the model, such a change would look like compliances elsewhere. All changes are
+//! small, so the deflection is linear in them. Its derivatives are difference quotients: the deflection is computed
+//! once with each change.
 
 use super::analysis::Positions;
 use super::dependence::{Dependence, dependences};
@@ -17,14 +18,14 @@ use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-/// Change of a number over which the nominal deflection is compared.
+/// Step of a number for the difference quotient of the nominal deflection, in the unit of the number.
 const STEP: f64 = 0.05;
-/// A change of the nominal deflection below this size is rounding \[m\].
+/// A deflection, or a derivative of it, below this size is a rounding error \[m\].
 const NOTHING_M: f64 = 1e-12;
 
 impl Positions {
     /// Computes how the nominal deflection depends on stiffnesses, moduli and masses, and frees those that calibration
-    /// adjusts within tolerance. An arm that is rigid in its file does not deflect, so that nothing changes.
+    /// adjusts within tolerance. If the arm is rigid in its file, it does not deflect, and the model stays as it is.
     pub(super) fn free_tolerances(&mut self, campaign: &Campaign) {
         let stated_m = self.deflections_m(campaign, &|_| {});
         if stated_m.iter().all(|by| by.norm() <= NOTHING_M) {
@@ -68,9 +69,9 @@ impl Positions {
         self.price(1, effects + self.springs())
     }
 
-    /// Fits with one more effect on the nominal deflection each, with the index of the effect. All are screened with the
-    /// linearized model, and the most promising are fitted in full, if they may raise the logarithm of the likelihood by
-    /// `asked`.
+    /// Fits of the model with one more effect on the nominal deflection each. Each fit comes with the index of the
+    /// effect among the dependences. All are screened with the linearized model, and the most promising are fitted in
+    /// full, if they may raise the logarithm of the likelihood by `asked`.
     pub(super) fn best_dependences(&self, asked: f64) -> Vec<(usize, Fitted)> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let is_open =
@@ -100,7 +101,7 @@ impl Positions {
         tried.into_iter().filter(is_possible).collect()
     }
 
-    /// The model with the effect number `k` on the nominal deflection, as it was fitted.
+    /// The model with the dependence with index `k` added as an effect. `fitted` is its fit.
     pub(super) fn with_dependence(&self, k: usize, fitted: Fitted) -> Self {
         let mut next = Self { fitted, ..self.clone() };
         next.numbers.push(Number::Effect(k));
@@ -108,7 +109,7 @@ impl Positions {
         next
     }
 
-    /// The model without the effect number `k` on the nominal deflection, fitted again.
+    /// The model without the effect that is the dependence with index `k`, fitted again.
     fn without_dependence(&self, k: usize) -> Self {
         let mut out = self.without_numbers(|number| *number == Number::Effect(k));
         out.fitted.geometry.dependences[k] = 0.0;
@@ -117,8 +118,8 @@ impl Positions {
         out
     }
 
-    /// Drops the effect on the nominal deflection that falls most below its price, if there is one that does. Returns
-    /// whether one was dropped.
+    /// Drops that effect on the nominal deflection whose gain is farthest below its price, if there is such an effect.
+    /// Returns whether one was dropped.
     pub(super) fn drop_needless_dependence(&mut self) -> bool {
         let without = self.named_dependences.iter().map(|k| self.without_dependence(*k));
         let gain = |next: &Self| next.score() - self.score();
@@ -136,7 +137,7 @@ impl Positions {
         self.as_good(without.best_dependences(missing))
     }
 
-    /// Effects that would fit as well in the place of the effect number `k` on the nominal deflection.
+    /// Names and places of effects that would fit as well in place of the effect that is the dependence with index `k`.
     pub(super) fn instead_of_dependence(&self, k: usize) -> Vec<(String, String)> {
         let without = self.without_dependence(k);
         let missing = self.missing(&without.fitted);

@@ -1,25 +1,27 @@
-//! Mean and covariance of normally distributed numbers of which none is negative.
+//! Mean and covariance of a normal distribution that is restricted to non-negative numbers (truncated normal
+//! distribution).
 //!
-//! A normal distribution with the precision matrix `A` and the pull `b` has the density `exp(-½ xᵀ A x + bᵀ x)`. Restricted
-//! to `x ≥ 0`, its mean and covariance have no closed form in more than one dimension. Expectation propagation (Minka 2001)
-//! approximates them: for each entry, a normal factor stands for the restriction `x_i ≥ 0`. The factor is chosen such that
-//! the entry has the mean and variance that the restriction itself would give it, with the factors of the other entries in
-//! place. The density is log-concave, and the factors settle within a few rounds. For two entries with a correlation of 0.9
-//! a mean is off by less than 2 % of its standard deviation, and a standard deviation by less than 5 % (test).
+//! A normal distribution with the precision matrix `A` and the linear term `b`, called the pull, has a density
+//! proportional to `exp(-½ xᵀ A x + bᵀ x)`. Restricted to `x ≥ 0`, its mean and covariance have no closed form in more
+//! than one dimension. Expectation propagation (Minka 2001) approximates them: for each entry, a normal factor stands
+//! for the restriction `x_i ≥ 0`. The factor is chosen such that the entry gets the same mean and variance as with the
+//! restriction itself, while the factors of the other entries stay. The density is log-concave, and the factors
+//! converge within a few rounds. For two entries with a correlation of 0.9 a mean is off by less than 2 % of its
+//! standard deviation, and a standard deviation by less than 5 % (test).
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 /// Largest number of rounds over all entries.
 const MOST_ROUNDS: usize = 50;
-/// The rounds end when no factor changes a variance by more than this part, nor a mean by more than this part of its
-/// standard deviation.
+/// The rounds end when no factor changes a variance by more than this fraction, nor a mean by more than this fraction
+/// of its standard deviation.
 const SETTLED: f64 = 1e-5;
 /// Below this mean, in standard deviations, the restricted normal distribution is computed by its asymptotic series. The
 /// next term of the series is below 1e-5 of the variance.
 const FAR_BELOW: f64 = -25.0;
 
-/// Numbers of which none is negative.
+/// Mean and covariance of numbers of which none is negative.
 #[derive(Debug, Clone)]
 pub(super) struct NonNegative {
     /// Mean of each number.
@@ -51,15 +53,16 @@ impl NonNegative {
         Some(out)
     }
 
-    /// These numbers in another unit, which is `unit` times smaller.
+    /// These numbers multiplied by `unit`.
     pub(super) fn times(self, unit: f64) -> Self {
         Self { mean: self.mean * unit, covariance: self.covariance * (unit * unit) }
     }
 
-    /// Chooses the factor of the number `i` anew. Returns the largest relative change.
+    /// Chooses the factor of the number with index `i` anew. Returns the larger of the relative change of its variance
+    /// and the change of its mean in standard deviations.
     fn restrict(&mut self, i: usize, factor: &mut Factor) -> f64 {
         let (mean, variance) = (self.mean[i], self.covariance[(i, i)]);
-        // the distribution of this number by everything but its own factor
+        // the cavity distribution: the distribution of this number without its own factor
         let [precision, pull] = [1.0 / variance - factor.precision, mean / variance - factor.pull];
         if precision <= 0.0 {
             return 0.0;
@@ -80,7 +83,7 @@ impl NonNegative {
     }
 }
 
-/// Mean and variance of a normally distributed number with the given mean and variance, restricted to positive values.
+/// Mean and variance of a normal distribution with the given mean and variance, restricted to positive values.
 fn restricted(mean: f64, variance: f64) -> (f64, f64) {
     let deviation = variance.sqrt();
     let at = mean / deviation;
@@ -111,7 +114,7 @@ mod tests {
     #[test]
     fn one_number_has_the_mean_and_variance_of_the_restricted_normal_distribution() {
         for mean in [-40.0, -26.0, -24.0, -5.0, -1.0, 0.0, 2.0, 8.0] {
-            // relative to the density at zero, which is the greatest where the mean is negative
+            // relative to the density at zero, which is the largest one if the mean is negative
             let density = |x: f64| -0.5 * (x - mean).powi(2) + 0.5 * f64::min(mean, 0.0).powi(2);
             let reach = if mean < -3.0 { 40.0 / -mean } else { mean.max(0.0) + 9.0 };
             let (expected, variance) = by_sums(density, reach / 1e5, 100_000);

@@ -15,8 +15,8 @@ pub(crate) struct Normal {
     pub own: usize,
 }
 
-/// The Cholesky factor of a curvature matrix that is scaled to a unit diagonal. Without scaling, numbers in different
-/// units would make the matrix ill-conditioned.
+/// The Cholesky factor of a curvature matrix that was scaled to a unit diagonal. Without scaling, the different units
+/// of the numbers would make the matrix ill-conditioned.
 pub(crate) struct Factor {
     cholesky: Cholesky<f64, Dyn>,
     diagonal: DVector<f64>,

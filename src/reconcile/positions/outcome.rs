@@ -35,9 +35,10 @@ use serde_json::{Value, json};
 use std::collections::{HashMap, HashSet};
 
 /// Smallest number of positions from which anything can be concluded.
-pub(crate) const FEWEST: usize = 20;
-/// Largest ratio of the median error at held-out poses to the median error in the fit. If the ratio is larger, the
-/// poses are too similar to determine everything that is calibrated.
+pub(crate) const FEWEST_POSITIONS: usize = 20;
+/// Largest ratio of the median error at held-out poses to the median error in the fit, or to the declared standard
+/// deviation if that is larger. If the ratio is larger, the poses are too similar to determine everything that is
+/// calibrated.
 const UNSTABLE: f64 = 8.0;
 /// Effects that do not explain everything are still written into the corrected arm if they lower the median error at
 /// held-out poses to less than this fraction of the error with calibration alone.
@@ -64,7 +65,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let drifts: Vec<Finding> = findings.iter().filter(|f| f.effect == drift::EFFECT).cloned().collect();
     let (shown, in_arm) = match verdict == Verdict::Explained || helps {
         true => (&found.fitted, findings.as_slice()),
-        // a drift is calibrated with the sessions
+        // a drift is part of the calibration, as sessions are
         false => (&found.rigid, drifts.as_slice()),
     };
     let mut provenance = correct::provenance(campaign, verdict, found.calibrated(shown));
@@ -103,7 +104,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
 }
 
 impl Positions {
-    /// What the corrected arm has, where its effects predict better and do not explain everything.
+    /// Sentence on a corrected arm whose effects predict better but do not explain everything.
     fn help_words(&self) -> String {
         let [before, after] = self.before_and_after();
         format!(
@@ -112,7 +113,7 @@ impl Positions {
         )
     }
 
-    /// The arms of the campaign with what the fit `shown` calibrated, and with the effects `in_arm`. What was changed is
+    /// The arms of the campaign, calibrated as in the fit `shown` and with the effects `in_arm`. Their placements are
     /// added to `provenance`.
     fn corrected_arms(
         &self,
@@ -129,8 +130,8 @@ impl Positions {
         (0..campaign.arms().len()).map(corrected).collect()
     }
 
-    /// Findings for all effects of the model. For each compliance `without` has the fit without it, and `competitors` the
-    /// candidates that would fit as well in its place.
+    /// Findings for all effects of the model. For each effect that is a candidate, `without` has the fit without it,
+    /// and `competitors` the candidates that would fit as well in its place.
     fn findings(
         &self,
         campaign: &Campaign,
@@ -146,8 +147,9 @@ impl Positions {
         compliant.chain(dependent).chain(uneven).chain(self.drift_finding(campaign)).collect()
     }
 
-    /// Sentences on what was assumed or adjusted: sessions, factors beyond their tolerance (of those in `adjusted`), zeros
-    /// and geometry that moved far, joints that stood still, and another convention of the file.
+    /// Sentences for the reader on sessions, on the rows on which effects were screened, on factors in `adjusted`
+    /// beyond their tolerance, on zeros and geometry that moved far, on joints that hardly turned, and on another
+    /// convention or too large standard deviations in the file.
     fn remarks(&self, campaign: &Campaign, adjusted: &[Calibrated]) -> Vec<String> {
         let mut out = self.session_sentences(campaign);
         out.extend(self.screening_sentence());
@@ -159,8 +161,8 @@ impl Positions {
         out
     }
 
-    /// Whether an arm with the effects `findings` is useful though something else is missing: it predicts held-out poses far
-    /// better, and every effect can be real.
+    /// Whether an arm with the effects `findings` is useful although something else is missing: it predicts held-out
+    /// poses much better than calibration alone, and every effect is physically possible.
     fn helps(&self, findings: &[Finding]) -> bool {
         let [before, after] = self.before_and_after();
         let is_possible = |finding: &Finding| beyond_bounds(finding).is_none();
@@ -206,8 +208,8 @@ impl Positions {
         (Verdict::Explained, reasons)
     }
 
-    /// Verdict and reasons if the model does not describe the positions: there are too few, or too much is left, or too many
-    /// are gross errors, or an effect cannot be real. Otherwise `None`.
+    /// Verdict and reasons if the model does not describe the positions: there are too few positions, or the errors are
+    /// too large, or too many positions are gross errors, or an effect is physically impossible. Otherwise `None`.
     fn not_described(
         &self,
         campaign: &Campaign,
@@ -215,8 +217,8 @@ impl Positions {
         findings: &[Finding],
     ) -> Option<(Verdict, Vec<String>)> {
         let count = campaign.positions.len();
-        if count < FEWEST {
-            let text = format!("{count} positions are too few: give at least {FEWEST}");
+        if count < FEWEST_POSITIONS {
+            let text = format!("{count} positions are too few: give at least {FEWEST_POSITIONS}");
             return Some((Verdict::InsufficientData, vec![text]));
         }
         let excess = left.chi2_per_dof > MATERIAL_VARIANCE;
@@ -233,8 +235,8 @@ impl Positions {
         findings.iter().find_map(beyond_bounds).map(|text| (Verdict::Unexplained, vec![text]))
     }
 
-    /// Verdict and reasons if the calibration cannot be right: the poses do not determine it, a factor is beyond what is
-    /// possible, or the geometry is far from the arm file. Otherwise `None`.
+    /// Verdict and reasons if the calibration cannot be right: the poses do not determine it, no faultless part has
+    /// such a factor, or the geometry is far from the arm file. Otherwise `None`.
     fn not_calibrated(
         &self,
         campaign: &Campaign,
@@ -288,8 +290,8 @@ impl Positions {
         })
     }
 
-    /// Adds to the alternatives of the finding `finding` (effect number `i` of the model) the session that would
-    /// explain the readings as well, if there is one.
+    /// Adds to the alternatives of the finding `finding` the session that would explain the readings as well, if there
+    /// is one. `without` is the fit without this effect.
     fn with_session_instead(&self, campaign: &Campaign, without: &Fitted, mut finding: Finding) -> Finding {
         let row = self.session_instead(campaign, without, TIE);
         finding.indistinguishable_from.extend(row.map(|row| (SESSION.into(), format!("before row {row}"))));
@@ -391,8 +393,8 @@ impl Positions {
         }
     }
 
-    /// The arm with the index `arm`, with the geometry of the fit `shown` and with those of the `effects` that are on
-    /// it. Its placement is written into `provenance`.
+    /// The arm with the index `arm`, with the geometry of the fit `shown` and with those of the `effects` that belong
+    /// to this arm. Its placement is written into `provenance`.
     pub(crate) fn corrected(
         &self,
         campaign: &Campaign,
@@ -418,7 +420,8 @@ impl Positions {
         out
     }
 
-    /// Change of every calibrated number of the geometry but the placements in the fit `shown`, as JSON.
+    /// The calibrated numbers of the fit `shown`, as JSON: changes of the geometry without placements, and factors
+    /// within tolerance.
     fn calibrated(&self, shown: &Fitted) -> Vec<Value> {
         let numbers = self.numbers.iter().zip(&shown.moved);
         let inside = numbers.filter(|(n, _)| {
@@ -532,7 +535,7 @@ pub(crate) fn located(campaign: &Campaign, residuals: &[ReadingResidual]) -> Vec
     rest
 }
 
-/// The reason why an effect cannot be real, as a sentence: one of its numbers is beyond the range that an arm file may
+/// Sentence that an effect is physically impossible: one of its numbers is outside the range that an arm file may
 /// state. `None` if all numbers are possible.
 fn beyond_bounds(finding: &Finding) -> Option<String> {
     let kind = kind(&finding.effect)?;

@@ -1,44 +1,47 @@
-//! What the readings say about the numbers of a model of positions, if compliances outside the model are possible too.
+//! The posterior distribution of the numbers of a model of positions, if compliances outside the model are possible
+//! too.
 //!
 //! The fit states numbers `θ` of geometry and compliances. Around it the readings are linear in these numbers and in the
 //! compliances `u` that the model leaves out. With the curvature `H` and the negative gradient `g` of half of chi-squared
 //! over `(θ, u)`, the priors of `θ` included, there are two cases.
 //!
-//! *Nothing outside the model is compliant.* `θ` has the mean `δ = H_θθ⁻¹ g_θ` from the fitted values, and the covariance
-//! `C = f² H_θθ⁻¹`. Here `f` is the factor by which a robust fit scatters more. `δ` is zero only if the fit used all the
-//! derivatives that `H` has.
+//! *Nothing outside the model is compliant.* `θ` has the mean `δ = H_θθ⁻¹ g_θ` from the fitted values, and the
+//! covariance `C = f² H_θθ⁻¹`. Here `f` is the sandwich factor of the robust fit. `δ` is zero only if the fit used all
+//! the derivatives that `H` has.
 //!
 //! *Every place is compliant.*
 //!
-//! - The mean of `θ` is lower by `M u`, with `M = H_θθ⁻¹ H_θu`: so much of the effect of `u` the named numbers take over.
-//!   Without `θ`, the readings leave `u` the precision `S = (H_uu - H_uθ M) / f²` and the pull `w = (g_u - H_uθ δ) / f²`.
-//! - The compliances `c` in the model, with the rows `M_c` and the covariance `C_c`, and those outside it have together the
-//!   precision `[C_c⁻¹, C_c⁻¹ M_c; M_cᵀ C_c⁻¹, S + M_cᵀ C_c⁻¹ M_c]` and the pull `[C_c⁻¹ c₀; M_cᵀ C_c⁻¹ c₀ + w]`. Here `c₀` is
-//!   `c` plus its part of `δ`.
-//! - No compliance is negative. Of a positive number of which only the mean `τ` is known, the exponential distribution
-//!   assumes least. It subtracts `1/τ` from each pull. It holds for the compliances in the model too: one is named if it
-//!   looks large, and noise and others at its side make some look larger than they are.
-//! - `τ` is the mean of all compliances, by the values that they have with it (expectation maximization). It does not fall
-//!   with the number of compliances that are named.
+//! - The mean of `θ` is lower by `M u`, with `M = H_θθ⁻¹ H_θu`, because a fit without `u` ascribes this part of its
+//!   effect to `θ`. With `θ` eliminated, the readings give `u` the precision `S = (H_uu - H_uθ M) / f²` and the pull
+//!   `w = (g_u - H_uθ δ) / f²`. (The pull is the linear term of the logarithm of the density.)
+//! - Let `M_c` and `C_c` be the rows of `M` and the covariance that belong to the compliances `c` in the model. These
+//!   compliances and those outside it together have the precision `[C_c⁻¹, C_c⁻¹ M_c; M_cᵀ C_c⁻¹, S + M_cᵀ C_c⁻¹ M_c]`
+//!   and the pull `[C_c⁻¹ c₀; M_cᵀ C_c⁻¹ c₀ + w]`. Here `c₀` is `c` plus its part of `δ`.
+//! - No compliance is negative. The prior of each is the exponential distribution with the mean `τ`, which has the
+//!   largest entropy of all distributions of a positive number with this mean. It subtracts `1/τ` from each pull. The
+//!   compliances in the model have this prior too: a compliance is named if it looks large, and noise and neighbouring
+//!   compliances make some look larger than they are.
+//! - `τ` is the mean of the posterior means of all compliances, found by expectation maximization. It does not depend
+//!   much on how many compliances are named.
 //! - The mean and covariance of the compliances ([`NonNegative`]) give those of all other numbers, which are linear in them.
 //!
-//! The interval of a number reaches over both cases. It always contains the fitted value.
+//! The interval of a number covers both cases. It always contains the fitted value.
 
 use super::non_negative::NonNegative;
 use super::normal::Normal;
-use super::springs::Best;
+use super::springs::ConstrainedStep;
 use crate::reconcile::model::estimate::Z_95;
 use nalgebra::{Cholesky, DMatrix, DVector, SymmetricEigen};
 
 /// Largest number of times that the mean compliance is computed again.
 const MOST_ROUNDS: usize = 60;
-/// The mean compliance is settled if it changes by less than this part.
+/// The mean compliance has converged if it changes by less than this fraction.
 const SETTLED: f64 = 1e-3;
-/// A compliance that no weight loads has the exponential distribution. It is cut off by a normal one with this many times
-/// its mean as standard deviation, so that the equations stay regular.
+/// A compliance that no weight loads keeps its exponential prior. A wide normal distribution is multiplied to it, so
+/// that the equations stay regular. Its standard deviation is this multiple of the mean.
 const CUT: f64 = 30.0;
 
-/// What is known about the numbers of a model. All values are changes from the fitted ones.
+/// Posterior distribution of the numbers of a model, as changes from the fitted values.
 pub(super) struct Posterior {
     /// Mean of each number if nothing outside the model is compliant.
     mean: DVector<f64>,
@@ -49,21 +52,27 @@ pub(super) struct Posterior {
     everywhere: Option<Everywhere>,
 }
 
-/// The compliances of all places, those in the model first.
+/// The case that every place is compliant. Compliances in the model come first.
 struct Everywhere {
-    /// By how much each number of the model (row) changes per unit of each compliance (column).
+    /// By how much each number of the model (row) changes per unit of each entry of `sizes` (column).
     moves: DMatrix<f64>,
-    /// How far the compliances are from where each number of the model has its mean by the model alone \[rad/(N m)\].
+    /// The compliances \[rad/(N m)\]. For those in the model, the mean is counted from the mean that they have if
+    /// nothing outside the model is compliant.
     sizes: NonNegative,
     /// Covariance matrix of the numbers of the model if all compliances are known.
     left: DMatrix<f64>,
 }
 
 impl Posterior {
-    /// What the equations say about the numbers of the model. `best` is the step to the minimum, and `robust` the factor by
-    /// which a robust fit scatters more. The columns behind those of the model belong to compliances outside it. `named` are
-    /// the compliances of the model that are like them, each with the index of its number \[rad/(N m)\].
-    pub(super) fn new(equations: &Normal, best: &Best, robust: f64, named: &[(usize, f64)]) -> Self {
+    /// The posterior distribution that follows from the normal equations. `best` is the step to the minimum, and
+    /// `robust` the sandwich factor. Columns after those of the model belong to compliances outside it. `named` lists
+    /// the compliances of the model that have the same prior as these, each with the index of its number \[rad/(N m)\].
+    pub(super) fn new(
+        equations: &Normal,
+        best: &ConstrainedStep,
+        robust: f64,
+        named: &[(usize, f64)],
+    ) -> Self {
         let own = equations.own;
         let unit = |i: usize| DVector::from_fn(own, |k, _| if k == i { 1.0 } else { 0.0 });
         let columns: Vec<DVector<f64>> = (0..own).map(|i| best.answer(&unit(i))).collect();
@@ -79,9 +88,9 @@ impl Posterior {
         out
     }
 
-    /// How far the interval of a quantity reaches below and above its fitted value, over [`Z_95`]. The quantity has the
-    /// derivatives `gradient` with respect to numbers of the model, each given with the index of its number. Infinite if all
-    /// these numbers are fixed at their constraints.
+    /// Distances of the lower and the upper end of the interval of a quantity from its fitted value, each divided by
+    /// [`Z_95`]. The quantity has the derivatives `gradient` with respect to numbers of the model, each given with the
+    /// index of its number. Infinite if all these numbers are fixed at their constraints.
     pub(super) fn reach(&self, gradient: &[(usize, f64)]) -> [f64; 2] {
         if gradient.iter().all(|(number, _)| self.is_fixed[*number]) {
             return [f64::INFINITY; 2];
@@ -96,13 +105,13 @@ impl Posterior {
     }
 }
 
-/// Variance of the quantity with the derivatives `gradient`, by the covariance matrix of the numbers.
+/// Variance of the quantity with the derivatives `gradient`, if the numbers have the covariance matrix `covariance`.
 fn along(covariance: &DMatrix<f64>, gradient: &[(usize, f64)]) -> f64 {
     let row = |(i, g): &(usize, f64)| gradient.iter().map(|(j, h)| g * h * covariance[(*i, *j)]).sum::<f64>();
     gradient.iter().map(row).sum()
 }
 
-/// The ends of the 95 % interval of a number.
+/// The ends of the 95 % interval of a number with this mean and variance.
 fn ends(mean: f64, variance: f64) -> [f64; 2] {
     let reach = Z_95 * variance.max(0.0).sqrt();
     [mean - reach, mean + reach]
@@ -110,15 +119,15 @@ fn ends(mean: f64, variance: f64) -> [f64; 2] {
 
 /// What the readings say about the compliances outside the model.
 struct Outside {
-    /// By how much each number of the model (row) is lower per unit of each compliance (column).
+    /// By how much each number of the model (row) is lower per unit of each compliance outside it (column).
     moves: DMatrix<f64>,
     precision: DMatrix<f64>,
     pull: DVector<f64>,
 }
 
 impl Outside {
-    /// `None` if there are none, or if the equations overflow.
-    fn new(equations: &Normal, best: &Best, robust: f64) -> Option<Self> {
+    /// `None` if there are no compliances outside the model, or if the equations overflow.
+    fn new(equations: &Normal, best: &ConstrainedStep, robust: f64) -> Option<Self> {
         let own = equations.own;
         let count = equations.gradient.len() - own;
         if count == 0 {
@@ -135,7 +144,8 @@ impl Outside {
     }
 }
 
-/// The matrix without its negative eigenvalues, which come from rounding. `None` if it has an entry that is not finite.
+/// The matrix with its negative eigenvalues, which come from rounding, set to zero. `None` if it has an entry that is
+/// not finite.
 fn not_negative(matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
     if matrix.iter().any(|entry| !entry.is_finite()) {
         return None;
@@ -146,8 +156,8 @@ fn not_negative(matrix: DMatrix<f64>) -> Option<DMatrix<f64>> {
 }
 
 impl Everywhere {
-    /// `alone` is what is known if nothing outside the model is compliant. `None` if no compliance in the model is like
-    /// those outside, or if the equations are singular.
+    /// `alone` is the posterior distribution if nothing outside the model is compliant. `named` is as in
+    /// [`Posterior::new`]. `None` if `named` is empty, or if the equations are singular.
     fn new(alone: &Posterior, outside: Outside, named: &[(usize, f64)]) -> Option<Self> {
         let (inside, count) = (named.len(), outside.pull.len());
         if inside == 0 {
@@ -173,7 +183,7 @@ impl Everywhere {
         let mut sizes = exchangeable(&precision, &pull, first)?;
         let mut middle = sizes.mean.rows_mut(0, inside);
         middle -= expected;
-        // how the other numbers follow those that are named, and what is left open
+        // the regression of all numbers on the named compliances, and the covariance that is left
         let follow = of_named.transpose() * &inverse;
         let mut all_moves = DMatrix::zeros(all, inside + count);
         all_moves.view_mut((0, 0), (all, inside)).copy_from(&follow);
@@ -182,7 +192,8 @@ impl Everywhere {
         Some(Self { moves: all_moves, sizes, left: &alone.covariance - follow * of_named })
     }
 
-    /// By how much the quantity with the derivatives `gradient` is greater than in the model alone, and its variance.
+    /// By how much the mean of the quantity with the derivatives `gradient` is larger than if nothing outside the model
+    /// is compliant, and the variance of the quantity.
     fn of(&self, gradient: &[(usize, f64)]) -> (f64, f64) {
         let mut moves = DVector::zeros(self.sizes.mean.len());
         gradient.iter().for_each(|(number, g)| moves += self.moves.row(*number).transpose() * *g);
@@ -191,8 +202,9 @@ impl Everywhere {
     }
 }
 
-/// Positive numbers of one exponential distribution, by the precision and the pull that the readings give them. The mean of
-/// the distribution is the mean of the numbers; `first` is a first guess of it. `None` if the equations are singular.
+/// Posterior distribution of positive numbers that have the same exponential prior. The readings give them this
+/// precision and this pull. The mean of the prior is found as the mean of the numbers; `first` is the first guess of
+/// it. `None` if the equations are singular.
 fn exchangeable(precision: &DMatrix<f64>, pull: &DVector<f64>, first: f64) -> Option<NonNegative> {
     let mut usual = first;
     for _ in 0..MOST_ROUNDS {
@@ -206,8 +218,8 @@ fn exchangeable(precision: &DMatrix<f64>, pull: &DVector<f64>, first: f64) -> Op
     exponential(precision, pull, usual)
 }
 
-/// Numbers that have the exponential distribution with the mean `usual` before the readings are used, and by the readings
-/// this precision and pull.
+/// Posterior distribution of positive numbers that have an exponential prior with the mean `usual`. The readings give
+/// them this precision and this pull.
 fn exponential(precision: &DMatrix<f64>, pull: &DVector<f64>, usual: f64) -> Option<NonNegative> {
     let cut = DMatrix::from_diagonal_element(pull.len(), pull.len(), CUT.powi(-2));
     let own = NonNegative::new(precision * (usual * usual) + cut, &(pull * usual).add_scalar(-1.0))?;
@@ -218,8 +230,8 @@ fn exponential(precision: &DMatrix<f64>, pull: &DVector<f64>, usual: f64) -> Opt
 mod tests {
     use super::*;
 
-    /// Precision and pull of numbers of which each is known with the given value and standard deviation; not at all if the
-    /// deviation is infinite.
+    /// Precision and pull of independent numbers with the given values and standard deviations. The readings say
+    /// nothing about a number whose deviation is infinite.
     fn known(numbers: &[(f64, f64)]) -> (DMatrix<f64>, DVector<f64>) {
         let precisions = DVector::from_iterator(numbers.len(), numbers.iter().map(|(_, sd)| sd.powi(-2)));
         let values = DVector::from_iterator(numbers.len(), numbers.iter().map(|(value, _)| *value));

@@ -1,5 +1,5 @@
-//! The model of positions, linearized: for each sample its weighted error and the derivatives of its position with
-//! respect to every number, and the normal equations of all samples.
+//! Linearizes the model of positions: computes, for each sample, its weighted error and the derivatives of its position
+//! with respect to every number, and sums these up to the normal equations.
 //!
 //! A fit asks for these equations in every step, without further columns. [`normal_of_fit`] computes them for eight
 //! samples at a time.
@@ -8,9 +8,9 @@
 //! computed in blocks, and only their products are kept. Many samples are divided into portions of fixed size, which
 //! threads share; the sums of the portions are added in their order.
 
-use super::eight_places::{EightPlacer, Slope};
 use super::fitted::{Fitted, Miss, Sample, by_arm, eights};
 use super::kinematics::{Number, Placer, Placing};
+use super::kinematics_lanes::{EightPlacer, Slope};
 use super::normal::Normal;
 use crate::mechanics::lanes::LANES;
 use crate::mechanics::product::Panels;
@@ -26,11 +26,12 @@ const BLOCK: usize = 64;
 /// Number of samples whose products are summed up by one thread. It is a fixed number, so that the sums do not depend on the
 /// number of threads.
 const PORTION: usize = 80 * BLOCK;
-/// Number of rows for which a block has room. The last eight samples of a block may be fewer.
+/// Number of rows for which a block has room. Eight samples are always written at once, so there is room for the unused
+/// lanes of the last group.
 const HEIGHT: usize = 3 * (BLOCK + LANES);
 
-/// A function that appends further columns to the equations: derivatives of a sample's position with respect to
-/// whatever the caller tests \[m per unit\]. These columns belong to no number of the model.
+/// A function that appends further columns to the equations: derivatives of a sample's position with respect to numbers
+/// that the caller tests \[m per unit\]. These columns belong to no number of the model.
 pub(crate) type Further<'a> = &'a (dyn Fn(&Sample, &Placer, &mut Vec<Vector3<f64>>) + Sync);
 
 /// A model of positions, linearized about the values of its numbers.
@@ -121,7 +122,7 @@ pub(crate) fn normal(samples: &[&Sample], numbers: &[Number], here: &Fitted, fur
 }
 
 /// Builds the normal equations of a fit, without further columns. `misses` are the errors of the samples with the model
-/// `here`. The result is that of [`normal`] to the last bit; eight samples are computed at a time.
+/// `here`. The result has the same bits as that of [`normal`], but eight samples are computed at a time.
 pub(crate) fn normal_of_fit(
     samples: &[&Sample],
     misses: &[Miss],
@@ -168,7 +169,7 @@ struct EightRows<'a> {
     numbers: &'a [Number],
     placer: EightPlacer<'a>,
     from_level: Rotation3<f64>,
-    /// For each arm the derivatives with respect to the numbers.
+    /// For each arm, its derivatives with respect to the numbers, prepared for eight points at a time.
     slopes: Vec<Vec<Slope>>,
     /// Indices of those numbers that do not act through the geometry.
     beyond_geometry: Vec<usize>,
@@ -208,8 +209,8 @@ impl<'a> EightRows<'a> {
         }
     }
 
-    /// Stores the derivatives of one sample that do not follow from the geometry: with respect to some numbers, and to all
-    /// compliances.
+    /// Stores the derivatives of one sample that do not follow from the geometry: those with respect to all
+    /// compliances, and to the numbers in `beyond_geometry`.
     fn put_beyond_geometry(&self, sample: &Sample, scales: &Vector3<f64>, k: usize, products: &mut Products) {
         let mut store = |j: usize, by: Vector3<f64>| {
             products.rows.fixed_view_mut::<3, 1>(3 * k, j).copy_from(&by.component_mul(scales));
@@ -357,7 +358,7 @@ mod tests {
             normal_of_fit(&samples, &drifted, &numbers, &here),
         ];
         assert_eq!((&alone.curvature, &alone.gradient), (&eight.curvature, &eight.gradient));
-        // without the drift each row is off by its part of it
+        // without the drift, the error of each row changes by its fraction of the drift
         here.geometry.step(&drift.collect::<Vec<_>>(), &[-0.04, -0.05, -0.06]);
         for (k, (with, without)) in drifted.iter().zip(misses(&samples, &here)).enumerate() {
             let moved_m = Vector3::new(0.04, 0.025, 0.06) * (0.1 * k as f64);

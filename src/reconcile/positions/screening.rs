@@ -7,10 +7,10 @@
 //! rows. Every candidate is tried once more by the linearized model of all rows, so that an effect that only all rows
 //! show can be found too. The number of passes over all rows does not grow with the number of rows.
 //!
-//! The rows are the same in every run. Each session, point, arm and load has an equal number of rows among them, as far
-//! as it has enough. The other rows are spread evenly. For each joint, the rows with its smallest and its largest angle
-//! are added. A row keeps its fold, so that poses which are held out of a fit to all rows are also held out of the fits
-//! of the screening.
+//! The rows are the same in every run. Each combination of session, point, arm and load gets an equal number of these
+//! rows, if it has enough rows. The other rows are spread evenly. For each joint, the rows with its smallest and its
+//! largest angle are added. A row keeps its fold, so that poses which are held out of a fit to all rows are also held
+//! out of the fits of the screening.
 
 use super::align::align;
 use super::analysis::Positions;
@@ -23,17 +23,19 @@ use crate::reconcile::readings::rows::PositionRow;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
-/// A campaign with more rows is long. Shorter ones are searched on all rows.
+/// A campaign with more rows than this is long. In a shorter one, effects are searched on all rows.
 pub(super) const LONG: usize = 5_000;
-/// Number of rows on which the effects of a long campaign are screened, without those at the ends of joint angles.
+/// Number of rows on which the effects of a long campaign are screened, not counting the rows with extreme joint
+/// angles.
 const SCREENED: usize = 4_000;
-/// Largest number of rows that are chosen for the ends of joint angles.
+/// Largest number of rows that are added for their extreme joint angles.
 const ENDS: usize = 400;
 /// A robust fit raises the logarithm of the likelihood by at most about this multiple of the rise that the linearized
 /// model expects.
 const ROBUST: f64 = 2.0;
 
-/// What rows have in common that keep an equal number of rows: arm, point, session of the instrument, and load.
+/// Key of a stratum of rows: arm, point, session of the instrument, and load. Each stratum keeps an equal number of
+/// rows.
 type Stratum = (usize, usize, usize, [u64; 4]);
 
 fn stratum(sample: &Sample, row: &PositionRow) -> Stratum {
@@ -41,7 +43,8 @@ fn stratum(sample: &Sample, row: &PositionRow) -> Stratum {
     (sample.arm, sample.point, sample.station, [row.payload.mass_kg, x, y, z].map(f64::to_bits))
 }
 
-/// A number that depends on an index as if by chance, the same in each run (SplitMix64). It breaks regular orders of poses.
+/// A pseudo-random number for each index, the same in each run (SplitMix64). Sorting by it breaks up regular orders of
+/// poses.
 fn scrambled(index: usize) -> u64 {
     let mut z = (index as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -49,8 +52,8 @@ fn scrambled(index: usize) -> u64 {
     z ^ (z >> 31)
 }
 
-/// The indices of [`SCREENED`] of the rows, whose strata are `strata`. Half of them are taken in equal numbers from
-/// each stratum, the others evenly from the remaining rows.
+/// Indices of the [`SCREENED`] rows that are kept. `strata` has the stratum of every row. Half of the kept rows are
+/// taken in equal numbers from each stratum, the others evenly from the remaining rows.
 fn spread(strata: &[Stratum]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..strata.len()).collect();
     order.sort_by_key(|&i| (strata[i], scrambled(i)));
@@ -63,7 +66,7 @@ fn spread(strata: &[Stratum]) -> Vec<usize> {
     kept
 }
 
-/// The indices of the rows with the least and the greatest angle of each joint.
+/// The indices of the rows with the smallest and the largest angle of each joint.
 fn ends(rows: &[PositionRow]) -> Vec<usize> {
     let joints = rows.first().map_or(0, |row| row.pose_deg.len());
     let end = |j: usize, sign: f64| {
@@ -79,7 +82,8 @@ impl Positions {
         self.samples.len() > LONG
     }
 
-    /// A part of the rows of a long campaign, as a campaign and with this model of them. `None` if the campaign is not long.
+    /// A subset of the rows of a long campaign, as a campaign, and this model restricted to these rows. `None` if the
+    /// campaign is not long.
     pub(super) fn few(&self, campaign: &Campaign) -> Option<(Campaign, Self)> {
         if !self.is_long() {
             return None;
@@ -95,13 +99,13 @@ impl Positions {
         Some((few, self.of_rows(&kept)))
     }
 
-    /// This model with the rows `kept` alone, in the order of their indices.
+    /// This model restricted to the rows `kept`, whose indices must be sorted.
     fn of_rows(&self, kept: &[usize]) -> Self {
         let own = kept.iter().enumerate();
         let samples = own.map(|(index, &i)| Sample { index, ..self.samples[i].clone() }).collect();
         let mut sessions = self.sessions.clone();
         sessions.iter_mut().for_each(|b| b.first = kept.partition_point(|&i| i < b.first));
-        // no clone of all samples
+        // field by field, because a clone would copy all samples
         Self {
             samples,
             sessions,
@@ -123,8 +127,8 @@ impl Positions {
         }
     }
 
-    /// The fits of the geometry to a part of the rows of a long campaign, after each group of numbers that is freed; none if the
-    /// campaign is not long.
+    /// Fits of the geometry to a subset of the rows of a long campaign, one after each group of numbers that is freed.
+    /// Empty if the campaign is not long.
     pub(super) fn starts(&self, campaign: &Campaign) -> Vec<Fitted> {
         let Some((rows, mut few)) = self.few(campaign) else { return Vec::new() };
         let spec = &campaign.statement.positions;
@@ -138,22 +142,22 @@ impl Positions {
         fits.collect()
     }
 
-    /// Frees the memory of the deflections of a long campaign.
-    pub(super) fn forget_deflections(&mut self) {
+    /// Frees the memory of the samples' deflections, if the campaign is long.
+    pub(super) fn drop_deflections(&mut self) {
         if self.is_long() {
             let none = Arc::new(Deflection::known(Vector3::zeros()));
             self.samples.iter_mut().for_each(|sample| sample.deflection = Arc::clone(&none));
         }
     }
 
-    /// Computes the deflections again that were [forgotten](Self::forget_deflections).
-    pub(super) fn recall_deflections(&mut self, campaign: &Campaign) {
+    /// Computes the deflections again that [`drop_deflections`](Self::drop_deflections) dropped.
+    pub(super) fn recompute_deflections(&mut self, campaign: &Campaign) {
         if self.is_long() {
             self.refresh(campaign);
         }
     }
 
-    /// Replaces the model of a long campaign by that with the effects which a part of the rows shows, if all rows confirm them.
+    /// Adds to the model of a long campaign the effects that a subset of the rows shows, if all rows confirm them.
     pub(super) fn take_screened(&mut self, campaign: &Campaign) {
         let Some((rows, mut few)) = self.few(campaign) else { return };
         self.screened = Some(few.samples.len());
@@ -171,10 +175,11 @@ impl Positions {
             named_dependences: few.named_dependences,
             ..self.clone()
         };
-        // all rows need much memory: those of this model are computed again if it stays
-        self.forget_deflections();
+        // the deflections of all rows need much memory, so those of this model are computed again only if the model
+        // stays
+        self.drop_deflections();
         if !self.take_if_confirmed(campaign, next, added.join(" + ")) {
-            self.recall_deflections(campaign);
+            self.recompute_deflections(campaign);
         }
     }
 
@@ -192,7 +197,7 @@ impl Positions {
         own.into_iter().filter(|label| !known.contains(label)).collect()
     }
 
-    /// A sentence that says on which rows the effects were screened; `None` if on all.
+    /// A sentence that says on how many rows the effects were screened; `None` if all rows were searched.
     pub(super) fn screening_sentence(&self) -> Option<String> {
         self.screened.map(|screened| {
             let all = self.samples.len();

@@ -36,13 +36,14 @@ impl Positions {
             let candidate = &self.candidates[c];
             candidate.rotation == class && candidate.shape.waves().is_none()
         };
-        let springs = self.best_additions(base, is_of_class, |c| self.least_rise(base, c)).into_iter();
+        let springs = self.best_additions(base, is_of_class, |c| self.required_rise(base, c)).into_iter();
         let springs = springs.map(|(c, f)| {
             let gain =
                 f.ln_likelihood - self.prices(&f.effects) - (base.ln_likelihood - self.prices(&base.effects));
             (gain, Added::Spring(c), f)
         });
-        // a mass or a modulus deflects the arm as springs do, so it competes with the first of them
+        // a change of a mass or a modulus deflects the arm as springs do, so it competes with the first class of
+        // springs
         let others = match class {
             ElasticRotation::AboutAxis => self.best_dependences(self.dependence_price()),
             _ => Vec::new(),
@@ -60,10 +61,10 @@ impl Positions {
         self.take_if_confirmed(campaign, next, label)
     }
 
-    /// Replaces the current model of the positions by `next` if `next` has the higher score (ln of the likelihood, less
-    /// the prices of effects, transmission errors and undeclared sessions) and predicts held-out poses better. Effects
-    /// of `next` that are not worth their price are dropped first. `added` names what `next` adds. Returns whether the
-    /// model was replaced.
+    /// Replaces the current model of the positions by `next` if `next` has a clearly higher score (ln of the
+    /// likelihood, less the prices of effects, transmission errors and undeclared sessions) and predicts held-out poses
+    /// better. Effects of `next` that are not worth their price are dropped first. `added` names what `next` adds.
+    /// Returns whether the model was replaced.
     pub(crate) fn take_if_confirmed(&mut self, campaign: &Campaign, mut next: Self, added: String) -> bool {
         next.settle(campaign);
         if next.score() - self.score() <= self.untelling_rise(&next) {
@@ -87,9 +88,9 @@ impl Positions {
         confirmed
     }
 
-    /// The part of the rise of the logarithm of the likelihood from this model to `next` that chance explains. With few
-    /// readings the likelihood rises by chance with every further number. This part is subtracted for the first effect
-    /// only, because the first effect decides whether anything is missing at all; for others it is 0.
+    /// The part of the rise of the logarithm of the likelihood from this model to `next` that is due to chance. With
+    /// few readings the likelihood rises with every further number by chance. This part is subtracted for the first
+    /// effect only, because the first effect decides whether anything is missing at all; for others it is 0.
     fn untelling_rise(&self, next: &Self) -> f64 {
         if !self.fitted.effects.is_empty() || !self.transmissions.is_empty() {
             return 0.0;
@@ -141,13 +142,13 @@ impl Positions {
         }
     }
 
-    /// Whether effect number `position` of the model may not be worth its price, judged by its compliances over their
-    /// standard deviations. The test selects too many effects rather than too few, because each selected one is then
-    /// examined by a full fit.
+    /// Whether effect number `position` of the model may not be worth its price, judged by the ratios of its
+    /// compliances to their standard deviations. The test selects too many effects rather than too few, because each
+    /// selected one is then examined by a full fit.
     fn is_doubtful(&self, position: usize) -> bool {
         let price = self.price_of(self.fitted.effects[position]);
         let numbers = self.fitted.compliances[position].iter().zip(&self.fitted.deviations[position]);
-        // an effect that others can replace has large standard deviations
+        // an effect that other effects can replace has large standard deviations, so that it is examined too
         let is_small = |(c, deviation): (&f64, &f64)| 0.5 * (c / deviation).powi(2) < 2.0 * price;
         // if some compliance is fixed at its constraint, the standard deviations of the others are too small
         let is_held = self.fitted.deviations.iter().flatten().any(|d| !d.is_finite());
@@ -207,10 +208,10 @@ impl Positions {
         0.5 * numbers as f64 * libm::log(readings) + libm::log(places as f64) + 3.0
     }
 
-    /// Fits of the model `base` with one more effect each, for candidates for which `allowed` is true. All of these
-    /// are screened with the linearized model, and the [`FULL_FITS`] most promising are fitted in full, if they may raise
-    /// the logarithm of the likelihood by as much as `asked` says. Each fit comes with the index of the candidate that was
-    /// added.
+    /// Fits of the model `base` with one more effect each, for candidates for which `allowed` is true. All of these are
+    /// screened with the linearized model, and the most promising are fitted in full: [`FULL_FITS`] of them, and one
+    /// base that lifts off. Only candidates that may raise the logarithm of the likelihood by as much as `asked` says
+    /// are fitted. Each fit comes with the index of the candidate that was added.
     pub(super) fn best_additions(
         &self,
         base: &Fitted,
@@ -232,7 +233,7 @@ impl Positions {
             seen.push(*c);
             is_first
         });
-        // what is no spring must not displace a spring
+        // a base that lifts off must not displace other candidates
         let (mut springs, mut others): (Vec<_>, Vec<_>) =
             gains.into_iter().partition(|(c, _)| !matches!(self.candidates[*c].shape, Shape::Lift(_)));
         springs.truncate(FULL_FITS);
@@ -244,15 +245,15 @@ impl Positions {
         models.into_par_iter().map(|(c, effects)| (c, fit(&all, &self.numbers, &effects, base))).collect()
     }
 
-    /// The smallest rise of the logarithm of the likelihood for which the candidate `added` is worth adding to the
-    /// model `base`. It is the price of the candidate, less the prices of the effects that it contains and may replace.
-    pub(super) fn least_rise(&self, base: &Fitted, added: usize) -> f64 {
+    /// The rise of the logarithm of the likelihood that makes the candidate `added` worth adding to the model `base`.
+    /// It is the price of the candidate, less the prices of the effects that it contains and may replace.
+    pub(super) fn required_rise(&self, base: &Fitted, added: usize) -> f64 {
         let contained = |e: &&usize| self.tree.contains(&self.candidates[added], &self.candidates[**e]);
         self.price_of(added) - base.effects.iter().filter(contained).map(|e| self.price_of(*e)).sum::<f64>()
     }
 
-    /// Something in the place of an effect of the model fits as well as the effect if it raises the logarithm of the
-    /// likelihood by at least this. The rise is counted from `without`, a fit of the model without the effect.
+    /// The rise of the logarithm of the likelihood that an alternative to an effect must bring to fit as well as the
+    /// effect. The rise is counted from `without`, a fit of the model without the effect.
     pub(super) fn missing(&self, without: &Fitted) -> f64 {
         self.fitted.ln_likelihood - TIE - without.ln_likelihood
     }
@@ -288,8 +289,8 @@ impl Positions {
 
     /// Rise of the logarithm of the likelihood for each block of columns that is added to the linearized model `base`.
     /// `columns` computes the columns of all blocks, and `counts` gives the number of columns of each block. A block of
-    /// a single column is a compliance, and its rise is 0 if the compliance would be negative, unless the numbers have
-    /// `either_sign`.
+    /// a single column is a compliance, and its rise is 0 if the compliance would be negative. If `either_sign` is
+    /// true, the numbers of all blocks may have either sign.
     pub(crate) fn linear_gains(
         &self,
         base: &Fitted,

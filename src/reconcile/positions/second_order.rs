@@ -1,10 +1,10 @@
-//! What the linear displacement lacks, because the arm deflects so far that the levers of its loads change.
+//! The error of the linear displacement, which comes from the change of the loads' levers as the arm deflects.
 //!
 //! Compliances are fitted with a displacement that is linear in them. For an arm that deflects by 5 mm at a reach of 1
-//! m, the linear displacement is wrong by 0.03 mm. That is more than the error of a laser tracker. It changes with the
-//! angles of the joints, as a transmission error does. So the true displacement of the fitted arm is computed too. Its
-//! difference from the linear one is small and hardly changes with the compliances. The difference is kept while they
-//! are fitted, and is computed again after that.
+//! m, the linear displacement is wrong by 0.03 mm. That is more than the error of a laser tracker. The error changes
+//! with the angles of the joints, as the effect of a transmission error does. So the true displacement of the fitted
+//! arm is computed too. Its difference from the linear displacement is small and hardly changes with the compliances.
+//! So it is kept constant while the compliances are fitted, and is computed again after the fit.
 
 use super::analysis::Positions;
 use super::kinematics::Geometry;
@@ -31,7 +31,8 @@ impl Positions {
         self.samples.iter_mut().zip(differences).for_each(|(sample, by)| sample.second_order_m = by);
     }
 
-    /// The arms with the geometry `geometry`, and with everything that deflects by the present fit as part of the arm.
+    /// The arms with the geometry `geometry`, and with all effects and dependences of the present fit as part of the
+    /// arms.
     pub(super) fn deflecting_arms(&self, campaign: &Campaign, geometry: &Geometry) -> Loads<'_> {
         let fitted = &self.fitted;
         let named = fitted.effects.iter().zip(&fitted.compliances);
@@ -51,8 +52,8 @@ impl Positions {
 
 impl CompliantPlace {
     /// The candidate as an effect of an arm, with the compliances `compliances` \[rad/(N m)\], or the half width of its
-    /// play \[rad\]. `mean` is the compliance of its joint, the mean over all angles \[rad/(N m)\]. `None` if it does not
-    /// deflect.
+    /// play \[rad\]. `mean` is the compliance of the candidate's joint, averaged over all angles \[rad/(N m)\]. `None`
+    /// if the candidate does not deflect.
     fn as_effect(&self, compliances: &[f64], mean: f64) -> Option<Effect> {
         let first = *compliances.first()?;
         let list = |name: &str, values: Vec<f64>| (name.to_string(), values);

@@ -1,4 +1,5 @@
-//! Finds sessions: before some row of the file, a point was elsewhere on the tool, or the instrument stood elsewhere.
+//! Finds sessions: before some row of the file, a point was at another place on the tool, or the instrument or the base
+//! stood elsewhere.
 //!
 //! Between two sessions a reflector is put back slightly differently, or the instrument or the base is moved. Every row
 //! is tried as the first of a new session, by the gain of the linearized model. The earlier rows then have an offset or
@@ -9,10 +10,11 @@
 //! - `b = Σ s e - Cᵀ W g`,
 //! - `C = Σ W m sᵀ`.
 //!
-//! Here `A` is the curvature matrix of the model, `W` its whitening factor (`A⁻¹ = WᵀW`), and `g` the gradient. The
-//! sums are over the earlier rows: of the slopes `s` of the offset, the slopes `m` of the model's numbers, and the
-//! errors `e`. All sums grow row by row, so one pass tries every row. The computing time is proportional to the number
-//! of rows, and the memory does not depend on it.
+//! Here `A` is the curvature matrix of the model, `W` its whitening factor (`A⁻¹ = WᵀW`), and `g` its negative gradient
+//! over all rows. The sums are over the earlier rows. For each row, `s` are the derivatives of its position with
+//! respect to the offset, `m` those with respect to the model's numbers, and `e` is its error. All sums grow row by
+//! row, so one pass tries every row. The computing time is proportional to the number of rows, and the memory does not
+//! depend on it.
 
 use super::analysis::Positions;
 use super::fit::fit;
@@ -27,9 +29,9 @@ use nalgebra::{DMatrix, DVector, Vector3};
 use rayon::prelude::*;
 
 /// Smallest number of positions that a session must have on either side of its boundary.
-const FEWEST: usize = 5;
+const FEWEST_PER_SIDE: usize = 5;
 /// Largest number of sessions that are found, beyond the first.
-const MOST: usize = 6;
+const MOST_SESSIONS: usize = 6;
 
 /// A fitted model in which the rows before the row `first` have become a session with a placement of its own.
 pub(super) struct Split {
@@ -53,7 +55,7 @@ impl Positions {
     /// `tools_free` and `base_free` say whether points on the tool, and instrument or base, can have been moved.
     pub(crate) fn find_sessions(&mut self, tools_free: bool, base_free: bool) -> usize {
         let mut found = 0;
-        while found < MOST {
+        while found < MOST_SESSIONS {
             let kinds = self.kinds(tools_free, base_free);
             let Some(whole) = self.whole() else { break };
             let firsts: Vec<_> = kinds.par_iter().map(|&moved| self.best_first(moved, &whole)).collect();
@@ -94,8 +96,8 @@ impl Positions {
         }
     }
 
-    /// Everything that may have been moved: all points if tool offsets are free (`tools_free`), all set-ups of
-    /// instrument and base if the base placement is free (`base_free`).
+    /// The labels of everything that may have been moved: all points if tool offsets are free (`tools_free`), all
+    /// set-ups of instrument and base if the base placement is free (`base_free`).
     pub(super) fn kinds(&self, tools_free: bool, base_free: bool) -> Vec<Moved> {
         let points = (0..self.points.len()).filter(|_| tools_free).map(Moved::Point);
         let stations = (0..self.fitted.geometry.stations.len()).filter(|_| base_free).map(Moved::Station);
@@ -121,7 +123,7 @@ impl Positions {
     /// after it.
     pub(super) fn best_first(&self, moved: Moved, whole: &Whole) -> Option<(usize, f64)> {
         let rows = self.samples.iter().filter(|s| moved.has(s)).count();
-        let inside = FEWEST..rows.saturating_sub(FEWEST);
+        let inside = FEWEST_PER_SIDE..rows.saturating_sub(FEWEST_PER_SIDE);
         let own = moved.numbers();
         let mut linearized = Linearized::new(&self.fitted, &self.numbers);
         let mut earlier = Earlier::new(whole, own.len());
@@ -186,12 +188,12 @@ impl Positions {
     }
 }
 
-/// The part of a rise of the logarithm of the likelihood that tells something, if `new` further numbers of the model `fitted`
-/// caused the rise: `(n - p + k/2 - 1)/n` (Bartlett), at least 0. Here `n` is the number of readings, `p` how many
-/// numbers the readings determine, and `k` how many of them are new.
+/// The fraction of a rise of the logarithm of the likelihood that is not due to chance, if `new` further numbers of the
+/// model `fitted` caused the rise: `(n - p + k/2 - 1)/n` (Bartlett), at least 0. Here `n` is the number of readings,
+/// `p` the number of parameters that the readings determine, and `k` the number of new parameters (`new`).
 ///
-/// The scale of the errors is fitted. Where few readings are left over, it falls with every further number that is free,
-/// and the likelihood rises by more than half of chi-squared.
+/// The scale of the errors is fitted. If there are few more readings than numbers, the scale falls with every further
+/// number that is free, and the likelihood rises by more than half of chi-squared.
 pub(super) fn telling_part(fitted: &Fitted, numbers: &[Number], samples: &[Sample], new: usize) -> f64 {
     let count = readings(samples) as f64;
     let left = count - determined(fitted, numbers);
@@ -207,11 +209,12 @@ fn determined(fitted: &Fitted, numbers: &[Number]) -> f64 {
     free.sum::<f64>() + fitted.compliances.iter().map(Vec::len).sum::<usize>() as f64
 }
 
-/// Sums over the rows before some row. They give the gain if these rows had an offset (a placement) of their own.
+/// Sums over the rows before some row. From the sums follows the gain of the likelihood if these rows get an offset (a
+/// placement) of their own.
 struct Earlier<'a> {
     factor: &'a Factor,
-    /// Derivatives of the logarithm of the likelihood of all rows with respect to the model's numbers, multiplied by
-    /// the whitening factor `W`.
+    /// Derivatives of the logarithm of the posterior density of all rows with respect to the model's numbers,
+    /// multiplied by the whitening factor `W`.
     gradient: DVector<f64>,
     /// Derivatives of a row's position with respect to the model's numbers, multiplied by `W`. The next field,
     /// `offset`, has the derivatives with respect to the offset.
@@ -302,7 +305,7 @@ mod tests {
             let whole = Whole { factor, gradient: x.tr_mul(&e) };
             let mut earlier = Earlier::new(&whole, width);
             for (first, (columns, error)) in rows.iter().enumerate() {
-                if (FEWEST..ROWS - FEWEST).contains(&first) {
+                if (FEWEST_PER_SIDE..ROWS - FEWEST_PER_SIDE).contains(&first) {
                     let (own, dense) = (earlier.gain(), dense_gain(&rows, width, first));
                     assert!((own - dense).abs() < 1e-9 * dense, "row {first}: {own} and {dense}");
                 }

@@ -13,9 +13,9 @@ use crate::reconcile::readings::declared::DeclaredSession;
 use nalgebra::{Rotation3, Vector3};
 use std::ops::Range;
 
-/// The campaign with all positions in the frame of its first campaign, and with a session at each joint between two
-/// campaigns for what `campaign.json` leaves free: the placement of the base and the place of each point. `None` if the
-/// positions are of one campaign.
+/// The campaign with all positions in the frame of the first of the campaigns that were joined. A session is declared
+/// at the first row of each later campaign, for everything that `campaign.json` leaves free: the placement of the base
+/// and the place of each point. `None` if all positions are from one campaign.
 pub(crate) fn in_one_frame(campaign: &Campaign) -> Option<Campaign> {
     let firsts: Vec<usize> =
         campaign.joined_at.iter().copied().filter(|at| (1..campaign.positions.len()).contains(at)).collect();
@@ -53,7 +53,7 @@ impl Campaign {
 
     /// Expresses the positions of the rows `later` in the frame of the rows before them. The nominal arm is fitted to
     /// the rows of both frames, which gives the rotation and the shift between the frames. The session that begins at
-    /// the rows `later` corrects what this leaves. If a coordinate of some row was not measured, nothing changes.
+    /// the rows `later` corrects the remaining error. If a coordinate of some row was not measured, nothing changes.
     fn bring_into_frame(&mut self, later: Range<usize>) {
         if self.positions[..later.end].iter().any(|row| row.measured.iter().any(Option::is_none)) {
             return;
@@ -78,7 +78,7 @@ impl Campaign {
         ));
     }
 
-    /// Placement of the nominal arm in the frame of some rows.
+    /// Rotation and origin \[m\] of the nominal arm's base in the frame of the rows `rows`.
     fn standing(&self, rows: Range<usize>) -> (Rotation3<f64>, Vector3<f64>) {
         let (tree, points) = (Tree::new(self), points(self));
         let mut geometry = Geometry::nominal(&tree, points.len());

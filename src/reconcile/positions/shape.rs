@@ -1,8 +1,8 @@
-//! How the displacement by a candidate depends on the torques about it: in proportion (a spring), by play, beyond a preload,
-//! or in proportion with a stiffness that varies with the joint's angle.
+//! How the displacement by a candidate depends on the torques about it: in proportion (a spring), by play, beyond a
+//! preload, or in proportion to the torque with a stiffness that varies with the joint's angle.
 //!
-//! - Play: a joint turns by its half width `h` in the direction of its torque, and by less where the torque is small,
-//!   `h tanh(T/T_c)`.
+//! - Play: a joint turns by `h tanh(T/T_c)`. This is the half width `h` in the direction of the torque, and less if the
+//!   torque is small.
 //! - Lift: the base is rigid about each horizontal axis up to the preload `M_p`, and tilts by `c (|M| - M_p)` beyond it.
 //! - Waves: a joint turns by `T (a sin q + b cos q)`, `T (a sin 2q + b cos 2q)`, or both, in addition to its
 //!   usual compliance.
@@ -37,7 +37,7 @@ pub(crate) enum Waves {
 }
 
 impl Waves {
-    /// Which of the four waves of an angle (sine and cosine, once and twice a turn) these are.
+    /// Indices of these waves among the four waves of an angle (sine and cosine, once and twice a turn).
     pub(crate) fn range(self) -> Range<usize> {
         match self {
             Waves::Once => 0..2,
@@ -70,7 +70,7 @@ impl Shape {
         self.threshold_nm().is_none()
     }
 
-    /// Which of the four waves of an angle the compliance has; `None` if it does not vary with the angle.
+    /// Indices of the compliance's waves among the four waves of an angle; `None` if it does not vary with the angle.
     pub(crate) fn waves(self) -> Option<Range<usize>> {
         match self {
             Shape::Waves(waves) => Some(waves.range()),
@@ -79,7 +79,7 @@ impl Shape {
     }
 }
 
-/// What the moment \[N m\] has beyond the preload, with the sign of the moment.
+/// The part of a moment that exceeds the preload, with the sign of the moment \[N m\].
 pub(crate) fn beyond_nm(moment_nm: f64, preload_nm: f64) -> f64 {
     (moment_nm.abs() - preload_nm).max(0.0).copysign(moment_nm)
 }

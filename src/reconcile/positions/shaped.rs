@@ -13,8 +13,9 @@ const LIFT_PARTS: [f64; 7] = [0.1, 0.2, 0.3, 0.45, 0.6, 0.75, 0.9];
 /// A torque below this size is zero up to rounding \[N m\].
 const NOTHING_NM: f64 = 1e-6;
 
-/// Adds candidates that are no springs to the `springs`: play in each joint with five torque scales, a base that lifts off
-/// with seven preloads, and a stiffness of each joint that varies with the angle. `driven` are the names of the driven joints.
+/// Adds candidates that are no springs to the `springs`: play in each joint with five torque scales, a base that lifts
+/// off with seven preloads, and a stiffness of each driven joint that varies with its angle. `driven` lists the names
+/// of the driven joints.
 pub(crate) fn with_shapes(
     mut springs: Vec<CompliantPlace>,
     samples: &[Sample],

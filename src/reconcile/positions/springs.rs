@@ -12,20 +12,21 @@ use std::ops::Range;
 
 /// Largest number of Newton steps over the entries of `L`, the Cholesky factor of a frame's compliance matrix `L Lᵀ`.
 const MOST_STEPS: usize = 30;
-/// Largest number of times that one Newton step is halved because half of chi-squared is larger after it.
+/// Largest number of lengths that are tried for a Newton step. Each is half of the length before it, after which half
+/// of chi-squared was larger.
 const MOST_HALVINGS: i32 = 8;
 /// The Newton steps end when the next one would lower half of chi-squared by less than this.
 const SETTLED: f64 = 1e-6;
 /// Fraction of the frame's largest compliance that is added to its diagonal before `L` is computed. If an entry of `L`
-/// were zero, half of chi-squared could have zero slope with respect to it, and the entry would stay zero in the
-/// iteration.
+/// were zero, the derivative of half of chi-squared with respect to this entry could be zero, and the entry would stay
+/// zero in the iteration.
 const ROOM: f64 = 1e-3;
 /// Row and column of each entry of `L` (the factor of a frame's compliance matrix). The base lacks the last entry:
 /// its zz follows from the couplings.
 const LOWER: [(usize, usize); FRAME_ENTRIES.len()] = [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2)];
 
 /// The step to the minimum of half of chi-squared, which is a quadratic function of the numbers.
-pub(crate) struct Best {
+pub(crate) struct ConstrainedStep {
     /// Change of each number of the model. The numbers of the geometry come first, then the compliances.
     pub step: Vec<f64>,
     /// Derivatives of the numbers of the model with respect to every free variable of the minimization.
@@ -34,7 +35,7 @@ pub(crate) struct Best {
     factor: Factor,
 }
 
-impl Best {
+impl ConstrainedStep {
     /// Standard deviations of the model's numbers, in their units; infinite for a number that is fixed at its
     /// constraint.
     pub(crate) fn deviations(&self) -> Vec<f64> {
@@ -48,8 +49,8 @@ impl Best {
         (0..self.step.len()).map(deviation).collect()
     }
 
-    /// By how much the numbers of the model change to the minimum if half of chi-squared has the negative gradient
-    /// `gradient` over them. Numbers that are fixed at their constraint stay.
+    /// The changes of the model's numbers that lead to the minimum if half of chi-squared has the negative gradient
+    /// `gradient`. Numbers that are fixed at their constraint stay.
     pub(crate) fn answer(&self, gradient: &DVector<f64>) -> DVector<f64> {
         let along = |slope: &Slope| slope.entries().map(|(at, entry)| entry * gradient[at]).sum::<f64>();
         let right = DVector::from_iterator(self.slopes.len(), self.slopes.iter().map(along));
@@ -61,12 +62,12 @@ impl Best {
     }
 }
 
-/// Derivatives of the numbers of the model with respect to one free variable of the minimization: a number itself, or an
-/// entry of the `L` of a frame, on which only the compliances of this frame depend.
+/// Derivatives of the numbers of the model with respect to one free variable of the minimization: a number itself, or
+/// an entry of the factor `L` of a frame. Only the compliances of this frame depend on such an entry.
 struct Slope {
-    /// Index of the first number that depends on the variable. Those that follow it are the next ones.
+    /// Index of the first number that depends on the variable. The other dependent numbers follow it directly.
     first: usize,
-    /// Number of these numbers.
+    /// How many numbers depend on the variable.
     count: usize,
     entries: [f64; FRAME_ENTRIES.len()],
 }
@@ -92,7 +93,7 @@ impl Slope {
 #[derive(Clone)]
 enum Block {
     Free,
-    /// The compliances are fixed at their constraint. To get there, each changes by this amount \[rad/(N m)\].
+    /// The compliances are fixed at their constraint. These are their changes from the present values \[rad/(N m)\].
     Held(Vec<f64>),
     /// The compliances are those of a frame: the entries of the matrix `L Lᵀ`, with this `L`.
     Frame(Matrix3<f64>),
@@ -101,7 +102,7 @@ enum Block {
 /// The step to the minimum of half of chi-squared at which every compliance is physically possible. `now` lists the
 /// compliances of each effect before the step. The equations have `numbers` numbers of the geometry, followed by these
 /// compliances. `None` if the equations are singular.
-pub(crate) fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) -> Option<Best> {
+pub(crate) fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) -> Option<ConstrainedStep> {
     let mut first = numbers;
     let ranges: Vec<Range<usize>> = (now.iter())
         .map(|own| {
@@ -131,7 +132,8 @@ pub(crate) fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) ->
             let step = &best.step[parabola.ranges[k].clone()];
             let wanted: Vec<f64> = own.iter().zip(step).map(|(c, by)| c + by).collect();
             let spring = nearest_spring(&wanted);
-            // the step would leave the constraint: fix this block at it and solve for the others again
+            // the step violates the constraint: this block is put on its constraint, and the others are solved for
+            // again
             if spring != wanted {
                 is_settled = false;
                 parabola.blocks[k] = match own.len() {
@@ -168,7 +170,7 @@ struct Parabola<'a> {
 impl Parabola<'_> {
     /// The step to the minimum of half of chi-squared. Without frames, one Newton step leads to the minimum. With
     /// frames several are needed, because the compliances of a frame are quadratic in the entries of `L`.
-    fn best(&mut self) -> Option<Best> {
+    fn best(&mut self) -> Option<ConstrainedStep> {
         let mut linear = vec![0.0; self.gradient.len()];
         let mut step = self.step(&linear);
         for _ in 0..MOST_STEPS {
@@ -189,10 +191,10 @@ impl Parabola<'_> {
                 (linear, self.blocks) = (from, blocks);
                 step = self.step(&linear);
             }
-            // without frames the parabola is solved in one step, and its slopes are the same everywhere
+            // without frames, one step leads to the minimum, and the derivatives are the same everywhere
             let is_linear = !self.blocks.iter().any(|block| matches!(block, Block::Frame(_)));
             if is_linear {
-                return Some(Best { step, slopes, factor });
+                return Some(ConstrainedStep { step, slopes, factor });
             }
             if !is_better || right.dot(&move_by) < SETTLED {
                 break;
@@ -200,7 +202,7 @@ impl Parabola<'_> {
         }
         let slopes = self.slopes();
         let factor = self.factor(&slopes)?;
-        Some(Best { step, slopes, factor })
+        Some(ConstrainedStep { step, slopes, factor })
     }
 
     /// Sets the entries of `L` of every frame so that `L Lᵀ` is the frame's present compliance matrix, slightly

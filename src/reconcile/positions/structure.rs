@@ -1,9 +1,9 @@
 //! Tests whether the errors of the best model depend on any known quantity.
 //!
 //! For each quantity there are a few columns `X`, functions of it that the errors could follow. The part of the columns
-//! that the model could still fit is removed. The sum of squares that the columns explain, in units of the fitted
+//! that the model itself could fit is removed. The sum of squares that the columns explain, in units of the fitted
 //! scale, then follows a chi-squared distribution if the errors do not depend on the quantity. A structure is material
-//! if it explains at least a tenth of the sum of squares.
+//! if it explains more than a tenth of the sum of squares and is no chance result.
 
 use super::analysis::Positions;
 use super::fitted::{Sample, readings};
@@ -20,7 +20,7 @@ use crate::reconcile::select::structure::Structure;
 use crate::reconcile::select::waves::{order_functions, waves};
 use nalgebra::{DMatrix, SymmetricEigen, Vector3};
 
-/// A structure in the errors is material if it explains at least this fraction of their sum of squares.
+/// A structure in the errors is material only if it explains more than this fraction of their sum of squares.
 pub(crate) const MATERIAL_PART: f64 = 0.1;
 /// If the variance of the errors is below this multiple of the declared variance, the excess is ascribed to declared
 /// standard deviations that are too small, and not to the model.
@@ -31,8 +31,7 @@ const IMPROBABLE: f64 = 1e-6;
 /// Median length of a vector whose one, two or three components are standard normal deviates.
 const MEDIAN_LENGTHS: [f64; 3] = [MEDIAN_OF_NORMAL, 1.1774, 1.538];
 
-/// One test of the errors: the quantity that they would follow, in words, and the number of columns with which this
-/// is tested.
+/// One test of the errors: the quantity that the errors would follow, in words, and the number of columns of the test.
 type Question = (String, usize);
 
 impl Positions {
@@ -51,7 +50,7 @@ impl Positions {
             at += count;
             let Some(factor) = &factor else { break };
             let cross = normal.curvature.view((0, block[0]), (normal.own, *count)).into_owned();
-            // the part of the columns that the model could still fit
+            // the part of the columns that the model itself could fit
             let answered = DMatrix::from_columns(
                 &(0..*count).map(|k| factor.solve(&cross.column(k).into_owned())).collect::<Vec<_>>(),
             );
@@ -84,7 +83,7 @@ impl Positions {
         structure.statistic / readings(&self.samples) as f64
     }
 
-    /// Whether the structure `structure` is no chance result and explains at least [`MATERIAL_PART`] of the errors'
+    /// Whether the structure `structure` is no chance result and explains more than [`MATERIAL_PART`] of the errors'
     /// sum of squares.
     pub(crate) fn is_material(&self, structure: &Structure) -> bool {
         structure.ln_p < libm::log(IMPROBABLE) && self.part(structure) > MATERIAL_PART

@@ -4,12 +4,12 @@
 //!
 //! A few thresholds are tried in the search for effects. The best of them is refined, because a wrong threshold changes
 //! the half width too and leaves a structure in the errors. The intervals are those of the profile likelihood. At each
-//! threshold `s` the likelihood falls from its best value `L(s)` like a parabola in the half width `h`. So the interval
-//! of `h` is the union of `h(s) ± σ(s) √(2 (1.92 - (L_max - L(s))))` over all `s`.
+//! threshold `s`, the logarithm of the likelihood falls from its best value `L(s)` like a parabola in the half width
+//! `h`. So the interval of `h` is the union of `h(s) ± σ(s) √(2 (1.92 - (L_max - L(s))))` over all `s`.
 //!
-//! In a long campaign the threshold was refined already on the rows on which effects are screened. Near it, the
-//! likelihood of all rows is close to a parabola in the logarithm of the threshold. So a few fits find the vertex of
-//! this parabola, and only the nearest thresholds on both sides are tried for the interval.
+//! In a long campaign the threshold was refined already on the rows on which effects are screened. Near this value, the
+//! logarithm of the likelihood of all rows is close to a parabola in the logarithm of the threshold. So a few fits find
+//! the vertex of this parabola, and only the nearest thresholds on both sides are tried for the interval.
 
 use super::analysis::Positions;
 use super::fitted::Sample;
@@ -20,27 +20,30 @@ use std::sync::Arc;
 /// Fall of the logarithm of the likelihood at the ends of a 95 % interval: half of the 95 % quantile of chi-squared
 /// with one degree of freedom.
 const FALL: f64 = RISE_AT_95 / 2.0;
-/// Number of steps of the golden section search for the best threshold. They leave 0.3 % of it open.
+/// Number of steps of the golden section search for the best threshold. They narrow the threshold to an interval of 0.4
+/// %.
 const STEPS: usize = 13;
 /// Part of an interval that the golden section leaves in each step.
 const GOLDEN: f64 = 0.618_033_988_749_895;
-/// A better threshold is sought from the best of those that were tried, divided by this factor, up to this best one
-/// multiplied by the factor. The thresholds that were tried differ by this factor.
+/// A better threshold is sought between the best one so far divided by this factor and the best one so far times this
+/// factor. The torque scales of play that the search tries differ by about this factor.
 const BRACKET: f64 = 2.7;
-/// Ratios of thresholds to the best one at which the likelihood is computed for the intervals.
+/// The likelihood is computed for the intervals at thresholds whose ratio to the best one is one of these, or its
+/// reciprocal.
 const RATIOS: [f64; 8] = [1.05, 1.12, 1.25, 1.5, 2.0, 3.0, 6.0, 20.0];
-/// The size is also computed at thresholds between the best one and each end of its interval. These are the parts of
-/// the way, in the logarithm of the threshold, at which they lie.
+/// The size is also computed at thresholds between the best one and each end of its interval. These are the positions
+/// of these thresholds as fractions of the way, in the logarithm of the threshold.
 const PARTS: [f64; 4] = [0.3, 0.6, 0.85, 0.97];
-/// Distances between the logarithms of the thresholds through which a parabola is laid, first and second time.
+/// Distances between the logarithms of the three thresholds through which a parabola is fitted, for the first and the
+/// second parabola.
 const WIDTHS: [f64; 2] = [0.1, 0.03];
-/// The vertex of a parabola is used only if it is no farther from the middle point than this many times the distance of
-/// the points.
+/// The vertex of a parabola is moved no farther from the middle point than this many times the distance of the points.
 const FARTHEST: f64 = 3.0;
-/// A threshold above this multiple of the largest torque is that of a spring.
-const MOST: f64 = 3.0;
+/// Largest threshold that is tried, as a multiple of the largest torque. Play with a larger torque scale acts as a
+/// spring.
+const LARGEST_RATIO: f64 = 3.0;
 
-/// A model with another threshold.
+/// The size of an effect and its likelihood for one value of its threshold.
 struct Tried {
     threshold_nm: f64,
     size: f64,
@@ -59,12 +62,12 @@ impl Tried {
 }
 
 impl Positions {
-    /// Replaces the thresholds of those effects of the model that have one by better ones, and fits the model again. Every
-    /// further effect changes which threshold is the best.
+    /// Replaces the thresholds of the model's effects by better ones, and fits the model again. The best threshold
+    /// changes with every further effect.
     pub(super) fn refine_thresholds(&mut self) {
         for position in 0..self.fitted.effects.len() {
             let Some(from_nm) = self.threshold_nm(position) else { continue };
-            let most_nm = MOST * self.largest_torque_nm(position);
+            let most_nm = LARGEST_RATIO * self.largest_torque_nm(position);
             let [low, high] = [from_nm / BRACKET, (from_nm * BRACKET).min(most_nm)].map(libm::log);
             let best = match self.is_long() {
                 true => self.at_the_vertex(position, libm::log(from_nm), high),
@@ -76,7 +79,7 @@ impl Positions {
         }
     }
 
-    /// The model with the best threshold of effect number `position`, by the search of the golden section between two logarithms
+    /// The model with the best threshold of effect number `position`, by a golden section search between two logarithms
     /// of the threshold \[ln(N m)\].
     fn golden_section(&self, position: usize, mut low: f64, mut high: f64) -> Self {
         let at = |ln: f64| (ln, self.with_threshold(position, libm::exp(ln)));
@@ -142,13 +145,13 @@ impl Positions {
         out
     }
 
-    /// The size (half width \[rad\] or compliance \[rad/(N m)\]) and the threshold \[N m\] of effect number `position`, with
-    /// their 95 % intervals; `None` if the effect has no threshold. An end is `None` if no threshold on this side lowers the
-    /// likelihood enough.
+    /// The size (half width \[rad\] or compliance \[rad/(N m)\]) and the threshold \[N m\] of effect number `position`,
+    /// with their 95 % intervals; `None` if the effect has no threshold. An end of the threshold's interval is `None`
+    /// if no threshold on this side lowers the likelihood enough.
     pub(super) fn profile(&self, position: usize) -> Option<[Estimate; 2]> {
         let best_nm = self.threshold_nm(position)?;
         let (size, deviation) = (self.fitted.compliances[position][0], self.fitted.deviations[position][0]);
-        let most_nm = MOST * self.largest_torque_nm(position);
+        let most_nm = LARGEST_RATIO * self.largest_torque_nm(position);
         let fitted_deviation = self.with_threshold(position, best_nm).fitted.deviations[position][0];
         // compliances without a name widen the interval at every threshold by the same factor
         let widened = (deviation / fitted_deviation).max(1.0);
@@ -164,8 +167,8 @@ impl Positions {
         Some([size, threshold(&mut tried, best_nm)])
     }
 
-    /// The model with thresholds at all ratios to the best one, `best_nm`, up to `most_nm`. In a long campaign only those up to the
-    /// first on each side at which the likelihood has fallen enough.
+    /// Fits with thresholds at all [`RATIOS`] to the best one, `best_nm`, as far as they are below `most_nm`. In a long
+    /// campaign, no further thresholds are tried on a side once the likelihood has fallen enough.
     fn tried_outward(&self, position: usize, best_nm: f64, most_nm: f64, widened: f64) -> Vec<Tried> {
         let nm = |ratio: &f64| {
             [*ratio, 1.0 / ratio].map(|ratio| ratio * best_nm).into_iter().filter(|nm| *nm < most_nm)
@@ -185,10 +188,11 @@ impl Positions {
         out
     }
 
-    /// The model with each of the thresholds `thresholds_nm` of effect number `position`. Compliances without a name widen the
-    /// interval of its size by the factor `widened`.
+    /// Fits of the model with each of the thresholds `thresholds_nm` of effect number `position`. `widened` is the
+    /// factor by which compliances without a name widen the interval of its size.
     fn tried(&self, position: usize, thresholds_nm: Vec<f64>, widened: f64) -> Vec<Tried> {
-        // what widens the interval of the size makes the likelihood fall more slowly along the thresholds
+        // the likelihood falls more slowly along the thresholds, by the square of the factor that widens the interval
+        // of the size
         let flatter = (widened * self.fitted.robust_factor).max(1.0).powi(2);
         let tried = thresholds_nm.into_par_iter().map(|threshold_nm| {
             let other = self.with_threshold(position, threshold_nm).fitted;
@@ -204,15 +208,15 @@ impl Positions {
 }
 
 /// Position of the vertex of the parabola through three values at -1, 0 and 1. If the parabola has no maximum, the
-/// position is infinite, on the side of the greater value.
+/// position is infinite, on the side of the larger value.
 fn vertex([left, middle, right]: [f64; 3]) -> f64 {
     let bent = left - 2.0 * middle + right;
     if bent < 0.0 { 0.5 * (left - right) / bent } else { f64::INFINITY.copysign(right - left) }
 }
 
 /// The threshold with its interval \[N m\]. An end of the interval lies between a threshold that is likely enough and
-/// one that is not. The likelihood falls like a parabola in the logarithm of the threshold, so the root of the fall is
-/// interpolated linearly. Sorts `tried` by the threshold.
+/// one that is not. The logarithm of the likelihood falls like a parabola in the logarithm of the threshold, so the
+/// root of the fall is interpolated linearly. Sorts `tried` by the threshold.
 fn threshold(tried: &mut [Tried], best_nm: f64) -> Estimate {
     tried.sort_by(|a, b| a.threshold_nm.total_cmp(&b.threshold_nm));
     let root = |fall: f64| fall.max(0.0).sqrt();

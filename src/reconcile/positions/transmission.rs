@@ -1,4 +1,5 @@
-//! Finds joints with a transmission error: an error of the angle by the gear or its sensor, once and twice a turn.
+//! Finds joints with a transmission error: an error of the angle that the gear or its sensor causes, once and twice a
+//! turn.
 
 use super::analysis::Positions;
 use super::fit::fit;
@@ -20,8 +21,8 @@ pub(crate) fn numbers(joint: usize) -> impl Iterator<Item = Number> {
 }
 
 impl Positions {
-    /// The driven joint whose transmission error raises the likelihood most, if the rise is worth its price: what it is
-    /// worth beyond its price \[ln of the likelihood\], and its index and fit.
+    /// The driven joint whose transmission error raises the likelihood most, with the gain of the likelihood beyond the
+    /// price \[ln of the likelihood\], the index of the joint and the fit. `None` if no rise exceeds its price.
     pub(super) fn best_transmission(&self, campaign: &Campaign) -> Option<(f64, (usize, Fitted))> {
         if !campaign.statement.considers(EFFECT) {
             return None;
@@ -32,8 +33,8 @@ impl Positions {
         gains.filter(|(gain, _)| *gain > 0.0).max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// Adds the transmission error of the driven joint `joint`, as it was fitted, if held-out poses confirm it. Returns
-    /// whether it was added.
+    /// Adds the transmission error of the driven joint `joint`, if the score and held-out poses confirm it. `fitted` is
+    /// the fit with it. Returns whether it was added.
     pub(super) fn take_transmission(&mut self, campaign: &Campaign, joint: usize, fitted: Fitted) -> bool {
         let mut next = Self { fitted, ..self.clone() };
         next.numbers.extend(numbers(joint));
@@ -79,8 +80,8 @@ impl Positions {
         without
     }
 
-    /// Indices of the other driven joints whose transmission error, in place of that of `joint`, would fit the
-    /// positions as well.
+    /// Indices of other driven joints: a transmission error of one of them, in place of the transmission error of
+    /// `joint`, would fit the positions as well.
     pub(crate) fn transmission_competitors(&self, joint: usize) -> Vec<usize> {
         let without = self.without_transmission(joint);
         let tried = without.best_transmissions(self.missing(&without.fitted)).into_iter();

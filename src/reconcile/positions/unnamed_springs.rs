@@ -1,7 +1,8 @@
 //! Uncertainty that small compliances outside the model add to the parameters in it.
 //!
 //! Every joint and bearing is slightly compliant. Compliances that are too small to be worth their price are not in the
-//! model, and those in the model take over a part of their effect. The [`Posterior`] of the model has the size of this part.
+//! model, and a part of their effect is ascribed to those in the model. The [`Posterior`] of the model takes this into
+//! account.
 
 use super::analysis::Positions;
 use super::fitted::Sample;
@@ -19,8 +20,8 @@ use crate::reconcile::readings::campaign::Campaign;
 use std::sync::Arc;
 
 impl Positions {
-    /// Computes what the readings say about the numbers of the model, compliances outside it included. The standard
-    /// deviations of the numbers become half the widths of their intervals.
+    /// Computes the posterior distribution of the numbers of the model, with compliances outside it. The standard
+    /// deviation of each number becomes half the width of its 95 % interval, divided by the normal quantile 1.96.
     pub(super) fn widen(&mut self, campaign: &Campaign) {
         if self.fitted.effects.is_empty() {
             return;
@@ -36,8 +37,10 @@ impl Positions {
         self.posterior = Some(Arc::new(posterior));
     }
 
-    /// How far the interval of a quantity reaches below and above its fitted value, over the 95 % quantile. The quantity has
-    /// the derivatives `gradient` with respect to numbers of the model: those of the geometry first, then the compliances.
+    /// Distances of the lower and the upper end of the 95 % interval of a quantity from its fitted value, each divided
+    /// by the normal quantile 1.96. The quantity has the derivatives `gradient` with respect to numbers of the model:
+    /// those of the geometry first, then the compliances. Without a posterior distribution, the numbers are taken as
+    /// independent.
     pub(super) fn reach(&self, gradient: &[(usize, f64)]) -> [f64; 2] {
         if let Some(posterior) = &self.posterior {
             return posterior.reach(gradient);
@@ -48,7 +51,7 @@ impl Positions {
         [squares.sum::<f64>().sqrt(); 2]
     }
 
-    /// The same for each compliance of effect number `position` of the model.
+    /// The distances of [`reach`](Self::reach) for each compliance of effect number `position` of the model.
     pub(super) fn reaches(&self, position: usize) -> Vec<[f64; 2]> {
         let first = self.first_compliance(position);
         let own = first..first + self.fitted.compliances[position].len();
@@ -60,7 +63,7 @@ impl Positions {
         self.numbers.len() + self.fitted.compliances[..position].iter().map(Vec::len).sum::<usize>()
     }
 
-    /// What the readings say about the numbers of the model; `None` if the equations are singular.
+    /// The posterior distribution of the numbers of the model; `None` if the equations are singular.
     fn posterior_of(&self, campaign: &Campaign) -> Option<Posterior> {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let (unnamed, named) = (self.unnamed_springs(), self.named_springs());
@@ -79,8 +82,8 @@ impl Positions {
         Some(Posterior::new(&equations, &best, self.fitted.robust_factor, &named))
     }
 
-    /// Indices of the candidates with a single compliance that are neither in the model nor contained in a frame of
-    /// the model. Of two with the same effect on the positions there is only the first.
+    /// Indices of the candidates with a single compliance that are neither in the model nor contained in a frame of the
+    /// model. Of two candidates with the same effect on the positions, only the first is listed.
     fn unnamed_springs(&self) -> Vec<usize> {
         let is_spring = |c: &usize| {
             let candidate = &self.candidates[*c];

@@ -1,5 +1,5 @@
-//! A joint whose stiffness varies with its angle, as positions show it: the amplitudes, and the search together with
-//! transmission errors, which follow the angle too.
+//! Finds joints whose stiffness varies with their angle, and states the amplitudes. They are searched together with
+//! transmission errors, which also follow the angle.
 
 use super::analysis::Positions;
 use super::dependence::Dependence;
@@ -18,17 +18,17 @@ use crate::reconcile::readings::campaign::Campaign;
 use std::f64::consts::PI;
 
 /// The compliance of a joint must vary by less than this fraction of its mean over all angles.
-const MOST: f64 = 0.9;
+const LARGEST_VARIATION: f64 = 0.9;
 
 impl Positions {
     /// Finds the one addition that raises the likelihood most: a stiffness that varies with a joint's angle, or a
-    /// transmission error. Adds it if the rise is worth its price and held-out poses confirm it. Returns whether one
-    /// was added.
+    /// transmission error. Adds it if the rise is worth its price and held-out poses confirm it. If a varying stiffness
+    /// is not confirmed, the best transmission error is tried in its place. Returns whether one was added.
     pub(super) fn add_periodic(&mut self, campaign: &Campaign) -> bool {
         let uneven = self.best_transmission(campaign);
         let base = &self.fitted;
         let varies = |c: usize| self.candidates[c].shape.waves().is_some();
-        let tried = self.best_additions(base, varies, |c| self.least_rise(base, c)).into_iter();
+        let tried = self.best_additions(base, varies, |c| self.required_rise(base, c)).into_iter();
         let gain = |f: &Fitted| {
             f.ln_likelihood - self.prices(&f.effects) - (base.ln_likelihood - self.prices(&base.effects))
         };
@@ -47,8 +47,8 @@ impl Positions {
         }
     }
 
-    /// Compliance of the joint `at` about its axis in the fit `fitted`, the mean over all angles \[rad/(N m)\]; `None` if it
-    /// is not proportional to the torque.
+    /// Compliance of the joint `at` about its axis in the fit `fitted`, averaged over all angles \[rad/(N m)\]. `None`
+    /// if there is no such joint, or if its twist is not proportional to the torque.
     pub(super) fn mean_rad_per_nm(&self, fitted: &Fitted, at: &str) -> Option<f64> {
         let [gear, connection] = self.nominal_rad_per_nm(at)?;
         let factor = self.stiffness_factors(fitted, at).map(|(_, factor, _)| factor).product::<f64>();
@@ -71,8 +71,8 @@ impl Positions {
         factors.chain(springs).collect()
     }
 
-    /// Compliance of the gear of the joint `at` and that of its connection, as in the arm file \[rad/(N m)\]; `None` if there is
-    /// no such joint or its gear is not proportional.
+    /// Compliance of the gear of the joint `at`, and compliance of its connection, as in the arm file \[rad/(N m)\].
+    /// `None` if there is no such joint, or if the twist of its gear is not proportional to the torque.
     fn nominal_rad_per_nm(&self, at: &str) -> Option<[f64; 2]> {
         let joint = self.tree.pieces.iter().find_map(|piece| match piece {
             Piece::Joint(joint) if joint.name == at => Some(joint),
@@ -86,8 +86,8 @@ impl Positions {
         Some([gear, joint.law.connection_rad_per_nm])
     }
 
-    /// The factors on the stiffness of the joint `at` in the fit `fitted`: index among the dependences, factor, and standard
-    /// deviation of its logarithm by the tolerance.
+    /// The factors on the stiffness of the joint `at` in the fit `fitted`: index among the dependences, factor, and
+    /// standard deviation of its logarithm that follows from the tolerance.
     fn stiffness_factors(&self, fitted: &Fitted, at: &str) -> impl Iterator<Item = (usize, f64, f64)> {
         let all = self.dependences.iter().zip(&fitted.geometry.dependences).enumerate();
         all.filter_map(move |(k, (dependence, x))| match dependence {
@@ -98,7 +98,7 @@ impl Positions {
         })
     }
 
-    /// Which effects of the fit `fitted` are springs about the axis of the joint `at`.
+    /// Positions, among the effects of the fit `fitted`, of the springs about the axis of the joint `at`.
     fn springs_about(&self, fitted: &Fitted, at: &str) -> impl Iterator<Item = usize> {
         let is_own = move |effect: usize| {
             let candidate = &self.candidates[effect];
@@ -116,17 +116,18 @@ impl Positions {
             || self.mean_rad_per_nm(fitted, &candidate.at).is_some_and(|c| c > 0.0)
     }
 
-    /// Whether, in the fit `fitted`, the compliance of each joint varies by less than [`MOST`] of its mean.
+    /// Whether, in the fit `fitted`, the compliance of each joint varies by less than [`LARGEST_VARIATION`] of its mean.
     pub(super) fn has_possible_waves(&self, fitted: &Fitted) -> bool {
         fitted.effects.iter().zip(&fitted.compliances).all(|(&e, sizes)| {
             let candidate = &self.candidates[e];
             let mean = self.mean_rad_per_nm(fitted, &candidate.at).unwrap_or_default();
             let amplitudes = sizes.chunks(2).map(|size| libm::hypot(size[0], size[1]));
-            candidate.shape.waves().is_none() || amplitudes.sum::<f64>() < MOST * mean
+            candidate.shape.waves().is_none() || amplitudes.sum::<f64>() < LARGEST_VARIATION * mean
         })
     }
 
-    /// The parameters of `stiffness_waves` that is effect number `position` of the model, with their 95 % intervals.
+    /// The parameters, with their 95 % intervals, of effect number `position` of the model, which must be
+    /// `stiffness_waves`.
     pub(super) fn wave_parameters(&self, position: usize, waves: Waves) -> Vec<(String, Vec<Estimate>)> {
         let at = &self.candidates[self.fitted.effects[position]].at;
         let mean = self.mean_rad_per_nm(&self.fitted, at).unwrap_or_default();
@@ -153,8 +154,8 @@ impl Positions {
         parameters
     }
 
-    /// Driven joints whose transmission error would fit as well in the place of effect number `position`, if that is a
-    /// stiffness that varies. `without` is the fit without this effect.
+    /// Driven joints whose transmission error would fit as well in the place of effect number `position`, if this
+    /// effect is a stiffness that varies with the angle. `without` is the fit without this effect.
     pub(super) fn transmissions_instead(&self, position: usize, without: &Fitted) -> Vec<(String, String)> {
         if self.candidates[self.fitted.effects[position]].shape.waves().is_none() {
             return Vec::new();
@@ -166,7 +167,8 @@ impl Positions {
         good.map(|(j, _)| (transmission::EFFECT.to_string(), self.tree.driven[j].clone())).collect()
     }
 
-    /// Joints whose stiffness, if it varied, would fit as well as the transmission error of the driven joint `joint`.
+    /// Joints: a stiffness of one of them that varies with the angle would fit as well as the transmission error of the
+    /// driven joint `joint`.
     pub(super) fn waves_instead(&self, joint: usize) -> Vec<(String, String)> {
         let without = self.without_transmission(joint);
         let varies = |c: usize| self.candidates[c].shape.waves().is_some();
@@ -189,8 +191,9 @@ fn slopes_of_wave(size: &[f64], mean: f64) -> [[f64; 3]; 2] {
     ]
 }
 
-/// Amplitude and phase of a wave with the coefficients `size` about the mean compliance `mean` \[rad/(N m)\], with their 95 %
-/// intervals. `reaches` is how far each interval reaches below and above its value, over [`Z_95`](super::intervals::within).
+/// Amplitude and phase of a wave with the coefficients `size` about the mean compliance `mean` \[rad/(N m)\], with
+/// their 95 % intervals. `reaches` has, for both, the distances of the ends of the interval from the value, divided by
+/// 1.96 (see [`within`]).
 fn wave(size: &[f64], mean: f64, reaches: [[f64; 2]; 2]) -> [Estimate; 2] {
     let (amplitude, phase) = (libm::hypot(size[0], size[1]) / mean, libm::atan2(size[1], size[0]));
     let size = within(amplitude, reaches[0]);
@@ -231,8 +234,8 @@ mod tests {
     use rand_xoshiro::Xoshiro256PlusPlus;
     use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
-    /// Amplitudes and phases of many draws scatter as the derivatives say: coefficients and mean that depend on each other,
-    /// drawn from three independent numbers by a matrix.
+    /// The scatter of amplitudes and phases over many draws agrees with the derivatives. Coefficients and mean are
+    /// correlated: they are drawn as linear combinations of three independent numbers.
     #[test]
     fn amplitude_and_phase_scatter_with_the_coefficients_and_with_the_mean() {
         const DRAWS: usize = 40_000;

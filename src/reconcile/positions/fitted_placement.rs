@@ -16,8 +16,8 @@ use std::sync::Arc;
 
 impl Positions {
     /// The placement of the arm with the index `arm` in the instrument's frame, by the fit `shown`: one placement for
-    /// each session, and one for all sessions together. `turned` is the rotation of the arm's last frame by the
-    /// calibrated zeros and mountings.
+    /// each session, and one for all sessions together. `turned` is the rotation of the arm's last frame that the
+    /// calibrated zeros and mountings cause.
     pub(crate) fn placement(
         &self,
         campaign: &Campaign,
@@ -88,8 +88,9 @@ impl Positions {
         out
     }
 
-    /// Placement of the arm, and of the points on its tool, during the samples `run`. `own_points` lists the arm's
-    /// points. Each comes with the index among all points that is used if the run does not contain the point.
+    /// Placement of the arm, and of the points on its tool, during the samples with the indices `run`. `own_points`
+    /// lists the arm's points. Each comes with the index among all points that is used if the run does not contain the
+    /// point.
     fn stand(
         &self,
         geometry: &Geometry,

@@ -20,18 +20,18 @@ struct Frames {
     at_m: Vectors,
 }
 
-/// What the next piece of a chain does to the frame.
+/// How a piece of the chain changes the frame that is passed along the chain.
 enum Step {
-    /// A joint turns it about this axis.
+    /// A joint turns the frame about this axis.
     Turn([f64; 3]),
-    /// A link shifts it by this vector \[m\].
+    /// A link shifts the frame by this vector \[m\].
     Shift([f64; 3]),
-    /// A link of unknown mounting shifts it \[m\], and turns everything outboard.
+    /// A link of unknown mounting shifts the frame by this vector \[m\], and turns it by this rotation.
     Mount([f64; 3], [f64; 9]),
 }
 
-/// The derivative of a point's position with respect to one number, before any factor. Frame `k` is inboard of the
-/// chain's piece `k`.
+/// The direction of the derivative of a point's position with respect to one number. A [`Factor`] may multiply it.
+/// Frame `k` is inboard of the chain's piece `k`.
 enum Part {
     Zero,
     /// The instrument axis with this index.
@@ -45,7 +45,7 @@ enum Part {
     Mount(usize, usize),
     /// Tilting the axis of a joint about a vector across it: index of the joint in the chain, the vector.
     Tilt(usize, [f64; 3]),
-    /// Turning about the axes of joints: for each its index in the chain, its axis, and the ratio of its angle.
+    /// Turning about the axes of joints: for each, its index in the chain, its axis, and the derivative of its angle.
     Turning(Vec<(usize, [f64; 3], f64)>),
 }
 
@@ -78,7 +78,7 @@ pub(crate) struct EightPlacer<'a> {
     sin_cos: Vec<[Eight; 2]>,
     /// The frames along the chain.
     frames: Vec<Frames>,
-    /// Positions of the points that were placed last, without the motion of their sessions \[m\].
+    /// Positions of the points of the last call of `place_m`, without the motion of their sessions \[m\].
     at_m: Vectors,
 }
 
@@ -95,8 +95,8 @@ impl<'a> EightPlacer<'a> {
         }
     }
 
-    /// Positions of the points `asked`, in the instrument's frame \[m\]. There are one to eight of them, all of the same
-    /// arm. The lanes without a point repeat the last one.
+    /// Positions of the points `asked`, in the instrument's frame \[m\]. There must be one to eight points, all of the
+    /// same arm. Lanes without a point repeat the last point.
     pub(crate) fn place_m(&mut self, asked: &[Placing]) -> [Vector3<f64>; LANES] {
         let lanes: [&Placing; LANES] = std::array::from_fn(|lane| &asked[lane.min(asked.len() - 1)]);
         let geometry = self.placer.geometry;
@@ -105,14 +105,14 @@ impl<'a> EightPlacer<'a> {
         let zero = Frames { rotation: [[0.0; LANES]; 9], at_m: [[0.0; LANES]; 3] };
         self.frames.resize(chain.len() + 1, zero);
         let tools_m = std::array::from_fn(|c| lanes.map(|own| geometry.tools_m[own.point][c]));
-        let walk = Walk {
+        let kinematics = ForwardKinematics {
             base: (columns(&geometry.base), geometry.origin_m.into()),
             chain,
             sin_cos: &self.sin_cos,
             tools_m: &tools_m,
             frames: &mut self.frames,
         };
-        self.at_m = in_lanes(walk);
+        self.at_m = in_lanes(kinematics);
         std::array::from_fn(|lane| {
             let at_m = Vector3::from(self.at_m.map(|own| own[lane]));
             let (turn, shift_m) = &geometry.stations[lanes[lane].station];
@@ -164,7 +164,7 @@ impl<'a> EightPlacer<'a> {
             Number::BaseRotation(c) | Number::SessionRotation(_, c) => Part::About(c),
             Number::BasePosition(c) | Number::SessionPosition(_, c) => Part::Unit(c),
             Number::Tool(_, c) => Part::Column(self.chains[arm].len(), c),
-            // they do not act through the geometry
+            // these numbers do not act through the geometry
             Number::Gravity(_) | Number::Tolerance(_) | Number::Effect(_) | Number::Drift(_) => Part::Zero,
             Number::Zero(j) | Number::Transmission(j, _) => self.turning(arm, j),
             Number::Ratio(i, _) => along(i)
@@ -191,7 +191,8 @@ impl<'a> EightPlacer<'a> {
         Slope { part, factor }
     }
 
-    /// Turning of the driven joint with the index `driven`, and of its passive joints.
+    /// The derivative with respect to the angle of the driven joint with the index `driven`, which also turns its
+    /// passive joints.
     fn turning(&self, arm: usize, driven: usize) -> Part {
         let own = self.placer.geometry;
         let pieces = self.placer.turned_by[driven].iter();
@@ -248,8 +249,8 @@ fn columns(rotation: &Rotation3<f64>) -> [f64; 9] {
     std::array::from_fn(|k| matrix[k])
 }
 
-/// The walk from the base to the points on the tools.
-struct Walk<'a> {
+/// The forward kinematics of an arm, from the base to the points on the tools.
+struct ForwardKinematics<'a> {
     base: ([f64; 9], [f64; 3]),
     chain: &'a [Step],
     sin_cos: &'a [[Eight; 2]],
@@ -257,7 +258,7 @@ struct Walk<'a> {
     frames: &'a mut [Frames],
 }
 
-impl LaneWork for Walk<'_> {
+impl LaneWork for ForwardKinematics<'_> {
     type Output = Vectors;
 
     #[inline(always)]
