@@ -336,7 +336,8 @@ impl Campaign {
     /// A campaign of absolute positions `rows` of points on `arms`, without files. The first arm is the arm of the
     /// campaign.
     ///
-    /// # Errors Two arms have the same name, two elements outboard of the trunk have the same name, or a mount names no
+    /// # Errors
+    /// Two arms have the same name, two elements outboard of the trunk have the same name, or a mount names no
     /// link.
     pub fn of_positions(
         statement: &Statement,
