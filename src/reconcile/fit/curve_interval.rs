@@ -47,7 +47,7 @@ struct Axis {
     nodes: Vec<f64>,
 }
 
-/// The fit in which the two break points are fixed at the torques of one pair of nodes.
+/// The result of a fit in which the two break points are fixed at the torques of one pair of nodes.
 struct Cell {
     u: Vec<f64>,
     /// Standard deviations of all parameters, in `u`. Those of the two fixed break points are infinite and not used.
@@ -171,8 +171,8 @@ impl Cell {
         let fitted = fit_below(forward, &model, start, weights, HELD, limit);
         let held = axes.each_ref().map(|a| a.parameter);
         let of_rest = without(&fitted.curvature, held);
-        // the evidence integrates over all parameters; here two of them are fixed, so the factor that belongs to them
-        // is removed
+        // the evidence integrates over all parameters, but two of them are fixed here, so the factor that the integral
+        // over these two contributes is removed
         let ln_density =
             fitted.evidence + 0.5 * (ln_determinant(fitted.curvature.clone()) - ln_determinant(of_rest));
         // the two fixed parameters are not part of the covariance
@@ -212,7 +212,7 @@ impl Posterior {
             to - from
         };
         self.cells.iter().map(move |(nodes, cell)| {
-            // a node represents its area, because the nodes are not equally spaced
+            // the nodes are not equally spaced, so each pair is weighted by the area that it represents
             let area = width(0, nodes[0]) * width(1, nodes[1]);
             (nodes, cell, libm::exp(cell.ln_density - top) * area)
         })

@@ -228,8 +228,8 @@ pub fn normal(
 /// Number of rows (data) whose products are computed together. These rows then stay in the processor's cache.
 const ROWS_PER_BLOCK: usize = 256;
 
-/// Derivatives of the predicted readings (rows) with respect to parameters (columns), as several matrices whose
-/// columns follow one another. So columns that many models have in common need not be copied for each model.
+/// Derivatives of the predicted readings (rows) with respect to parameters (columns), as several matrices whose columns
+/// follow one another. In this way, columns that many models have in common are not copied for each model.
 pub struct Slopes<'a>(pub &'a [&'a DMatrix<f64>]);
 
 impl Slopes<'_> {
@@ -454,8 +454,8 @@ pub fn finish<'a>(
     mut jacobian: DMatrix<f64>,
     weights: &Weights,
 ) -> Fit<'a> {
-    // a parameter that rests on its lower limit, which is another parameter, has no effect on the readings if it is
-    // lowered, so its derivative is taken as zero
+    // the lower limit of a parameter can be another parameter; at this limit, lowering the parameter does not change
+    // the readings, so its derivative is taken as zero
     let resting = (0..model.len()).filter(|p| model.rests(*p, &point.u));
     resting.for_each(|p| jacobian.fill_column(p, 0.0));
     let slopes = Slopes(&[&jacobian]);
@@ -465,7 +465,7 @@ pub fn finish<'a>(
     for (i, parameter) in model.free_parameters().enumerate() {
         let p = model.calibrated() + i;
         let width = parameter.width(point.u[p]);
-        // a uniform prior of this width has the variance width² / 12; adding it keeps the evidence finite
+        // a uniform prior of this width has the variance width² / 12; adding its reciprocal keeps the evidence finite
         // where the data say nothing
         curvature[(p, p)] += 12.0 / (width * width);
         evidence += 0.5 * libm::log(TAU) - libm::log(width);
@@ -505,8 +505,8 @@ impl Fit<'_> {
 }
 
 /// The curvature of half the objective without most of the prior of the effects' parameters. This prior has a finite
-/// width for the sake of the evidence only, and it must not narrow the intervals. A hundredth part remains so that
-/// the matrix is regular.
+/// width for the sake of the evidence only, and it must not narrow the intervals. About a hundredth of it remains, so
+/// that the matrix is regular.
 pub fn data_curvature(fit: &Fit) -> DMatrix<f64> {
     let mut curvature = fit.curvature.clone();
     for (i, parameter) in fit.model.free_parameters().enumerate() {

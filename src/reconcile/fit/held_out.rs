@@ -3,8 +3,8 @@
 //! The poses are divided into four folds. Each fold in turn is held out, the model is refitted to the rest, and the
 //! fold is predicted. The effects stay the same. Their sizes and the calibration are fitted again. Only the break
 //! points of gear curves keep their values. All rows of a pose belong to the same fold, because they share a history
-//! and a reference reading. Bench rows belong to no pose and stay in every fit, unless there is nothing else: then
-//! every fourth row of the bench is a fold.
+//! and a reference reading. Bench rows belong to no pose and stay in every fit. If there are only bench rows, every
+//! fourth row belongs to the same fold.
 
 use super::descent::{Effort, Fit, Weights, descent, robust_factor};
 use crate::reconcile::forward::prepared::Forward;
@@ -15,8 +15,8 @@ use rayon::prelude::*;
 /// Number of folds into which the poses are divided. One fold is held out at a time.
 const FOLDS: usize = 4;
 
-/// Root mean squares of held-out residuals, in standard deviations. These are the declared standard deviations times
-/// the factor by which the readings scatter more than declared, unless a field says otherwise.
+/// Root mean squares of held-out residuals. Unless a field says otherwise, their unit is the declared standard
+/// deviation times the factor by which the readings scatter more than declared.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeldOut {
     /// Root mean square of the held-out residuals without any effect, with the calibration refitted.
@@ -77,10 +77,11 @@ pub(crate) fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &W
 /// larger if the poses of one fold alone show something, because a fit without them knows nothing of it. Break points
 /// keep their values, as in [`residuals`]. If the curvature is singular, the result is 1 too.
 ///
-/// The computation is exact to first order. `w` are the weights, `J` the derivatives of the predicted readings, `L` the
-/// Cholesky factor of the curvature, and `r` the residuals of the full fit. The data of a fold have the block `H = M
-/// Mᵀ` of the hat matrix, with the rows `M = w J L⁻ᵀ`. A fit without them leaves the residuals `(I - H)⁻¹ r` on them,
-/// whose covariance is `(I - H)⁻¹`. By Woodbury's formula its diagonal is that of `I + M (I - Mᵀ M)⁻¹ Mᵀ`.
+/// The computation is exact to first order. `w` are the weights (reduced for large residuals), `J` the derivatives of
+/// the predicted readings, `L` the Cholesky factor of the curvature, and `r` the residuals of the full fit. The data of
+/// a fold have the block `H = M Mᵀ` of the hat matrix, with the rows `M = w J L⁻ᵀ`. A fit without them leaves the
+/// residuals `(I - H)⁻¹ r` on them, whose covariance is `(I - H)⁻¹`. By Woodbury's formula its diagonal is that of
+/// `I + M (I - Mᵀ M)⁻¹ Mᵀ`.
 pub(crate) fn expected_rms(forward: &Forward, fit: &Fit, weights: &Weights) -> f64 {
     // a parameter that only this fold determines makes I - MᵀM singular; with this addition it has a large finite
     // variance

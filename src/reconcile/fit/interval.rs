@@ -1,10 +1,10 @@
 //! Computes 95 % intervals of fitted parameters.
 //!
 //! Where the objective is quadratic, its curvature gives the interval. The parameters of a gear's torsion curve get
-//! their intervals from a posterior distribution ([`curve_interval`](super::curve_interval)). For other parameters the
-//! objective may not be quadratic, such as for a torque scale or for a value near the end of its range. The interval
-//! then follows the profile likelihood: the parameter is fixed at a value, and all others are refitted. An end of the
-//! interval is the value at which the objective has risen by 3.84.
+//! their intervals from a posterior distribution ([`curve_interval`](super::curve_interval)). For some other parameters
+//! the objective is not quadratic, for example for a torque scale or for a value near the end of its range. The
+//! interval then follows the profile likelihood: the parameter is fixed at a value, and all others are refitted. An end
+//! of the interval is the value at which the objective has risen by 3.84.
 
 use super::curve_interval::curve_intervals;
 use super::descent::{Effort, Fit, Weights, data_curvature, descent};

@@ -37,7 +37,8 @@ impl Outlier {
     }
 }
 
-/// A reading is a gross error if its residual is at least this many standard deviations.
+/// A reading is a gross error if its residual exceeds this many standard deviations. If the model fits a channel badly,
+/// the standard deviation of the channel's residuals counts instead of the declared one, up to three times the latter.
 const GROSS_SIGMAS: f64 = 5.5;
 /// A row is a gross error, before any effect is sought, only if its residual is larger than this \[standard
 /// deviations\]. The limit is high, because play or a break point can shift a single reading by ten standard
@@ -88,7 +89,7 @@ impl Noise {
         Weights { inverse: inverse.collect(), smooth_only: false }
     }
 
-    /// Whether the model of `fit` fits most readings of every channel, by the robust standard deviation of its
+    /// Whether the model of `fit` fits most readings of every channel, judged by the robust standard deviation of the
     /// residuals.
     pub fn is_close(forward: &Forward, fit: &Fit) -> bool {
         let residuals = declared_residuals(forward, &fit.point.predicted);
@@ -98,7 +99,7 @@ impl Noise {
         })
     }
 
-    /// Judges the readings before an effect is sought, by their misfit in `fit`, which was fitted with `weights`. At
+    /// Judges the readings before an effect is sought, by their residuals in `fit`, which was fitted with `weights`. At
     /// most a few extreme outliers of each channel are left out. A single wrong frequency among ten would spoil a
     /// calibration.
     pub fn without_worst(forward: &Forward, fit: &Fit, weights: &Weights) -> Self {
@@ -114,8 +115,8 @@ impl Noise {
         Self { outliers, ..Self::default() }
     }
 
-    /// This judgement with one or two more rows left out, which are gross errors in `fit`. `None` if there are no
-    /// such rows, or more than two.
+    /// This judgement with one or two more rows left out. These rows are gross errors with the model of `fit`. `None`
+    /// if there are no such rows, or more than two.
     pub fn with_slips(&self, forward: &Forward, fit: &Fit) -> Option<Self> {
         let mut slips = misses(forward, fit, &self.weights(forward));
         slips.retain(|slip| slip.sigmas > GROSS_SIGMAS);
@@ -174,7 +175,8 @@ impl Noise {
         for channel in CHANNELS {
             let range = forward.range(channel);
             let own = &residuals[range.clone()];
-            // if the model fits badly, only rows that differ from the other rows are gross errors
+            // if the model fits badly, only rows whose residuals stand out from those of the other rows are gross
+            // errors
             let limit = GROSS_SIGMAS * spread(own).clamp(1.0, 3.0);
             let data = &forward.data[range.clone()];
             let mut gross = largest_of_rows(data.iter().zip(own.iter().map(|r| r.abs())));
@@ -193,8 +195,8 @@ impl Noise {
     }
 
     /// Leaves out the few frequency lists (modes of one pose and payload) in which the model with these coefficients
-    /// misses several frequencies by more than 16 standard deviations. `None` if there is no such list, or if more
-    /// than a third of the lists are so.
+    /// misses several frequencies by more than 16 standard deviations. `None` if there is no such list, or if more than
+    /// a third of the lists are such lists.
     pub fn uncertain_lists(forward: &Forward, coefficients: &Coefficients) -> Option<Self> {
         let residuals = declared_residuals(forward, &forward.predict(coefficients));
         let far = |datum: usize| residuals[datum].abs() > UNMISTAKABLE_SIGMAS;
@@ -212,8 +214,8 @@ impl Noise {
         Some(Self { outliers: rows.map(outlier).collect(), ..Self::default() })
     }
 
-    /// This judgement without any row of a frequency list that has several gross errors. The pose, the payload or the
-    /// numbering of such a list is wrong, and its remaining rows would mislead.
+    /// This judgement with all rows left out of each frequency list that has several gross errors. The pose, the
+    /// payload or the numbering of such a list is wrong, and its remaining rows would mislead.
     fn with_whole_lists(mut self, forward: &Forward, residuals: &[f64]) -> Self {
         for list in gross_lists(forward, &self.weights(forward)) {
             for &(datum, _) in &forward.modal[list].modes {
@@ -250,9 +252,9 @@ pub fn gross_lists(forward: &Forward, weights: &Weights) -> Vec<usize> {
     (0..forward.modal.len()).filter(|list| left_out(*list) > 1).collect()
 }
 
-/// The misfit that each row of each channel would have if the fit did not follow this row \[declared standard
-/// deviations\], the largest one first. It is the residual divided by the root of one minus the leverage, which is the
-/// fraction of the datum's variance that the fitted parameters absorb.
+/// The standardized residual of each row of each channel \[declared standard deviations\], the largest one first. It is
+/// the residual divided by the root of one minus the leverage, which is the fraction of the datum's variance that the
+/// fitted parameters absorb.
 fn misses(forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<Outlier> {
     // prevents a division by zero for a row that the fit follows completely
     const LARGEST_LEVERAGE: f64 = 0.9;
@@ -270,9 +272,9 @@ fn misses(forward: &Forward, fit: &Fit, weights: &Weights) -> Vec<Outlier> {
     out
 }
 
-/// The gross errors `gross` of a channel (row and size), without those that form a run. A run is consecutive rows of
-/// one pose, or of the bench, with errors of the same sign. Slips are single, whereas a run has a cause, such as a
-/// clamp that slips at the end of a load.
+/// The gross errors `gross` of a channel (row and size), without those that form a run. A run consists of consecutive
+/// rows of one pose, or of the bench, with errors of the same sign. Slips are single rows, whereas a run has a cause,
+/// such as a clamp that slips at the end of a load.
 fn without_runs(data: &[Datum], residuals: &[f64], gross: Vec<(usize, f64)>) -> Vec<(usize, f64)> {
     // the datum with the largest error of each row, and this error
     let mut worst: HashMap<usize, (&Datum, f64)> = HashMap::new();
@@ -288,7 +290,7 @@ fn without_runs(data: &[Datum], residuals: &[f64], gross: Vec<(usize, f64)>) -> 
         }
         _ => false,
     };
-    // the modes of a list are consecutive rows by their numbering, so a run among them means nothing
+    // the modes of a list are consecutive rows only because of their numbers, so a run of them means nothing
     let in_order = data.first().is_some_and(|datum| datum.channel != Channel::Modal);
     let rows: HashSet<usize> = gross.iter().map(|(row, _)| *row).collect();
     let follows = |row: usize| {

@@ -1,9 +1,9 @@
 //! Fits models whose frequencies jump.
 //!
 //! A joint vibrates with the slope of its gear's torsion curve at the torque of the test. If the torque is close to a
-//! break point, masses within their tolerance decide on which side it lies, and the frequencies jump when it crosses. A
-//! descent cannot pass a jump. So the curve is smoothed at first and then sharpened step by step, and the descent
-//! starts from more than one point.
+//! break point, a change of masses within their tolerance moves the torque across the break point, and the frequencies
+//! jump. A descent cannot pass a jump. So the curve is smoothed at first and then sharpened step by step, and the
+//! descent starts from more than one point.
 
 use super::descent::{Effort, Fit, Weights, descent, fit};
 use crate::reconcile::forward::prepared::Forward;

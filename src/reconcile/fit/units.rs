@@ -45,7 +45,7 @@ impl Stretch {
     }
 }
 
-/// The channels in which a confusion of units is likely. Two conditions are needed. The ratio of the readings to the
+/// The channels in which a confusion of units is likely. Two conditions must hold. The ratio of the readings to the
 /// predictions of the nominal arm is about the factor between two units. The median residual of the best model, whose
 /// coefficients are `best`, is larger than the declared standard deviation times the root of this factor.
 pub(crate) fn stretches(forward: &Forward, best: &Coefficients) -> Vec<Stretch> {
@@ -60,7 +60,7 @@ pub(crate) fn stretches(forward: &Forward, best: &Coefficients) -> Vec<Stretch> 
             .fold((0.0, 0.0), |(both, square), (d, model)| (both + d.value * model, square + model * model));
         // least-squares factor between readings and nominal model
         let ratio = both / square;
-        // the noise of readings under a load in another unit is that of the stated unit
+        // only units of the reading itself count, because a load in another unit does not change the noise
         let is_of = |unit: &&UnitSlip| unit.is_of(channel) && unit.column == UnitColumn::Reading;
         let units = wrong_unit::SLIPS.iter().filter(is_of);
         let slips = units.map(|unit| unit.factor).filter(|factor| *factor > 1.0);
@@ -111,17 +111,17 @@ fn other_signs(forward: &Forward) -> Vec<String> {
     (0..3).filter_map(of_component).collect()
 }
 
-/// Least-squares factor between readings and their predictions for the nominal arm; each of the `pairs` is one of both.
-/// `None` if there are too few readings, or if the factor is not positive.
+/// Least-squares factor between readings and their predictions for the nominal arm. Each of the `pairs` has a reading
+/// and its prediction. `None` if there are too few readings, or if the factor is not positive.
 fn ratio(pairs: &[(f64, f64)]) -> Option<f64> {
     let sum = |of: fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>();
     let ratio = sum(|(d, m)| d * m) / sum(|(_, m)| m * m);
     (pairs.len() >= FEWEST_ALIKE && ratio > 0.0 && ratio.is_finite()).then_some(ratio)
 }
 
-/// The factor between two units by which readings seem to be off, of the units `slips`. `ratio` is that of the readings to
-/// their predictions. `None` if there is none, or if it does not bring the readings at
-/// least [`LEAST_IMPROVEMENT`] times nearer to the nominal arm.
+/// The confusion of units, among `slips`, by whose factor the readings seem to be off. `pairs` and `ratio` are those of
+/// [`ratio()`]. `None` if no factor is near `ratio`, or if the nearest one does not bring the readings at least
+/// [`LEAST_IMPROVEMENT`] times nearer to the nominal arm.
 fn seeming_slip<'s>(pairs: &[(f64, f64)], ratio: f64, slips: &[&'s UnitSlip]) -> Option<&'s UnitSlip> {
     let sum = |of: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>();
     let apart = |unit: &UnitSlip| libm::log(ratio / unit.factor).abs();
@@ -132,7 +132,8 @@ fn seeming_slip<'s>(pairs: &[(f64, f64)], ratio: f64, slips: &[&'s UnitSlip]) ->
 }
 
 /// One sentence for each component of the displacement, and for each kind of load, whose readings seem to be in another
-/// unit while the other static readings are not. If all of them are, that is the effect `wrong_unit`.
+/// unit while the other static readings are not. If all static readings are in another unit, the effect `wrong_unit`
+/// describes it.
 fn other_units(forward: &Forward) -> Vec<String> {
     let nominal = forward.predict(&forward.coefficients(&forward.nominal));
     let pairs = |own: &[usize]| -> Vec<(f64, f64)> {
