@@ -1,5 +1,5 @@
-//! Factorizes the mass matrix of a mass that a fit adds: `L Lᵀ`, where `L` has few columns. The matrix then need not be
-//! assembled when the amount of mass changes.
+//! Factorizes the mass matrix of a mass that a fit adds as `L Lᵀ`, where `L` has few columns. With the factor, the
+//! matrix need not be assembled again when the amount of mass changes.
 
 use crate::mechanics::product::Panels;
 use nalgebra::DMatrix;

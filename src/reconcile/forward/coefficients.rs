@@ -15,10 +15,11 @@ use crate::mechanics::chain::Chain;
 use crate::mechanics::{Wrench, force_wrench};
 use nalgebra::{Rotation3, Vector3};
 
-/// Number of coordinates of a base or a bearing: its tilts about two axes. Those of a bearing stand before the joint's
-/// twist.
+/// Number of coordinates of a base or a bearing: its tilts about two axes. The coordinates of a bearing come directly
+/// before the coordinate of the joint's twist.
 const TILTS: usize = 2;
-/// Number of coordinates of a guide: its rotations about three axes. They stand before the joint's travel.
+/// Number of coordinates of a guide: its rotations about three axes. They come directly before the coordinate of the
+/// joint's travel.
 pub(crate) const GUIDE_ROTATIONS: usize = 3;
 
 /// Where the strain coordinates of a joint stand among all strain coordinates.
@@ -42,8 +43,9 @@ pub struct LinkSlot {
 }
 
 /// The strain coordinates of every elastic element that an arm can have, base to tip: the two tilts of the base
-/// (indices 0 and 1), two tilts and the twist of each joint, and the strains of each link. An arm also has coordinates
-/// for each frame compliance (a rotational compliance about three axes) of its base and of its links' roots.
+/// (indices 0 and 1), two tilts and the twist of each joint, three rotations and the travel of each prismatic joint,
+/// and the strains of each link. An arm also has coordinates for each frame compliance (a rotational compliance about
+/// three axes) of its base and of its links' roots.
 pub struct Layout {
     /// Number of strain coordinates.
     pub n: usize,
@@ -182,8 +184,8 @@ pub(crate) struct StaticChanges {
     pub lift: bool,
     /// For each joint, whether its torsion law differs.
     pub laws: Vec<bool>,
-    /// Whether the axes of the instrument or a turn of the base differ. Deflections are then the same, but not what is
-    /// seen of them.
+    /// Whether the axes of the instrument or a turn of the base differ. The deflections are then the same, but the
+    /// readings of them differ.
     pub seen: bool,
 }
 
@@ -318,8 +320,8 @@ impl Coefficients {
     pub fn new(layout: &Layout, nominal: &Subject, subject: &Subject) -> Self {
         let structure = &subject.structure;
         let mut linear = vec![0.0; layout.n];
-        // a frame of the nominal base has coordinates of its own; what the base of a subject deflects beyond it is a
-        // tilt
+        // a frame of the nominal base has coordinates of its own; a further compliance of a subject's base is entered
+        // as a tilt
         let further = structure.base_frame.0 - nominal.structure.base_frame.0;
         (0..2).for_each(|i| linear[i] = structure.base_tilt_rad_per_nm + further[(i, i)]);
         layout.frames.iter().for_each(|(at, compliance)| linear[*at] = *compliance);
@@ -427,7 +429,8 @@ impl Coefficients {
         StaticChanges { linear, weights, payload, lift, laws, seen }
     }
 
-    /// Whether this subject and `other` have the same natural frequencies and the same errors of the modal channel.
+    /// Whether all numbers on which natural frequencies depend are equal for this subject and `other`. The errors of
+    /// the modal channel are not compared.
     pub fn same_modes(&self, other: &Self) -> bool {
         self.linear == other.linear
             && self.lift == other.lift

@@ -3,7 +3,8 @@
 use crate::mechanics::chain::{Compliance, Item, Posed};
 use crate::mechanics::{Wrench, angular};
 
-/// Torque of the dead weight on each joint, and its moments about world x and y on the base \[N m\].
+/// Torque of the dead weight on each joint, base to tip, and moments of the dead weight on the base about world x and y
+/// \[N m\].
 pub(super) fn dead_torques(posed: &Posed) -> (Vec<f64>, [f64; 2]) {
     let mut wrench = Wrench::zeros();
     let mut torques = Vec::new();

@@ -1,10 +1,10 @@
 //! Predicts natural frequencies by a reduced flexibility form, with exact derivatives.
 //!
-//! Let the columns of `F` be the inertia forces of the nominal arm's lowest modes. They include all coordinates, even
-//! those without compliance. The trial shapes `C F` are then correct to first order in every compliance and mass. Here
-//! `C` is the diagonal matrix of the compliances, `K` its inverse and `M` the mass matrix. With `B = C F` the reduced
-//! problem is `BᵀM B z = μ FᵀB z`, where `μ = 1/ω²`. One solution `x = B z`, scaled to `xᵀK x = 1`, with `y = M x`,
-//! gives the effect of every parameter: `dμ = yᵀ dC y / μ + xᵀ dM x`.
+//! Let the columns of `F` be the inertia forces of the nominal arm's lowest modes, with an entry for every coordinate,
+//! even one without compliance. The trial shapes `C F` are then correct to first order in every compliance and mass.
+//! Here `C` is the diagonal matrix of the compliances, `K` its inverse and `M` the mass matrix. With `B = C F` the
+//! reduced problem is `BᵀM B z = μ FᵀB z`, where `μ = 1/ω²`. One solution `x = B z`, scaled to `xᵀK x = 1`, with
+//! `y = M x`, gives the effect of every parameter: `dμ = yᵀ dC y / μ + xᵀ dM x`.
 
 use super::added_mass::Factor;
 use super::coefficients::{Coefficients, Layout};
@@ -64,7 +64,7 @@ pub struct Solved {
     pub mu: f64,
     /// Mode shape, scaled to a strain energy of 0.5 J.
     pub x: DVector<f64>,
-    /// Inertia forces of the mode shape at unit acceleration amplitude: mass matrix times shape.
+    /// Mass matrix times mode shape: the amplitudes of the inertia forces at an angular frequency of 1 rad/s.
     pub y: DVector<f64>,
 }
 
@@ -81,7 +81,7 @@ pub(crate) fn prepare(
     for (row_index, row) in campaign.modal.iter().enumerate() {
         let group = groups.of(&row.pose_deg);
         let key = (row.pose_deg.clone(), row.payload);
-        // A mode number that occurs again starts another list: the test was repeated.
+        // A mode number that occurs again starts another list, because the test was repeated.
         let found = keys
             .iter()
             .rposition(|k| *k == key)
@@ -323,7 +323,7 @@ impl ModalTest {
             .collect()
     }
 
-    /// Whether the modes of this test are the same for two arms, given by their coefficients `from` and `to`.
+    /// Whether the modes of this test are surely the same for two arms, given by their coefficients `from` and `to`.
     pub(crate) fn same_modes(&self, layout: &Layout, from: &Coefficients, to: &Coefficients) -> bool {
         from.masses == to.masses
             && from.payload_delta_kg == to.payload_delta_kg

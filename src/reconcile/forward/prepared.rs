@@ -20,8 +20,8 @@ pub struct Forward {
     pub layout: Layout,
     /// The nominal arm, tested as the campaign describes.
     pub nominal: Subject,
-    /// For each entry of a pose, by how much the poses that were prepared are larger than those of the files \[rad\]: the
-    /// zeros of the angles that are off. Empty if the poses are those of the files.
+    /// For each entry of a pose, the prepared value minus the value in the files \[rad\], which is the error of the
+    /// zero of the angle. Empty if the poses of the files were prepared.
     pub(super) stands_rad: Vec<f64>,
     /// All measured numbers, in the order static, modal, bench.
     pub data: Vec<Datum>,
@@ -53,7 +53,7 @@ pub struct Forward {
     pub(crate) length_columns: OnceLock<Vec<Vec<f64>>>,
     /// Whether some static or modal reading has a temperature.
     pub has_temperatures: bool,
-    /// Marks of the files of static and of modal readings.
+    /// Marks of the files of static and of modal readings: numbers made from their content.
     pub(crate) files: [usize; 2],
 }
 
@@ -77,8 +77,8 @@ impl Forward {
         Self::prepare(campaign, nominal, layout, None)
     }
 
-    /// Prepares a campaign for the nominal arm, in the poses in which an arm with the zeros of `turned` stands; `None` for
-    /// the zeros of the nominal arm. `layout` lists the strain coordinates of the nominal arm.
+    /// Prepares a campaign for the nominal arm. The prepared poses are those in which an arm with the zeros of `turned`
+    /// stands, or the nominal arm if `turned` is `None`. `layout` lists the strain coordinates of the nominal arm.
     pub(super) fn prepare(
         campaign: &Campaign,
         mut nominal: Subject,
@@ -130,8 +130,8 @@ impl Forward {
         }
     }
 
-    /// Renumbers the modes of frequency lists in which frequencies do not rise with the mode number, unless a single
-    /// wrong frequency is the simpler explanation. Returns a sentence for each list that was changed.
+    /// Renumbers the modes of frequency lists in which the frequencies do not rise with the mode number, unless a
+    /// single wrong frequency explains this better. Returns a sentence for each list that was changed.
     pub fn put_modes_in_order(&mut self) -> Vec<String> {
         let nominal = self.coefficients(&self.nominal);
         let (layout, data) = (&self.layout, &self.data);
@@ -149,7 +149,7 @@ impl Forward {
     /// Renumbers the modes of frequency lists from which a mode is missing, by comparison with the frequencies of an
     /// arm with these coefficients. Returns a sentence for each list that was changed.
     pub fn find_missed_modes(&mut self, coefficients: &Coefficients) -> Vec<String> {
-        // the modes of the readings change
+        // the slopes belong to the modes of the readings, and these may be renumbered
         self.turn_slopes = OnceLock::new();
         self.length_columns = OnceLock::new();
         let mut out = Vec::new();
@@ -325,7 +325,8 @@ impl Forward {
     }
 }
 
-/// Mark of the file whose rows are `rows`; 0 if there are none. `of` returns the mark that a row has.
+/// Mark (a number made from the content) of the file whose rows are `rows`; 0 if there are none. `of` returns the mark
+/// that a row has.
 pub(crate) fn mark<R>(rows: &[R], of: impl Fn(&R) -> usize) -> usize {
     rows.first().map_or(0, of)
 }

@@ -1,9 +1,9 @@
 //! Predicts static readings: the displacement of the tip from the reference state, which is the unloaded arm.
 //!
-//! The chain is statically determinate, so torques depend on masses only. All linear compliances together move the tip
-//! by `A w`, where `A` is a 3x6 matrix per pose and `w` the wrench of the load. A joint moves the tip by `θ(T) - θ(T0)`
-//! times the displacement of the tip per unit of the joint's twist, where `T` and `T0` are the torques with and without
-//! load. Friction play depends on the order of the rows.
+//! The chain is statically determinate, so torques depend on masses and loads only. All linear compliances together
+//! move the tip by `A w`, where `A` is a 3x6 matrix per pose and `w` the wrench of the load. A joint moves the tip by
+//! `θ(T) - θ(T0)` times the displacement of the tip per unit of the joint's twist, where `T` and `T0` are the torques
+//! with and without load. Friction play depends on the order of the rows.
 
 use super::coefficients::{Coefficients, Layout, StaticChanges};
 use super::datum::{Datum, Groups};
@@ -44,13 +44,14 @@ pub struct PoseGeometry {
     pub angles_rad: Vec<f64>,
     /// Torque on each joint by the weight of the template (the nominal arm, no payload) and by springs \[N m\].
     pub dead_nm: Vec<f64>,
-    /// For each mass that a fit can change, the torques on the joints by one unit of it \[N m\].
+    /// For each mass that a fit can change, the torques on the joints by one unit of this mass \[N m\].
     pub dead_per_mass_nm: Vec<Vec<f64>>,
     /// The two coordinates of the base's tilt, about world x and y.
     pub base: [Mover; 2],
     /// Moments of the template's weight about world x and y of the base \[N m\].
     dead_base_nm: [f64; 2],
-    /// For each mass that a fit can change, the moments of one unit of it about the same axes \[N m\].
+    /// For each mass that a fit can change, the moments of one unit of this mass about world x and y of the base
+    /// \[N m\].
     dead_base_per_mass_nm: Vec<[f64; 2]>,
 }
 
@@ -283,7 +284,7 @@ impl PoseGeometry {
     }
 
     /// Weight of the payload, corrected by the coefficients, and tip force, together as a wrench about the world's
-    /// origin, in the row `row` of the file of `channel`, counted from 0.
+    /// origin. They are those of the row `row`, counted from 0, in the file of `channel`.
     pub(crate) fn wrench(
         &self,
         payload: &Payload,
@@ -336,8 +337,8 @@ struct LawsOfLoad {
 }
 
 /// Computes the twists (torsion angles) of a joint under successive loads like `follow`, for a joint whose law differs
-/// from load to load, by `laws`. The twist under a load is computed with the two laws of this load, through all loads from rest to this
-/// one.
+/// from load to load. `laws` gives the two laws of each load. The twist under a load is computed with these two laws
+/// for the whole sequence of loads, from rest to this load.
 fn follow_changing(
     laws: impl Iterator<Item = LawsOfLoad>,
     dead_nm: f64,
@@ -359,8 +360,8 @@ impl StaticPose {
         out
     }
 
-    /// Brings `state`, which belongs to other coefficients, to `coefficients`. `changes` says which numbers differ,
-    /// and only what depends on these is computed again.
+    /// Changes `state` from other coefficients to `coefficients`. `changes` says which numbers differ; only values that
+    /// depend on these are computed again.
     pub(crate) fn update(
         &self,
         layout: &Layout,
@@ -385,7 +386,7 @@ impl StaticPose {
         }
         state.twists_rad.resize(joints * self.loads.len(), 0.0);
         for j in 0..joints {
-            // a weight changes the torque only on joints inboard of it
+            // a mass changes the torque only on joints inboard of the mass
             let is_loaded_otherwise = changes.weights && state.moved_dead_nm[j] != state.dead_nm[j];
             if is_loaded_otherwise {
                 state.dead_nm[j] = state.moved_dead_nm[j];
@@ -397,7 +398,7 @@ impl StaticPose {
     }
 
     /// Computes how the linear compliances together move the tip, and stores it in `state`. If the moduli of the links
-    /// change between loads, the compliance of the links is stored apart from that of the rest.
+    /// change between loads, the compliance of the links is stored separately.
     fn update_compliance(&self, layout: &Layout, coefficients: &Coefficients, state: &mut StaticState) {
         let geometry = &self.geometry;
         let warming = &coefficients.warming;

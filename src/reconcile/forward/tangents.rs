@@ -1,4 +1,5 @@
-//! Slopes of laws at the working point of a modal test. Jumps of a slope can be smoothed, so that a descent passes them.
+//! Slopes of joint laws, and of a base that lifts off, at the working point of a modal test. Jumps of a slope can be
+//! smoothed, so that a descent can pass them.
 
 use crate::arm::base_lift::BaseLift;
 use crate::arm::joint_law::{Curve, JointLaw};

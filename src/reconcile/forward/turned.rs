@@ -1,8 +1,8 @@
-//! Angles whose zero is off: the arm stands in another pose than the one that a file states.
+//! Predictions for angles whose zero is off: the arm stands in another pose than the one that a file states.
 //!
-//! Everything that is prepared depends on the pose, so a fit cannot turn the arm far. For a small turn `z - z0` from the
-//! pose that was prepared, a reading is `r(z0) + (z - z0) dr/dz`. A fit with a zero is therefore repeated in poses that
-//! are prepared at the zero which the fit before found, until the rest of the turn is negligible.
+//! Everything that is prepared depends on the pose, so a fit cannot turn the arm far. If the poses are prepared at the
+//! zero `z0` and the zero of the fit is `z`, a reading is `r(z0) + (z - z0) dr/dz` for a small difference. The fit is
+//! repeated in poses that are prepared at the zero of the fit before, until the difference is negligible.
 
 use super::coefficients::Layout;
 use super::prepared::Forward;
@@ -10,7 +10,7 @@ use crate::arm::effect::subject::Subject;
 use crate::reconcile::readings::campaign::Campaign;
 use rayon::prelude::*;
 
-/// Change of an angle over which readings are compared \[deg\]; of a travel \[mm\].
+/// Step of an angle \[deg\] or a travel \[mm\] for difference quotients of readings.
 const STEP_DEG: f64 = 0.1;
 
 impl Forward {
@@ -28,16 +28,17 @@ impl Forward {
         })
     }
 
-    /// Predicted readings of the nominal arm of `campaign`, in the units of the files. The campaign has the rows of this
-    /// one, one for one; their poses and loads, or the arm's geometry, may differ. Modes are numbered as in this campaign.
+    /// Predicted readings of the nominal arm of `campaign`, in the units of the files. The campaign must have as many
+    /// rows as the one that `self` was prepared from; their poses and loads, or the arm's geometry, may differ. Modes
+    /// are numbered as in this campaign.
     pub(crate) fn nominal_readings(&self, campaign: &Campaign) -> Vec<f64> {
         let mut forward = Forward::of_the_nominal_arm(campaign);
         forward.number_modes_as(self);
         forward.predict(&forward.coefficients(&forward.nominal))
     }
 
-    /// The campaign prepared in the poses in which `subject` stands, with the readings and the numbers of the modes of
-    /// this preparation. The slopes of the angles whose zero is off are those of `subject` itself.
+    /// The campaign prepared in the poses in which `subject` stands, with the readings and the mode numbers of `self`.
+    /// The slopes of angles whose zero is off are computed for `subject` itself.
     pub(crate) fn turned(&self, campaign: &Campaign, subject: &Subject) -> Self {
         let out = self.standing(campaign, subject);
         let here = out.predict(&out.coefficients(subject));
@@ -53,11 +54,11 @@ impl Forward {
             let readings = there.predict(&there.coefficients(&further));
             readings.iter().zip(&here).map(|(there, here)| (there - here) / STEP_DEG).collect()
         };
-        // without any zero the list of turns is empty, and the slopes of all entries are known
+        // if no zero is off, the list of turns is empty, and the known slopes of all entries are used
         let off = subject.turns_rad();
         let turns: Vec<(usize, f64)> =
             (0..entries.len()).map(|entry| (entry, off.get(entry).copied().unwrap_or(0.0))).collect();
-        // the cell is new, so that setting it cannot fail
+        // the cell is new, so setting it cannot fail
         let _ = out.turn_slopes.set(turns.into_par_iter().map(slope).collect());
         out
     }
@@ -74,7 +75,8 @@ impl Forward {
         out
     }
 
-    /// Numbers the modes of each list as `known` does, which may have put them in order or found some to be missed.
+    /// Numbers the modes of each list as in `known`, where they may have been put in order or renumbered after a missed
+    /// mode.
     fn number_modes_as(&mut self, known: &Self) {
         for (own, known) in self.modal.iter_mut().zip(&known.modal) {
             own.modes.clone_from(&known.modes);
