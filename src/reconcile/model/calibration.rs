@@ -118,7 +118,8 @@ impl Nuisance {
                 }
                 Calibration::Bearing { joint, tilt_rad_per_nm } => {
                     if let Some(joint) = structure.joint_mut(joint) {
-                        // only the share of the nominal bearing is scaled; tilt by effects of the arm file stays
+                        // only the tilt of the nominal bearing is scaled; tilt by effects of the arm file stays as it
+                        // is
                         joint.tilt_rad_per_nm += tilt_rad_per_nm * (1.0 / factor - 1.0);
                     }
                 }

@@ -32,7 +32,7 @@ pub fn candidates(forward: &Forward) -> Vec<Candidate> {
             }
         }
     }
-    // an effect with two names would count twice, and each as an alternative of the other
+    // an effect with two names would count twice, and each name would be listed as an alternative of the other
     merge_twins(forward, &mut out);
     name_servos(forward, &mut out);
     out.extend(unit_slips(forward));
@@ -181,8 +181,8 @@ fn candidate(forward: &Forward, sizes: &Sizes, asked: Asked) -> Candidate {
         }
     }
     if let Some(stiffness) = bearing {
-        // the upper limit is in terms of the bearing's stiffness here; it is raised to the same compliance as for a
-        // rigid bearing
+        // here the upper limit is a multiple of the bearing's compliance; it is raised to the largest compliance that
+        // is sought for a rigid bearing
         free_parameters[0].high *= (stiffness / joint_stiffness).max(1.0);
     }
     if let Some(least_kg) = lightest_kg(forward, kind, &at) {
@@ -247,8 +247,8 @@ fn lightest_kg(forward: &Forward, kind: &Kind, at: &str) -> Option<f64> {
     }
 }
 
-/// The parameter with its range and prior widened, if its expected size grows with the size of the arm or of its
-/// readings.
+/// The parameter with the largest value that is sought as its upper limit. If its expected size grows with the size of
+/// the arm or of its readings, its range and prior are widened.
 fn of_size(parameter: &Parameter, sizes: &Sizes) -> Parameter {
     let parameter = &Parameter { high: parameter.sought_up_to.unwrap_or(parameter.high), ..*parameter };
     let Some((measure, part)) = parameter.grows_with else { return *parameter };
@@ -266,8 +266,8 @@ fn nominal_bearing_nm_per_rad(forward: &Forward, kind: &Kind, at: &str) -> Optio
     tilts.then(|| 1.0 / joint.tilt_rad_per_nm)
 }
 
-/// Stiffness in which compliances at the place `at` are expressed \[N m/rad\]: the stiffness of the joint there or,
-/// if there is no joint or it is rigid, of the first joint that is not rigid.
+/// Stiffness in which compliances at the place `at` are expressed \[N m/rad\]: the stiffness of the joint there or, if
+/// there is no joint or it is rigid, of the first joint that is not rigid; 1e5 N m/rad if all joints are rigid.
 fn reference_stiffness(forward: &Forward, at: &str) -> f64 {
     let joints: Vec<_> = forward.nominal.structure.joints().collect();
     let own = joints.iter().find(|j| j.name == at);
@@ -319,11 +319,12 @@ pub(crate) fn largest_torque_nm(forward: &Forward, at: &str) -> f64 {
     statics.chain(modal).map(|t| t[j].abs()).chain(bench).fold(0.0, f64::max)
 }
 
-/// Factors in this range are no candidates. A missing compliance changes readings by such factors too, and as a unit has
-/// no free parameter it would be preferred to each of them. A gain that is near such a factor says so.
+/// A factor between two units that lies in this range is no candidate. A missing compliance changes readings by such
+/// factors too, and a wrong unit would be preferred to it because it has no free parameter. If a gain near such a
+/// factor is found, a sentence in the reasons names the units.
 const LIKE_A_STIFFNESS: RangeInclusive<f64> = 0.6..=1.0 / 0.6;
 
-/// Factors whose logarithms differ by less than this are one and the same.
+/// Two factors count as equal if their logarithms differ by less than this.
 const ONE_FACTOR: f64 = 1e-9;
 
 /// Candidates for readings, forces or payloads in a wrong unit. The factor between two units is known exactly, so there
@@ -347,8 +348,9 @@ fn unit_slips(forward: &Forward) -> Vec<Candidate> {
         .collect()
 }
 
-/// The units that a column of the channel can be in by mistake, if that gives all its readings one factor. The unit of
-/// forces does so only where every row is loaded by forces alone, that of payloads where every row has a payload alone.
+/// The units that a column of the channel may have by mistake, as far as the mistake multiplies all readings by one
+/// factor. A wrong unit of forces does so only if every row is loaded by a force alone, and a wrong unit of payloads
+/// only if every row is loaded by a payload alone.
 pub(crate) fn possible_slips(forward: &Forward, channel: Channel) -> Vec<&'static UnitSlip> {
     let loads = || forward.statics.iter().flat_map(StaticPose::loaded_by).map(|(_, by)| by);
     let has = |column: UnitColumn| match column {
@@ -360,7 +362,8 @@ pub(crate) fn possible_slips(forward: &Forward, channel: Channel) -> Vec<&'stati
 }
 
 /// The different factors of the units `slips`. Units with one factor, such as readings in metres and payloads in grams,
-/// are one candidate. Between readings in tenths and forces in kgf (9.807) the readings decide.
+/// are one candidate. Factors that are merely near each other, such as those of readings in tenths (10) and forces in
+/// kgf (9.807), stay different candidates.
 fn unit_factors(slips: &[&UnitSlip]) -> Vec<f64> {
     let mut out: Vec<f64> = Vec::new();
     for factor in slips.iter().map(|unit| unit.factor) {

@@ -64,7 +64,7 @@ impl<'a> Direct<'a> {
         let (mut play, mut lag) = (Vec::new(), Vector3::zeros());
         for row in rows {
             let chain = self.chain_at(Channel::Static, &row.moment());
-            // the links of the reference are as warm as those of the reading
+            // the links are taken to be as warm at the reference as at the reading
             let reference = self.reference_at(&row.moment());
             let unloaded = self.posed(&reference, &row.pose_deg, &Payload::default(), Vector3::zeros());
             let unloaded_m = unloaded.statics().tip_displacement_m;
@@ -158,8 +158,8 @@ impl<'a> Direct<'a> {
         torques.into_iter().map(|(joint, torque_nm)| (joint.to_string(), torque_nm)).collect()
     }
 
-    /// The arm with the special set-up of a channel's tests, and with the link moduli at the time or temperature
-    /// `when`.
+    /// The arm with the special set-up of a channel's tests, and with the properties that it has at the time or
+    /// temperature `when`.
     fn chain_at(&self, channel: Channel, when: &Moment) -> Cow<'_, Chain> {
         if self.subject.is_steady(channel) {
             return Cow::Borrowed(self.special[channel as usize].as_ref().unwrap_or(&self.chain));
@@ -175,7 +175,8 @@ impl<'a> Direct<'a> {
         }
     }
 
-    /// The special set-up of the tests in a channel's file with the mark `file`, with what happened in this file.
+    /// The special set-up of the tests in the file of a channel with the mark `file`, with only those events that
+    /// happened in this file.
     fn setup_of(&self, channel: Channel, file: usize) -> Setup {
         let mut setup = self.subject.setups[channel as usize].clone();
         setup.keep_events_of(file);

@@ -15,7 +15,7 @@ pub struct Interval {
 }
 
 impl Interval {
-    /// This interval, widened to contain the best value `u`.
+    /// This interval, widened if necessary to contain the best value `u`.
     pub(crate) fn with(self, u: f64) -> Self {
         Self { low: self.low.map(|v| v.min(u)), high: self.high.map(|v| v.max(u)) }
     }
@@ -50,8 +50,8 @@ impl Estimate {
 
 /// Half of the width of a 95 % interval of a normal distribution, in standard deviations.
 pub(crate) const Z_95: f64 = 1.959_963_984_540_054;
-/// Rise of an objective of squared standard deviations at the ends of a 95 % interval: the 95 % quantile of chi-squared
-/// with one degree of freedom.
+/// Rise of an objective (a sum of squared residuals in standard deviations) at the ends of a 95 % interval: the 95 %
+/// quantile of chi-squared with one degree of freedom.
 pub(crate) const RISE_AT_95: f64 = Z_95 * Z_95;
 
 /// Parameters that say how an effect acts, and not how large it is.
@@ -107,7 +107,8 @@ impl Finding {
         let is_near = |name: &str, estimate: &Estimate| {
             let Estimate { value, low, high } = *estimate;
             if name.starts_with("stiffness") {
-                // the interval is that of the compliance, whose upper end is Z_95 deviations away
+                // the interval is computed for the compliance, whose upper end is Z_95 standard deviations from its
+                // value
                 return high.is_none() && low.is_none_or(|low| value > (1.0 + Z_95) * low);
             }
             let absent = if name.ends_with("factor") { 1.0 } else { 0.0 };

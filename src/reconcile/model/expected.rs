@@ -1,5 +1,5 @@
-//! The size that an effect is expected to have, by the size of the arm and of its readings. A few kilograms are a
-//! surprise on a small arm and nothing special on a large one.
+//! The size that an effect is expected to have, by the size of the arm and of its readings. An error of a few kilograms
+//! is large for a small arm and small for a large arm.
 
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::kind::Measure;

@@ -1,5 +1,5 @@
-//! The model that is fitted: calibrated parameters, candidate effects and their expected sizes. Also the prediction of
-//! readings by direct mechanics.
+//! The model that is fitted: calibrated parameters, candidate effects and their expected sizes. Also predicts readings
+//! by direct mechanics, without prepared quantities.
 
 pub mod calibration;
 pub mod candidates;

@@ -30,8 +30,7 @@ pub struct FreeParameter {
     /// The value of `u` at which the effect is absent; `None` if the parameter does not say how large the effect is,
     /// but only how it acts.
     absent: Option<f64>,
-    /// Smallest and largest value of the scaled parameter `u` that are expected before the readings are used (the range
-    /// of the prior).
+    /// Smallest and largest value of `u` that are expected before the readings are used (the range of the prior).
     expected: (f64, f64),
 }
 
@@ -46,8 +45,8 @@ pub(crate) const LARGEST_COMPLIANCE: f64 = 100.0;
 const RIGID_NM_PER_RAD: f64 = 1e15;
 
 impl FreeParameter {
-    /// The fitted parameter for one component of `parameter`. `joint_stiffness` is the reference of `u`: the
-    /// stiffness of a joint \[N m/rad\] for compliances, the largest torque on the joint \[N m\] for a torque.
+    /// The fitted parameter for one component of `parameter`. `joint_stiffness` is the reference from which `u` is
+    /// scaled: a stiffness \[N m/rad\] for compliances, and the largest torque on the joint \[N m\] for a torque.
     pub(crate) fn new(parameter: &Parameter, component: usize, joint_stiffness: f64) -> Self {
         let expected = parameter.prior;
         let (low, high) = (parameter.low, parameter.high);
@@ -91,7 +90,7 @@ impl FreeParameter {
     }
 
     /// Limits the range to values that files may give, so that whatever a fit finds can be read again. A compliance may
-    /// still be zero: the effect is then absent, and no file has it.
+    /// still be zero. The effect is then absent, and it is not written to a file.
     pub(crate) fn keep_readable(&mut self, parameter: &Parameter) {
         let (least, most) = parameter.readable();
         let (low, high) = match self.reversed() {
@@ -104,7 +103,7 @@ impl FreeParameter {
         self.high = self.high.clamp(low, high);
     }
 
-    /// Distance of `u` from its expected range, as a multiple of the range's width; 0 inside the range.
+    /// Distance of `u` from its expected range, divided by the width of the range; 0 inside the range.
     pub fn beyond_expected(&self, u: f64) -> f64 {
         let (low, high) = self.expected;
         (u - high).max(low - u).max(0.0) / (high - low)
@@ -211,8 +210,8 @@ impl FreeParameter {
     /// Width of the prior at a value of `u`: the reciprocal of the prior density at this value.
     ///
     /// The size of an effect may be of any order of magnitude. So each decade of sizes is equally likely, up to the
-    /// largest size that a part can have. A parameter that only says how an effect acts is equally likely anywhere in
-    /// its expected range.
+    /// largest size that a part can have. If the parameter only says how an effect acts, every value in its expected
+    /// range is equally likely.
     pub fn width(&self, u: f64) -> f64 {
         let range = self.expected.1 - self.expected.0;
         let Some(absent) = self.absent else { return range };
@@ -258,7 +257,7 @@ impl Candidate {
 
     /// Every number of the effect with the name of its parameter, in the order of the kind's parameters.
     pub(crate) fn named_numbers(&self) -> Vec<(&'static str, Number)> {
-        // a base and channels may have parameters of their own
+        // an effect may have other parameters at the base, at the payload or in a channel
         let count = |place: Place| (self.kind.parameters)(place).iter().map(|p| p.count).sum::<usize>();
         let is_own = |place: &&Place| match place {
             Place::Channel(channel) => channel.word() == self.at,
