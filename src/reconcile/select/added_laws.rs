@@ -1,8 +1,8 @@
-//! Adds laws without a name to a model, one after the other. Each model is fitted in full, together with everything that
-//! it has already.
+//! Adds laws without a name to a model, one after the other. After each addition, all parameters of the model are
+//! fitted again.
 //!
-//! A model with an angle whose zero is off is fitted about the poses in which the arm stands with this zero. The poses are
-//! prepared anew until the zero stays where it is.
+//! If the zero of an angle is off in a model, the fit needs poses that are prepared with this zero. The poses are
+//! prepared again until the zero no longer changes.
 
 use super::search::{Scored, Search};
 use crate::reconcile::fit::descent::{Effort, Fit, fit};
@@ -15,12 +15,13 @@ const MOST_LAWS: usize = 3;
 /// A law is accepted if the logarithm of the evidence, less the logarithm of the number of places where a law is
 /// tried, rises by more than this.
 const LEAST_GAIN: f64 = 2.0;
-/// Number of laws that are fitted in full when one is to be added: those that a few steps of a fit find the best.
+/// When a law is to be added, this many laws are fitted in full. They are those with the best scores after a few steps
+/// of a fit.
 const FULL_FITS: usize = 5;
-/// Largest number of times that the poses of a model are prepared anew.
+/// Largest number of times that the poses of a model are prepared again.
 const MOST_TURNS: usize = 6;
-/// An arm that is turned by less than this from the pose that was prepared stands in it \[deg\]. The readings are linear in
-/// so small an angle.
+/// Poses need not be prepared again if the arm is turned by less than this from the prepared pose \[deg\]. The readings
+/// are linear in so small an angle.
 const LARGEST_TURN_DEG: f64 = 1e-3;
 
 /// A model with laws without a name.
@@ -33,7 +34,7 @@ pub(crate) struct WithLaws {
 }
 
 impl WithLaws {
-    /// The search `search` about the poses of this model.
+    /// The search `search`, with the campaign prepared in the poses of this model.
     fn about<'s>(&'s self, search: &Search<'s>) -> Search<'s> {
         Search { forward: self.forward.as_deref().unwrap_or(search.forward), ..*search }
     }
@@ -47,8 +48,8 @@ impl WithLaws {
 }
 
 /// The model `from` with one law without a name, with two, and so on, as long as each raises the score by more than
-/// [`LEAST_GAIN`]; then the last of these models with laws exchanged, if that raises the score. The laws are the candidates
-/// of `search` from the index `first` on. Empty if no law raises the score.
+/// [`LEAST_GAIN`]; then the last of these models with a law left out or exchanged, if that raises the score. The laws
+/// are the candidates of `search` from the index `first` on. Empty if no law raises the score.
 pub(crate) fn with_laws(search: &Search, first: usize, from: &Scored) -> Vec<WithLaws> {
     let mut out: Vec<WithLaws> = Vec::new();
     let mut here = WithLaws { scored: from.clone(), forward: None };
@@ -66,8 +67,8 @@ pub(crate) fn with_laws(search: &Search, first: usize, from: &Scored) -> Vec<Wit
     out
 }
 
-/// The best model with a law of `best` left out, or exchanged for another one; `None` if none scores higher than `best`. A
-/// law that was found while another one was still missing may have described a part of that one.
+/// The best model with a law of `best` left out, or exchanged for another one; `None` if no such model scores higher
+/// than `best`. A law that was found while another law was still missing may describe a part of the missing law.
 fn exchanged(search: &Search, first: usize, best: &WithLaws) -> Option<WithLaws> {
     let about = best.about(search);
     let laws = (0..best.scored.effects.len()).filter(|effect| best.scored.effects[*effect] >= first);
@@ -81,7 +82,7 @@ fn exchanged(search: &Search, first: usize, best: &WithLaws) -> Option<WithLaws>
     (better.scored.score > best.scored.score + 1e-3).then_some(better)
 }
 
-/// The model `here` with the law added that gives the best score; `None` if there is none.
+/// The model `here` with that law added that gives the best score; `None` if no law is left.
 fn next_law(search: &Search, first: usize, here: &WithLaws) -> Option<WithLaws> {
     let (about, from) = (here.about(search), &here.scored);
     let laws = (first..search.candidates.len()).filter(|law| !from.effects.contains(law));
@@ -107,8 +108,8 @@ fn next_law(search: &Search, first: usize, here: &WithLaws) -> Option<WithLaws> 
     fits.into_iter().max_by(|a, b| a.scored.score.total_cmp(&b.scored.score))
 }
 
-/// The model with the effects `effects`, fitted from the parameters `u` about the poses of `forward`. If the arm does not
-/// stand in these poses, the fit is repeated about the poses in which it stands.
+/// The model with the effects `effects`, fitted from the parameters `u` with the poses of `forward`. If the fitted
+/// zeros differ from those of these poses, the fit is repeated with poses that are prepared with the fitted zeros.
 fn fitted(search: &Search, effects: &[usize], u: &[f64], forward: Option<Arc<Forward>>) -> WithLaws {
     let fit_about = |u: &[f64], forward: &Option<Arc<Forward>>| {
         let about = Search { forward: forward.as_deref().unwrap_or(search.forward), ..*search };

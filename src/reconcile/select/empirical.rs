@@ -1,15 +1,15 @@
-//! Laws without a name as effects of a model. They are found one after the other, each fitted in full together with all
-//! others.
+//! Laws without a name as effects of a model. This file lists the candidates; [`added_laws`](super::added_laws) adds
+//! them to a model.
 //!
-//! [`unnamed`](super::unnamed) asks whether a law competes with named effects, with the model made linear. Here a law
-//! becomes an effect of the arm, so that a corrected arm can have it. The laws are:
+//! [`unnamed`](super::unnamed) tests with a linearized model whether a law competes with named effects. Here a law is
+//! an effect of the arm, so that a corrected arm can contain it. The laws are:
 //!
 //! - a further twist of a joint as a polynomial of its torque;
 //! - a housing or a base that tilts about two axes, with a compliance of its own for each;
 //! - a joint whose stiffness changes with the order of the tests;
 //! - a joint that stands at another angle than stated, or that twists under the torques of its neighbours;
 //! - readings that are a nonlinear function of the true value, or that have a gain of their own in each direction;
-//! - displacements of which each direction also shows a part of the others;
+//! - displacement readings in which each direction also shows a part of the other directions;
 //! - a base that turned, an instrument that moved, or a payload that slipped, once in the course of the tests.
 
 use super::event_rows;
@@ -48,7 +48,7 @@ const LARGEST_SLIP_M: f64 = 1.0;
 /// Usual displacement of a payload's centre of gravity \[m\].
 const USUAL_SLIP_M: f64 = 0.01;
 
-/// Places of parameters among the numbers of a law of a joint.
+/// Indices of parameters in the list of numbers of a law of a joint.
 const IN_JOINT: Joint = Joint {
     odd: 0..2,
     even: 2..4,
@@ -59,52 +59,55 @@ const IN_JOINT: Joint = Joint {
     neighbours: 13,
     play: 15..17,
 };
-/// Places of the rows of the static and of the modal tests among the numbers of a slip of the payload.
+/// Indices of the rows of the static and of the modal tests in the list of numbers of a slip of the payload.
 const ROWS_OF_SLIP: [usize; 2] = [3, 5];
-/// Places of parameters among the numbers of a law of displacements.
+/// Indices of parameters in the list of numbers of a law of displacements.
 const IN_STATIC: Static =
     Static { bend: 0..2, scale: 2, gain: 3..6, turn: 6..9, from_row: 9, mix: 10, shift: 16..19, file: 19 };
 
-/// Places of the parameters of a law of a joint among its numbers.
+/// For a law of a joint: the index of each parameter in the list of the law's numbers.
 struct Joint {
     odd: Range<usize>,
     even: Range<usize>,
     torque: usize,
-    /// The first of five: change and rows of the static tests, those of the modal tests, the part of the reference.
+    /// The first of five numbers: change and rows in the static tests, change and rows in the modal tests, and the part
+    /// of the change that the reference has.
     softening: usize,
     lean: Range<usize>,
     zero: Range<usize>,
-    /// The first of two: inboard, outboard.
+    /// The first of two numbers: compliance under the torque of the inboard neighbour, and of the outboard one.
     neighbours: usize,
     play: Range<usize>,
 }
 
-/// Places of the parameters of a law of displacements among its numbers. A law of another channel has the first three.
+/// For a law of displacements: the index of each parameter in the list of the law's numbers. A law of another channel
+/// has the first three parameters only.
 struct Static {
     bend: Range<usize>,
     scale: usize,
     gain: Range<usize>,
     turn: Range<usize>,
     from_row: usize,
-    /// The first of six.
+    /// The first of six numbers: for each direction, the parts of the two other directions.
     mix: usize,
     shift: Range<usize>,
     file: usize,
 }
 
-/// The numbers of a law of a joint of which those with the indices `free` are fitted. The others change nothing.
-/// `torque_nm` is the largest torque on the joint.
+/// The numbers of a law of a joint. Those with the indices `free` are fitted; the others have values at which they have
+/// no effect. `torque_nm` is the largest torque on the joint.
 fn of_joint(torque_nm: f64, free: impl IntoIterator<Item = usize>) -> Vec<Number> {
     let mut out = vec![Stated(0.0); IN_JOINT.play.end];
     // files do not take a torque of zero
     [IN_JOINT.torque, IN_JOINT.play.start + 1].iter().for_each(|own| out[*own] = Stated(torque_nm.max(1e-6)));
-    // numbers of rows, and the part of the change that the reference has
+    // the numbers of rows, and the part of the change that the reference has
     [1, 3, 4].iter().for_each(|own| out[IN_JOINT.softening + own] = Stated(1.0));
     free.into_iter().for_each(|index| out[index] = Free);
     out
 }
 
-/// The numbers of a law of a channel of which those with the indices `free` are fitted. The others change nothing.
+/// The numbers of a law of a channel. Those with the indices `free` are fitted; the others have values at which they
+/// have no effect.
 fn of_channel(channel: Channel, free: impl IntoIterator<Item = usize>) -> Vec<Number> {
     let mut out = vec![Stated(0.0); IN_STATIC.file + 1];
     out[IN_STATIC.scale] = Stated(1.0);
@@ -119,7 +122,7 @@ fn of_channel(channel: Channel, free: impl IntoIterator<Item = usize>) -> Vec<Nu
 }
 
 /// Every law at every place where the readings could show it. `baseline` is the best fit with calibration alone. Its
-/// residuals show at which row the base could have turned.
+/// residuals show at which row the base could have turned, the instrument moved or the payload slipped.
 pub(crate) fn laws(forward: &Forward, baseline: &Fit, weights: &Weights) -> Vec<Candidate> {
     let nominal = forward.coefficients(&forward.nominal);
     let torques_nm: Vec<f64> =
@@ -127,7 +130,8 @@ pub(crate) fn laws(forward: &Forward, baseline: &Fit, weights: &Weights) -> Vec<
     let largest = torques_nm.iter().copied().fold(0.0, f64::max);
     let mut out = Vec::new();
     let joints = forward.layout.joints.iter().zip(&nominal.laws).zip(torques_nm);
-    // a law at a joint with the name of the base could not be written: the name means the base
+    // a law at a joint that has the name of the base could not be written to a file, because there the name means the
+    // base
     for ((slot, law), torque_nm) in joints.filter(|((slot, _), _)| slot.name != BASE) {
         out.extend(housing(forward, &slot.name, torque_nm));
         out.extend(zero(forward, &slot.name, torque_nm));
@@ -151,7 +155,7 @@ pub(crate) fn laws(forward: &Forward, baseline: &Fit, weights: &Weights) -> Vec<
     out
 }
 
-/// The laws of what happened once in the course of the tests, each at the row where it explains most.
+/// The laws of events that happened once in the course of the tests, each at the row where it explains most.
 fn events(forward: &Forward, baseline: &Fit, weights: &Weights) -> Vec<Candidate> {
     let (starts, rows) = (event_rows::pose_starts(forward), event_rows::static_rows(forward));
     let turn = event_rows::of_turn(forward, baseline, weights, &starts);
@@ -162,7 +166,7 @@ fn events(forward: &Forward, baseline: &Fit, weights: &Weights) -> Vec<Candidate
     turn.into_iter().chain(shift).chain(slip).collect()
 }
 
-/// The candidate for an angle of a joint whose zero is off. `None` for a joint that others turn.
+/// The candidate for a joint angle whose zero is off. `None` for a passive joint.
 fn zero(forward: &Forward, joint: &str, torque_nm: f64) -> Option<Candidate> {
     let is_driven = forward.nominal.structure.joints().any(|j| j.name == joint && j.is_driven());
     let angle = Parameter::number(ZERO, -LARGEST_ZERO_RAD, LARGEST_ZERO_RAD, USUAL_ZERO_RAD, Scale::Linear);
@@ -170,8 +174,9 @@ fn zero(forward: &Forward, joint: &str, torque_nm: f64) -> Option<Candidate> {
     is_driven.then(|| Candidate { numbers, ..law(joint, angle, 0.0) })
 }
 
-/// The candidate for a joint that also twists under the torques of its neighbours in the static tests. The usual size is
-/// the largest compliance among them. `None` if they are rigid or there are no displacements.
+/// The candidate for a joint that also twists under the torques of its neighbours in the static tests. The usual size
+/// is the largest compliance of the joint and its neighbours. `None` if all of these are rigid, if the joint has the
+/// name of the base, or if there are no displacements.
 fn neighbours(forward: &Forward, joint: usize) -> Option<Candidate> {
     let (joints, laws) = (&forward.layout.joints, forward.coefficients(&forward.nominal).laws);
     let sides = [joint.checked_sub(1), (joint + 1 < joints.len()).then_some(joint + 1)];
@@ -194,8 +199,8 @@ fn neighbours(forward: &Forward, joint: usize) -> Option<Candidate> {
     (!candidate.free_parameters.is_empty()).then_some(candidate)
 }
 
-/// The candidate for play of a joint that the unloaded arm leaves open to both sides. `torque_nm` is the largest torque on
-/// the joint, and `twist_rad` its twist under this torque. `None` if there are no displacements.
+/// The candidate for play of a joint that can close in both directions from the unloaded arm. `torque_nm` is the
+/// largest torque on the joint, and `twist_rad` its twist under this torque. `None` if there are no displacements.
 fn load_play(forward: &Forward, joint: &str, torque_nm: f64, twist_rad: f64) -> Option<Candidate> {
     let most = LARGEST_TWIST * twist_rad;
     let size = Parameter::number(LOAD_PLAY, -most, most, twist_rad, Scale::Linear);
@@ -238,8 +243,8 @@ fn softening(forward: &Forward, joint: &str, torque_nm: f64, channel: usize) -> 
     Some(Candidate { kind: &KIND, at: joint.into(), free_parameters, numbers, starts, twins: Vec::new() })
 }
 
-/// The candidate that each direction of the displacements also shows a part of the others. `None` if there are no
-/// displacements.
+/// The candidate for displacement readings in which each direction also shows a part of the other directions. `None` if
+/// there are no displacements.
 fn mixing(forward: &Forward) -> Option<Candidate> {
     let statics = &forward.data[forward.range(Channel::Static)];
     let is_measured = |component: usize| statics.iter().any(|datum| datum.component == component);
@@ -262,7 +267,7 @@ fn lean(forward: &Forward) -> Option<Candidate> {
 
 /// The candidate for the housing of a joint that tilts about two axes with a compliance of its own for each. `None` if
 /// no joint is compliant. `None` also for a vertical joint that stands on the base, because [`lean`] then describes the
-/// same.
+/// same tilts.
 fn housing(forward: &Forward, joint: &str, torque_nm: f64) -> Option<Candidate> {
     let turns_on_the_base = forward.nominal.structure.pieces.first().is_some_and(|piece| match piece {
         Piece::Joint(first) => first.name == joint && first.axis.z.abs() > 1.0 - 1e-12,
@@ -299,9 +304,9 @@ fn moved_once(forward: &Forward, from_row: usize, name: &'static str) -> Candida
     Candidate { numbers, ..law(Channel::Static.word(), moved, 0.0) }
 }
 
-/// The candidate for a payload that slipped just before the `rows` of the static and of the modal tests, counted from 0;
-/// `None` in the place of a row: it did not slip in these tests. `None` if it slipped in neither, or if a joint has the
-/// name of the payload.
+/// The candidate for a payload that slipped just before the `rows` of the static and of the modal tests, counted from
+/// 0; A row is `None` if the payload did not slip in these tests. The result is `None` if the payload did not slip in
+/// the static tests, if there is no payload, or if a joint has the name of the payload.
 fn slip(forward: &Forward, rows: [Option<usize>; 2]) -> Option<Candidate> {
     let is_free = forward.nominal.structure.joints().all(|joint| joint.name != PAYLOAD);
     let offset = Parameter {

@@ -1,5 +1,5 @@
-//! Finds the row before which something happened in the course of the tests: a base turned, an instrument moved, a payload
-//! slipped. A descent cannot find it, because readings jump with the row.
+//! Finds the row before which something happened in the course of the tests: a base turned, an instrument moved, or a
+//! payload slipped. A descent cannot find this row, because predicted readings jump as the row changes.
 
 use crate::arm::effect::channel::Channel;
 use crate::reconcile::fit::descent::{Fit, Weights};
@@ -11,16 +11,17 @@ use std::ops::Range;
 
 /// Smallest number of poses that must come before a turn of the base, and of poses that must come after it.
 const FEWEST_POSES: usize = 2;
-/// Smallest number of rows that must come before an event that may be between any two rows, and of rows that must come
-/// after it.
+/// Smallest number of rows that must come before an event, and of rows that must come after it, if the event may be
+/// between any two rows.
 const FEWEST_ROWS: usize = 4;
-/// Part of the sum of the curvatures that is added to each, so that the equations are regular where a parameter does not
-/// show.
+/// Fraction of the trace of the curvature matrix that is added to its diagonal, so that the equations stay regular if a
+/// parameter has no influence on the readings.
 const RIDGE: f64 = 1e-9;
 /// Displacement of a payload's centre of gravity by which its influence on the readings is computed \[m\].
 const SLIP_STEP_M: f64 = 1e-3;
 
-/// The rows of the displacements, counted from 0, at which a pose begins, without the first and the last ones.
+/// The rows of the displacements, counted from 0, at which a pose begins. Only rows with at least [`FEWEST_POSES`]
+/// poses before them, and at least as many from them on, are listed.
 pub(super) fn pose_starts(forward: &Forward) -> Vec<usize> {
     let first_row = |pose: &StaticPose| {
         let data = (0..pose.count()).flat_map(|load| pose.measured(load));
@@ -30,7 +31,8 @@ pub(super) fn pose_starts(forward: &Forward) -> Vec<usize> {
     inner(starts, FEWEST_POSES)
 }
 
-/// The rows of the displacements, counted from 0, without the first and the last ones.
+/// The rows of the displacements, counted from 0, that have at least [`FEWEST_ROWS`] rows before them and from which on
+/// there are at least as many.
 pub(super) fn static_rows(forward: &Forward) -> Vec<usize> {
     inner(rows_of(forward, Channel::Static), FEWEST_ROWS)
 }
@@ -39,8 +41,8 @@ fn rows_of(forward: &Forward, channel: Channel) -> BTreeSet<usize> {
     forward.data[forward.range(channel)].iter().map(|datum| datum.row).collect()
 }
 
-/// The `rows` without so many at the start that fewer than `fewest` come before, and so many at the end that fewer come
-/// from one of them on.
+/// Those of the `rows` that have at least `fewest` rows before them, and from which on there are at least `fewest`
+/// rows.
 fn inner(rows: BTreeSet<usize>, fewest: usize) -> Vec<usize> {
     let last = (rows.len() + 1).saturating_sub(fewest);
     rows.into_iter().take(last).skip(fewest).collect()
@@ -71,13 +73,13 @@ impl Equations {
     }
 }
 
-/// What an event with three parameters changes in each reading, and the residuals of a fit without it.
+/// The changes of all readings by an event with three parameters, and the residuals of a fit without the event.
 struct Influence {
     /// For each parameter, the change of each reading per unit, in standard deviations.
     columns: [Vec<f64>; 3],
     /// Residual of each reading, in standard deviations.
     residuals: Vec<f64>,
-    /// For each reading, the row, from 0, that decides whether it is after the event.
+    /// For each reading, the row, from 0, that decides whether the reading was taken after the event.
     rows: Vec<usize>,
 }
 
@@ -93,7 +95,7 @@ impl Influence {
         Self { columns: columns.map(scaled), residuals: fit.residuals(forward, weights), rows }
     }
 
-    /// Normal equations of each row of the readings `range`.
+    /// For each row, the normal equations of its readings. Only readings in `range` are used.
     fn by_row(&self, range: &Range<usize>) -> BTreeMap<usize, Equations> {
         let mut out = BTreeMap::new();
         for i in range.clone() {
@@ -110,9 +112,9 @@ impl Influence {
         self.by_row(range).range(from_row..).fold(Equations::none(), |sum, (_, own)| sum.plus(own))
     }
 
-    /// The row of `rows`, which rise, from which on the event explains most of the residuals of the readings `range`; the
-    /// last of those that explain as much. `known` are the normal equations of other readings. `None` if it explains nothing
-    /// from any row on.
+    /// The row of `rows`, which are sorted, at which the event lowers chi-squared of the readings `range` most; the
+    /// last one if several lower it equally. `known` are the normal equations of other readings after the event. `None`
+    /// if the event lowers chi-squared at no row.
     fn best_row(&self, range: &Range<usize>, rows: &[usize], known: &Equations) -> Option<usize> {
         let mut before = self.by_row(range);
         let mut after = *known;
@@ -154,8 +156,8 @@ pub(super) fn of_shift(forward: &Forward, fit: &Fit, weights: &Weights, rows: &[
     influence.best_row(&statics, rows, &Equations::none())
 }
 
-/// The rows, in the static and in the modal tests, before which a slip of the payload would explain most of the residuals
-/// of `fit`. `None` in the place of a row: it did not slip in these tests.
+/// The rows, in the static and in the modal tests, before which a slip of the payload would explain most of the
+/// residuals of `fit`. A row is `None` if the payload did not slip in these tests.
 pub(super) fn of_slip(forward: &Forward, fit: &Fit, weights: &Weights) -> [Option<usize>; 2] {
     let column = |k: usize| {
         let mut moved = fit.point.coefficients.clone();
@@ -169,7 +171,7 @@ pub(super) fn of_slip(forward: &Forward, fit: &Fit, weights: &Weights) -> [Optio
         return [None, None];
     };
     let known = influence.equations(&statics, row);
-    // it may have slipped before the modal tests, in their course, or not at all
+    // the payload may have slipped before the modal tests, in their course, or not at all
     let starts: BTreeSet<usize> = forward.modal.iter().map(|test| test.first_row()).collect();
     let starts: Vec<usize> = starts.into_iter().chain([usize::MAX]).collect();
     let in_modal = influence.best_row(&modal, &starts, &known).filter(|row| *row != usize::MAX);
@@ -180,7 +182,8 @@ pub(super) fn of_slip(forward: &Forward, fit: &Fit, weights: &Weights) -> [Optio
 mod tests {
     use super::*;
 
-    /// Twelve readings of one direction, which shows two of the three parameters. From the sixth row on they are off.
+    /// Twelve readings of one direction, on which two of the three parameters have an influence. From row 6 on the
+    /// readings are off.
     #[test]
     fn the_row_is_found_where_one_parameter_does_not_show() {
         let readings = 0..12;

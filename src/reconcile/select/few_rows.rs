@@ -27,8 +27,8 @@ pub(crate) const FEWEST_ROWS: usize = 11;
 /// Largest number of fits for sets of the same number of effects. If more would be needed, only the most promising
 /// smaller sets are extended.
 const MOST_FITS: usize = 6000;
-/// A set of effects explains the readings if chance gives a misfit at least as large as its own with a probability
-/// above this.
+/// A set of effects explains the readings if noise alone would give a misfit at least as large with a probability above
+/// this.
 const LEAST_PROBABILITY: f64 = 0.01;
 /// Sets that explain the readings are left out if the logarithm of their evidence is this far below the best. The
 /// limit is wide, because with few readings the evidence mostly repeats the prior.
@@ -49,8 +49,8 @@ pub(crate) fn weigh(search: &Search) -> Selection {
     let baseline = scored(search, &[], &[]);
     let mut tried = vec![baseline.clone()];
     let mut level = tried.clone();
-    // continues with one effect more than the smallest explaining set, because other effects may explain the readings
-    // with as few parameters
+    // the search goes on to one effect more than the smallest explaining set has, because other effects may explain the
+    // readings with as few parameters
     let mut beyond = false;
     for _ in 0..MOST_EFFECTS.min(search.forward.data.len()) {
         if beyond {
@@ -84,8 +84,8 @@ fn explains(search: &Search, scored: &Scored) -> bool {
     is_probable(search, scored, scored.objective)
 }
 
-/// Whether chance leaves a misfit (chi-squared) as large as `misfit`, for the parameters of the set `set`, with a
-/// probability of at least [`LEAST_PROBABILITY`].
+/// Whether noise alone gives a misfit (chi-squared) of at least `misfit` with a probability above
+/// [`LEAST_PROBABILITY`]. The degrees of freedom are those of the set `set`.
 fn is_probable(search: &Search, set: &Scored, misfit: f64) -> bool {
     let readings = search.forward.data.len();
     let free = free_parameters(search, &set.effects);
@@ -136,7 +136,7 @@ fn scored(search: &Search, effects: &[usize], starts: &[Vec<f64>]) -> Scored {
     let fits = starts.iter().map(|u| search.fit(effects, u, Effort::default()));
     let best =
         fits.min_by(|a, b| a.point.objective.total_cmp(&b.point.objective)).expect("at least one start");
-    // without this charge a size beyond the expected range would cost nothing where readings are few
+    // without this charge, a size beyond the expected range would cost nothing if readings are few
     let strange: f64 = best
         .model
         .free_parameters()
@@ -203,9 +203,9 @@ fn gap(search: &Search, baseline: &Fit) -> String {
     )
 }
 
-/// A sentence that names the outermost joint outboard of which the mass is wrong. Only sets of effects that leave the
-/// stiffnesses unchanged are considered, and all of them must agree. `None` if there is no such joint. `subjects` are
-/// the arms with the sets `explaining`.
+/// A sentence that names the outermost joint from which on, the joint included, the mass is wrong. Only sets of effects
+/// that leave the stiffnesses unchanged are considered, and all of them must agree. `None` if there is no such joint.
+/// `subjects` are the arms with the sets `explaining`.
 fn missing_mass(
     search: &Search,
     campaign: &Campaign,
@@ -223,7 +223,7 @@ fn missing_mass(
     names.iter().rev().find_map(|joint| {
         let outboard = |s: &Subject| s.payload(&stated).mass_kg + outboard_kg(s, joint);
         let known_kg = outboard(nominal);
-        // only mass outboard of a joint loads it, so the outermost joint is named
+        // a wrong mass also changes the sum at every joint inboard of it, so the outermost joint is named
         let missing_kg = |i: &usize| outboard(&subjects[*i]) - known_kg;
         let (low, high) = span(as_stiff.iter().map(missing_kg));
         let (word, low, high) = if high < 0.0 { ("too much", -high, -low) } else { ("missing", low, high) };
@@ -240,8 +240,8 @@ fn missing_mass(
     })
 }
 
-/// Whether `subject` has exactly the compliances of the arm file (`nominal`): of joints, bearings, links and base, and
-/// those that the tests add (servos, moduli that change).
+/// Whether `subject` has exactly the compliances of the arm file (`nominal`). They are those of joints, bearings,
+/// guides, links and base, and those that the tests add (servos, joints that soften, moduli that change).
 fn is_as_stiff(subject: &Subject, nominal: &Subject) -> bool {
     let pieces = subject.structure.pieces.iter().zip(&nominal.structure.pieces);
     let same = |(a, b): (&Piece, &Piece)| match (a, b) {

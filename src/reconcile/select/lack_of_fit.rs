@@ -1,11 +1,12 @@
 //! Tests whether the residuals of the best model have a structure (lack of fit).
 //!
 //! The residuals of a correct model are noise. They do not depend on the order of the tests, a joint's angle, the load,
-//! the branch or the torque. For each such quantity a few columns `X`, functions of it, are tested. After the part that
-//! the model could still fit is removed, the statistic is `zᵀ S⁻¹ z` with `z = Xᵀr` and `S = XᵀX - XᵀJ (JᵀWJ)⁻¹ JᵀX`.
-//! Here `r` are the residuals and `J` the derivatives of the predicted readings with respect to the parameters, both in
-//! standard deviations, and `(JᵀWJ)⁻¹` is the covariance matrix of the parameters. The statistic follows a chi-squared
-//! distribution if there is no structure. The smooth laws of [`unnamed`](super::unnamed) are tested too.
+//! the branch or the torque. For each such quantity a few columns `X`, functions of it, are tested. The part of the
+//! columns that the model itself could fit is removed. The statistic is then `zᵀ S⁻¹ z` with `z = Xᵀr` and
+//! `S = XᵀX - XᵀJ (JᵀWJ)⁻¹ JᵀX`. Here `r` are the residuals and `J` the derivatives of the predicted readings with
+//! respect to the parameters, both in standard deviations, and `(JᵀWJ)⁻¹` is the covariance matrix of the parameters.
+//! The statistic follows a chi-squared distribution if there is no structure. The smooth laws of
+//! [`unnamed`](super::unnamed) are tested too.
 
 use super::structure::Structure;
 use super::unnamed;
@@ -37,11 +38,11 @@ const LARGEST_REDUCED_CHI_SQUARED: f64 = 2.5;
 /// If a structure of the residuals is suspected, the model fails the test already above this chi-squared per degree
 /// of freedom.
 const SUSPICIOUS_REDUCED_CHI_SQUARED: f64 = 1.8;
-/// A structure of the residuals whose probability by chance is below this, after correction for the number of tests,
-/// is no chance result.
+/// A structure of the residuals is taken as real if chance gives it with a probability below this, after correction for
+/// the number of tests.
 const CERTAIN_PROBABILITY: f64 = 1e-3;
-/// A structure of the residuals whose probability by chance is below this, after correction for the number of tests,
-/// is suspected.
+/// A structure of the residuals is suspected if chance gives it with a probability below this, after correction for the
+/// number of tests.
 const SUSPECTED_PROBABILITY: f64 = 0.02;
 /// Largest number of structures that are described in words.
 const STRUCTURES_NAMED: usize = 3;
@@ -53,8 +54,8 @@ impl LackOfFit {
         self.sentences_on(|s| s.ln_p < libm::log(CERTAIN_PROBABILITY))
     }
 
-    /// As [`Self::sentences`], but the readings are taken to scatter as much as the residuals do, which may be more
-    /// than declared. Only structures that are then still no chance result are described.
+    /// The same as [`Self::sentences`], but the readings are taken to scatter as much as the residuals do, if that is
+    /// more than declared. Only structures that are then still no chance result are described.
     pub(crate) fn sentences_beyond_scatter(&self) -> Vec<String> {
         let scatter = self.chi2_per_dof.max(1.0);
         self.sentences_on(|s| {
@@ -94,7 +95,8 @@ pub(crate) fn lack_of_fit(campaign: &Campaign, forward: &Forward, fit: &Fit, wei
     structures.sort_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
     let chi2_per_dof = tester.chi2_per_dof(forward, fit);
     let ln_p = structures.first().map_or(0.0, |s| s.ln_p);
-    // without a large chi-squared, a structure must be no chance result; a very large chi-squared fails by itself
+    // a structure that is certain fails the test, and so does a very large chi-squared; a suspected structure does only
+    // together with a large chi-squared
     let fails = ln_p < libm::log(CERTAIN_PROBABILITY)
         || chi2_per_dof > LARGEST_REDUCED_CHI_SQUARED
         || (ln_p < libm::log(SUSPECTED_PROBABILITY) && chi2_per_dof > SUSPICIOUS_REDUCED_CHI_SQUARED);
@@ -181,8 +183,9 @@ impl Tester {
     }
 }
 
-/// A function that carries out one test. It receives the quantity that the residuals may follow, in words, and its
-/// columns. Tests are made one by one, because the columns of all tests together would need much memory.
+/// A function that carries out one test. Its arguments are the quantity that the residuals may follow, in words, and
+/// the columns of the test. Tests are made one by one, because the columns of all tests together would need much
+/// memory.
 type Ask<'a> = &'a mut dyn FnMut(String, Vec<Vec<f64>>);
 
 /// Makes all tests of the residuals of the channel `channel`. The columns of a test are zero outside the channel.

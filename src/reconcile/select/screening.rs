@@ -3,7 +3,7 @@
 //!
 //! Each stage adds one effect. All candidates are screened with the model linearized about the fit so far, and the best
 //! are fitted in full. From two effects on, each effect is dropped and exchanged for all others until nothing improves.
-//! This repairs mistakes of the greedy search.
+//! This corrects mistakes of the greedy search.
 
 use super::search::{Scored, Search};
 use super::unnamed::{self, Better};
@@ -18,11 +18,12 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::cell::OnceCell;
 
-/// Smallest rise of the score \[ln of the evidence\] for which a second or third effect is accepted. It is above
-/// zero, because two missing effects are less probable than one. A first effect needs no more than a rise, because a
-/// missing effect is as probable as none.
+/// Smallest rise of the score \[ln of the evidence\] for which a second or third effect is accepted. It is above zero,
+/// because two missing effects are less probable than one. For a first effect any rise is enough, because a missing
+/// effect is taken to be as probable as none.
 const LEAST_GAIN: f64 = 3.0;
-/// So many alternatives to an effect are listed that the effect or one of them is right with this probability.
+/// As many alternatives to an effect are listed as are needed for the effect or one of them to be right with this
+/// probability.
 const CREDIBLE_PROBABILITY: f64 = 0.95;
 /// A model whose score after a few steps of a fit is below the best score by more than this is not fitted further \[ln
 /// of the evidence\].
@@ -47,7 +48,7 @@ const UNDECIDED_FRACTION: f64 = 0.1;
 /// Sizes of effects at which candidates are tried if much is missing, as fractions of the sizes at which their fits
 /// start.
 const TRIED_SIZES: [f64; 3] = [0.1, 0.3, 1.0];
-/// A calibrated factor is far from nominal beyond this \[standard deviations of its tolerance\]. One honest part in
+/// A calibrated factor is far from nominal beyond this \[standard deviations of its tolerance\]. One faultless part in
 /// sixteen thousand deviates so far.
 const FAR_CALIBRATED: f64 = 4.0;
 /// If chi-squared of a model is below this fraction of its expectation, the residuals are far below the declared
@@ -180,7 +181,8 @@ impl<'a> Search<'a> {
         }
         let effort = Effort { steps: 12, tolerance: 0.02 };
         let again = |s: &Scored| {
-            // fits end in the middle of the flat part of the objective, so that all models are compared equally
+            // break points are moved to the middle of the range in which the objective is flat, so that all models are
+            // compared in the same way
             let model = self.model(&s.effects);
             let end = self.descent(&model, &s.u, effort);
             self.scored(&s.effects, &self.centre_breaks(model, end))
@@ -213,8 +215,9 @@ impl<'a> Search<'a> {
             && scored.objective < expected - 3.0 * (2.0 * expected).sqrt()
     }
 
-    /// Drops each effect of `best` in turn, or exchanges it for another candidate, until the score does not improve.
-    /// All models that are fitted are added to `seen`.
+    /// Drops each effect of `best` in turn, or exchanges it for another candidate, until nothing improves, at most four
+    /// times. An effect is dropped unless it raises the score by at least [`LEAST_GAIN`]. All models that are fitted
+    /// are added to `seen`.
     fn repair(&self, mut best: Scored, seen: &mut Vec<Scored>) -> Scored {
         for _ in 0..4 {
             let mut improved = false;
@@ -364,8 +367,8 @@ impl<'a> Search<'a> {
             let model = Model { smoothing: WIDE_SMOOTHING, ..model.clone() };
             self.linearized(&model, &base.u)
         });
-        // a further effect moves torques across the break points that were found, and the linearized model does not
-        // contain the jumps
+        // a further effect can move torques across the fitted break points, and the linearized model does not contain
+        // the jumps there
         let about = |candidate: usize| match self.is_smoothed(&model, candidate) {
             true => smooth.as_ref().unwrap_or(&sharp),
             false => &sharp,
@@ -503,8 +506,8 @@ impl<'a> Search<'a> {
             let p = model.calibrated() + i;
             let prior = parameter.width(u[p]);
             let width = 1.0 / (curvature[(p, p)] + 12.0 / prior.powi(2)).sqrt();
-            // the free parameter lowers the evidence by the width of its posterior over that of its prior; 0.9 is ln of
-            // the root of 2 pi
+            // a free parameter multiplies the evidence by the width of its posterior divided by the width of its prior;
+            // 0.9 is ln of the root of 2 pi
             score += libm::log(width / prior) + 0.9;
         }
         (u, score)

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 /// deviations are too small.
 const BEYOND_HOPE: f64 = 3.0;
 
-/// What a search for effects needs: campaign, candidates and weights.
+/// The inputs of a search for effects: campaign, candidates and weights.
 pub(crate) struct Search<'a> {
     /// The campaign with its readings.
     pub campaign: &'a Campaign,

@@ -19,8 +19,8 @@ const RANGE_STEP: f64 = 0.01;
 pub(crate) fn seen(forward: &Forward, nuisance: &Nuisance, mut candidates: Vec<Candidate>) -> Vec<Candidate> {
     let inverse = forward.data.iter().map(|d| 1.0 / d.sigma).collect();
     let weights = Weights { inverse, smooth_only: false };
-    let bare = Model::baseline(nuisance);
-    let here = evaluate(forward, &bare, &vec![0.0; bare.len()], &weights);
+    let baseline = Model::baseline(nuisance);
+    let here = evaluate(forward, &baseline, &vec![0.0; baseline.len()], &weights);
     // if the nominal arm lacks a measured mode, its change cannot be computed to first order, so no candidate is left
     // out
     let lists = forward.modal.iter().zip(&here.solved);
@@ -28,7 +28,7 @@ pub(crate) fn seen(forward: &Forward, nuisance: &Nuisance, mut candidates: Vec<C
         return candidates;
     }
     candidates.retain(|candidate| {
-        let model = bare.with(candidate);
+        let model = baseline.with(candidate);
         sizes(candidate).iter().any(|own| {
             let u = [here.u.as_slice(), own].concat();
             let moved = change(forward, &model, &here, &u);

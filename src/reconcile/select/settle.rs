@@ -1,7 +1,7 @@
 //! Finds the effects and the quality of the readings together, because each depends on the other.
 //!
-//! Gross errors, the size of the noise and modes missing from a list can be seen only if the model has the right
-//! effects. The right effects can be found only if the wrong rows are left out.
+//! Gross errors, the size of the noise and modes that are missing from a list can be found only with the right effects
+//! in the model. The right effects can be found only if wrong rows are left out.
 
 use super::few_rows;
 use super::screening::Selection;
@@ -135,9 +135,9 @@ impl Settling<'_> {
         Round { noise, selection, coefficients: best.point.coefficients, judged, hopeful }
     }
 
-    /// Fits the calibration alone with the declared standard deviations, and returns the fit with its weights. If it
-    /// does not fit most readings, a few worst readings are left out, up to four times. This fit is returned instead
-    /// if it fits most of the other readings.
+    /// Fits the calibration alone with the declared standard deviations, and returns the fit with its weights. If the
+    /// fit is not close to most readings, the few worst readings are left out and the calibration is fitted again, up
+    /// to four times. The new fit is returned if it is close to most of the other readings.
     fn baseline(&self) -> (Fit<'_>, Weights) {
         let calibrated = |noise: Noise| {
             let baseline = Model::baseline(self.nuisance);
@@ -160,9 +160,9 @@ impl Settling<'_> {
         (with_all, declared)
     }
 
-    /// Makes the first search, without the gross errors that are visible before any effect is known. An effect may
-    /// show in a single frequency. So the search is repeated with the frequencies that were left out, and this result
-    /// is taken if it is more probable.
+    /// Makes the first search, without the gross errors that are visible before any effect is known. A frequency that
+    /// was left out may be no error but the only sign of an effect. So the search is repeated with all frequencies, and
+    /// this result is taken if it is more probable.
     fn first(&self) -> Round {
         let (baseline, weights) = self.baseline();
         let noise = Noise::first_look(self.forward, &baseline, &weights);
@@ -223,9 +223,9 @@ impl Settling<'_> {
         round
     }
 
-    /// Searches again without one or two rows that are gross errors according to the best model, or to the best model
-    /// with one effect fewer. The new result replaces `round` if such errors are more probable than the effects that
-    /// they replace.
+    /// Searches again without one or two rows that are gross errors according to the best model, or according to the
+    /// best model with one effect fewer. The new result replaces `round` if such errors are more probable than the
+    /// effects that they replace.
     fn with_slips(&self, round: Round) -> Round {
         let best = &round.selection.best;
         if !round.hopeful {

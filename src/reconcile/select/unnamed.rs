@@ -1,9 +1,9 @@
-//! Competing models: smooth laws that are not effects of the library.
+//! Tests competing models: smooth laws that are not effects of the library.
 //!
 //! An effect of the library can imitate physics that the library lacks. A joint that stiffens under load looks like
 //! lost motion, and a nonlinear sensor looks like a gain. So every named effect must compete with general
-//! [`laws`](super::laws), which are fitted together with the calibration. A law is added to the named effects, or
-//! replaces them.
+//! [`laws`](super::laws), which are fitted together with the calibration. In these fits, a law is added to the named
+//! effects or replaces them.
 
 use super::laws::{Law, of_every_law};
 use super::search::{Scored, Search};
@@ -93,8 +93,9 @@ pub(crate) fn instead(search: &Search, best: &Scored, baseline: &Fit) -> Option<
 }
 
 /// The best of the `competitors` by evidence, if its evidence, less a charge for having tried `places` places, is
-/// higher than `evidence` by more than [`LEAST_GAIN`]; otherwise `None`. `evidence` is that of the model with which
-/// they compete. Effects that are in both models are not charged for their places.
+/// higher than `evidence` by more than [`LEAST_GAIN`]; otherwise `None`. `evidence` is the logarithm of the evidence of
+/// the model with which they compete, less the charges for effects that only this model has. Effects that are in both
+/// models are not charged for their places.
 fn best_of(competitors: Vec<Competitor>, evidence: f64, places: f64) -> Option<Better> {
     let gain = |r: &Competitor| r.evidence - libm::log(places) - evidence;
     let best = competitors.into_iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;

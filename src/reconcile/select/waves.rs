@@ -1,4 +1,4 @@
-//! Smooth functions that residuals could follow: of an angle, and of the order of the rows.
+//! Smooth functions of an angle, and of the order of the rows, that residuals could follow.
 
 use std::f64::consts::TAU;
 

@@ -3,7 +3,8 @@
 use super::{Builder, Law};
 
 impl Builder<'_> {
-    /// For each joint and each neighbour of it, the law that the joint twists in proportion to the neighbour's torque.
+    /// For each joint and each of its neighbours, the law that the joint twists in proportion to the neighbour's
+    /// torque.
     pub(super) fn coupling_laws(&self) -> Vec<Law> {
         let joints = &self.forward.layout.joints;
         let pairs = (1..joints.len()).flat_map(|j| [(j - 1, j), (j, j - 1)]);

@@ -58,9 +58,9 @@ impl Builder<'_> {
     }
 }
 
-/// The torque that twists the joint less the torque on it \[N m\], for each torque of a sequence. They differ by the
-/// friction torque, which is at most the fraction `part` of the torque on the joint. `state_nm` is the twisting torque
-/// before the first of the sequence.
+/// The torque that twists the joint, minus the torque on the joint \[N m\], for each torque of a sequence. The two
+/// differ by the friction torque, which is at most the fraction `part` of the torque on the joint. `state_nm` is the
+/// twisting torque before the first of the sequence.
 fn lags_nm(torques_nm: impl Iterator<Item = f64>, mut state_nm: f64, part: f64) -> Vec<f64> {
     let lag = |torque_nm: f64| {
         let reach_nm = part * torque_nm.abs();

@@ -4,9 +4,9 @@ use super::{Builder, Law, one_or_both};
 use crate::reconcile::forward::coefficients::GUIDE_ROTATIONS;
 
 impl Builder<'_> {
-    /// For each prismatic joint, the laws that the compliance of its guide, and that of its drive, changes with the
-    /// position. Examples are a rail that is badly screwed down at one place, and a screw that is longer the farther
-    /// the nut travels.
+    /// For each prismatic joint, the laws that the compliance of its guide, or the compliance of its drive, changes
+    /// with the position. Examples are a rail that is badly screwed down at one place, and a screw that is longer the
+    /// farther the nut travels.
     pub(super) fn guide_laws(&self) -> Vec<Law> {
         let layout = &self.forward.layout;
         let joints = layout.slides.iter().zip(self.forward.nominal.structure.prismatics());

@@ -71,8 +71,8 @@ impl Builder<'_> {
             let what =
                 format!("a stiffness of {name} that changes with the order of the {} tests", channel.word());
             out.extend(one_or_both(&what, [order(channel, 1), order(channel, 2)]));
-            // a servo may hold a joint less stiffly than a brake; if there is one kind of readings only, this cannot
-            // be told from the joint's stiffness
+            // a servo may hold a joint less stiffly than a brake does; with one kind of readings only, this cannot be
+            // told from a different stiffness of the joint
             if self.kinds_of_readings() > 1 {
                 let what = format!("a stiffness of {name} that is another in the {} tests", channel.word());
                 out.push(Law { what, effect: None, columns: vec![order(channel, 0)] });
@@ -82,8 +82,9 @@ impl Builder<'_> {
         out
     }
 
-    /// Laws of a joint that warms up or works loose in the course of the tests, with references that were read before
-    /// all of them: in the static tests, and in static and modal tests together. `column` builds a column of the joint.
+    /// Laws of a joint that warms up or works loose in the course of the tests, if all references were read before the
+    /// tests. The laws are for the static tests, and for static and modal tests together. `column` builds a column of
+    /// the joint.
     fn warming_laws(&self, joint: usize, column: &dyn Fn(Shape) -> Vec<f64>) -> Vec<Law> {
         let name = &self.forward.layout.joints[joint].name;
         let is_empty = |channel| self.forward.range(channel).is_empty();

@@ -5,7 +5,7 @@ use crate::arm::Element;
 use crate::reconcile::readings::campaign::Campaign;
 use rayon::prelude::*;
 
-/// Fraction of its length by which a link is lengthened to compare the readings.
+/// Step for the difference quotient of the readings: the link is longer by this fraction of its length.
 const LENGTH_STEP: f64 = 1e-3;
 /// Change of a link's length that counts as the full size of the law, as a fraction of the length.
 const FULL_PART: f64 = 0.1;
@@ -23,9 +23,9 @@ impl Builder<'_> {
         names.iter().zip(columns).map(law).collect()
     }
 
-    /// For each link, the change of every reading of the nominal arm, in its unit, by a change of the link's length of
-    /// the full size. All poses have to be prepared anew for this. It is therefore computed once about the nominal arm,
-    /// and not for every fit.
+    /// For each link, the change of every reading of the nominal arm, in its unit, if the link is longer by
+    /// [`FULL_PART`] of its length. All poses have to be prepared again for this. It is therefore computed once about
+    /// the nominal arm, and not for every fit.
     fn length_columns(&self, names: &[&str]) -> Vec<Vec<f64>> {
         let stated = self.forward.nominal_readings(self.campaign);
         let column = |name: &&str| {

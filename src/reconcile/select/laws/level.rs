@@ -1,15 +1,15 @@
-//! The law of an arm that is out of level: the weight of every payload pulls in another direction than stated.
+//! The law of an arm that is not level: the weight of every payload pulls in another direction than stated.
 
 use super::{Builder, FULL_ANGLE_DEG, Law};
 use crate::reconcile::forward::prepared::Forward;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-/// Angle by which gravity is turned to compare the readings \[rad\].
+/// Angle by which gravity is tilted for the difference quotient of the readings \[rad\].
 const STEP_RAD: f64 = 2e-3;
 
 impl Builder<'_> {
-    /// The law that gravity is turned about both horizontal axes.
+    /// The law that gravity is tilted, with one parameter for each horizontal axis.
     pub(super) fn level_laws(&self) -> Vec<Law> {
         let columns = self.forward.level_columns.get_or_init(|| self.level_columns());
         vec![Law {
@@ -19,10 +19,10 @@ impl Builder<'_> {
         }]
     }
 
-    /// For each horizontal axis of the world, the change of every reading of the nominal arm, in its unit, by a turn of
-    /// gravity of the full size ([`FULL_ANGLE_DEG`]). Two small influences are left out. Frequencies depend on the
-    /// direction of gravity only through the curves of the gears. The arm's own weight deflects the arm in the
-    /// reference of every reading too.
+    /// For each horizontal axis of the world, the change of every reading of the nominal arm, in its unit, if gravity
+    /// is tilted towards the axis by [`FULL_ANGLE_DEG`] (extrapolated from a small step). Two small influences are left
+    /// out. Frequencies depend on the direction of gravity only through the curves of the gears. The arm's own weight
+    /// deflects the arm equally in the reference of every reading, so it hardly counts.
     fn level_columns(&self) -> Vec<Vec<f64>> {
         let stated = self.static_readings_with(Vector3::zeros());
         let column = |axis: Vector3<f64>| {

@@ -1,5 +1,5 @@
-//! Laws of a base, of bearings and of links: more compliance in one direction or in one part only, another mass than
-//! drawn, or another wall.
+//! Laws of a base, of bearings and of links: they may be more compliant in one direction or in one part only, and links
+//! may have another mass or wall than drawn.
 
 use super::{Builder, Law};
 use crate::mechanics::beam::Strain;
@@ -78,7 +78,7 @@ impl Builder<'_> {
     }
 
     /// The derivative of every reading with respect to the size of a change of the coefficients, at size zero.
-    /// `changed` makes the change of a given size in the coefficients.
+    /// `changed` applies the change of a given size to coefficients.
     fn changed_column(&self, changed: &dyn Fn(&mut Coefficients, f64)) -> Vec<f64> {
         const DERIVATIVE_STEP: f64 = 1e-4;
         let mut moved = self.fit.point.coefficients.clone();

@@ -5,8 +5,8 @@ use super::{Builder, Law, one_or_both};
 use crate::arm::effect::channel::Channel;
 use std::ops::Range;
 
-/// A function that builds a column of a channel's readings. Its argument is a function that gives the entry of a datum
-/// from the index and the predicted reading of this datum.
+/// A function that builds a column for a channel. Its argument is a function that computes the entry of one datum from
+/// the index of the datum and its predicted reading.
 type ColumnOf<'a> = &'a dyn Fn(&dyn Fn(usize, f64) -> f64) -> Vec<f64>;
 
 impl Builder<'_> {

@@ -3,7 +3,7 @@
 use super::{Builder, FULL_ANGLE_DEG, Law};
 
 impl Builder<'_> {
-    /// For each driven joint, the law that its angle is another than stated, by the same amount in every pose.
+    /// For each driven joint, the law that its angle differs from the stated one by the same amount in every pose.
     pub(super) fn zero_laws(&self) -> Vec<Law> {
         let names = self.campaign.arm.driven_joint_names();
         let slopes = self.forward.turn_slopes(self.campaign);
