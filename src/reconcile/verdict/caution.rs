@@ -18,12 +18,12 @@ const NEIGHBOUR_DISTANCE: usize = 2;
 const TOLERANCE_SIGMAS: f64 = 2.0;
 /// A calibrated factor is called improbable if fewer than one in this many faultless parts deviate so far.
 const RARE_PARTS: f64 = 200.0;
-/// A calibrated factor that at most one in this many faultless parts has is no matter of tolerance.
+/// If fewer than one in this many faultless parts have such a calibrated factor, tolerance cannot be its cause.
 const IMPOSSIBLE_PARTS: f64 = 1e6;
 
-/// Sentence that two effects of the model have opposite signs at neighbouring places; `None` if no two have. The two
-/// effects are of the same kind, or both are masses. Each then cancels a part of the other. Together they describe one
-/// thing that is at another place, or that is present in one kind of test only.
+/// Sentence that two effects of the model have opposite signs at neighbouring places; `None` if there are no such
+/// effects. Only two effects of the same kind, or two masses, are compared. Each then cancels a part of the other.
+/// Together they describe one effect that is at another place, or that is present in one kind of test only.
 pub(crate) fn opposed(forward: &Forward, fit: &Fit) -> Option<String> {
     let effects = &fit.model.effects;
     let size = |i: usize| -> Option<(&FreeParameter, f64)> {
@@ -72,7 +72,8 @@ pub(crate) fn may_be_absent(fit: &Fit, ends: &[Interval]) -> Vec<usize> {
         let own = effect.free_parameters.iter().zip(&ends[at..]);
         let sizes: Vec<bool> = own.filter_map(|(parameter, ends)| parameter.may_be_absent(ends)).collect();
         at += effect.free_parameters.len();
-        // this holds only for a single size: a vector may differ from zero although each of its components may be zero
+        // this is decided only for a single size: a vector may differ from zero although the interval of each component
+        // contains zero
         if sizes == [true] {
             out.push(i);
         }
@@ -121,9 +122,9 @@ pub(crate) fn beyond_tolerance(
     (!beyond.is_empty()).then(|| format!("calibration leaves the tolerance: {}{doubt}", beyond.join(", ")))
 }
 
-/// Sentence that a model, with its calibration, explains the readings only with a factor that no faultless part has.
-/// `None` if there is no such factor. `effects` is the label of the model's effects, empty without any. `deviations`
-/// has, for each factor, the standard deviation of its logarithm that follows from the tolerance.
+/// Sentence that a model explains the readings only with a calibrated factor that no faultless part has. `None` if
+/// there is no such factor. `effects` is the label of the model's effects, empty without any. `deviations` has, for
+/// each factor, the standard deviation of its logarithm that follows from the tolerance.
 pub(crate) fn impossible_calibration(
     campaign: &Campaign,
     effects: &str,
@@ -152,20 +153,21 @@ pub(crate) fn impossible_calibration(
     ))
 }
 
-/// A calibrated factor, its departure from nominal and its tolerance, in words; the caller closes the bracket. `sd` is
-/// the standard deviation of its logarithm that follows from the tolerance.
+/// A calibrated factor, its deviation from nominal and its tolerance, in words. The caller adds the closing bracket.
+/// `sd` is the standard deviation of its logarithm that follows from the tolerance.
 fn departure_words(sd: f64, of: &Calibrated) -> String {
     let (part, tolerance) = (of.factor.value - 1.0, TOLERANCE_SIGMAS * sd);
     format!("{} by {:+.1} % (tolerance {:.1} %", of.name, 100.0 * part, 100.0 * tolerance)
 }
 
-/// The number n such that one in n faultless parts departs from nominal as far as a calibrated factor. `sd` is the
-/// standard deviation of its logarithm that follows from the tolerance.
+/// The number n such that one in n faultless parts deviates from nominal at least as far as a calibrated factor. `sd`
+/// is the standard deviation of its logarithm that follows from the tolerance.
 fn one_in(sd: f64, of: &Calibrated) -> f64 {
     honest_parts_for_one(libm::log(of.factor.value) / sd)
 }
 
-/// Largest number of honest parts that is printed. Beyond it, the normal distribution says nothing about parts.
+/// Largest number of faultless parts that is printed. Rarer deviations of real parts do not follow a normal
+/// distribution.
 const MOST_PARTS: f64 = 1e12;
 
 /// How rare a calibrated factor is, in words.

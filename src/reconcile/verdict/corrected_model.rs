@@ -1,6 +1,7 @@
 //! Chooses the model of the corrected arm if no known effect explains the readings. The models are the arm as it was
-//! given, the calibrated arm, the arm with the best known effects, and arms with laws without a name. The one that
-//! predicts held-out readings best is taken: those of whole poses, or of a bench if there is nothing else.
+//! given, the calibrated arm, the arm with the best known effects, and arms with laws without a name. The model with
+//! the smallest error on held-out readings is taken, and the simplest one if errors are about equal. The readings of
+//! whole poses are held out, or bench readings if there are no others.
 //!
 //! The verdict stays `unexplained`: a model that predicts better is no explanation.
 
@@ -53,7 +54,7 @@ pub(crate) fn choose<'a>(
     named: Fit<'a>,
     named_effects: &[usize],
 ) -> Choice<'a> {
-    // angles whose zero is off need them
+    // the laws of angles whose zero is off need these slopes
     search.forward.turn_slopes(search.campaign);
     let mut rows = vec![row("the arm as it was given".into(), nominal_rms(search, noise))];
     let mut fits = vec![(None, None)];

@@ -50,8 +50,8 @@ pub(crate) fn tolerances<'f>(fit: &'f Fit<'f>) -> impl Iterator<Item = f64> + 'f
     fit.model.nuisance.numbers.iter().map(|(_, sd)| *sd)
 }
 
-/// The calibrated factors of the model `fit` on nominal values, with 95 % intervals, and how much of the tolerance of
-/// each the readings leave.
+/// The calibrated factors of the model `fit` on nominal values, with 95 % intervals. `learnt` is the standard deviation
+/// that the readings leave, as a fraction of that of the tolerance.
 pub(crate) fn calibrated(fit: &Fit) -> Vec<Calibrated> {
     let sds = deviations(fit);
     let numbers = fit.model.nuisance.numbers.iter().enumerate();

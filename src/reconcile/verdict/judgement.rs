@@ -29,14 +29,14 @@ impl Verdict {
         order.into_iter().find(|verdict| said.contains(verdict)).unwrap_or(Verdict::NoGap)
     }
 
-    /// Whether the readings are explained, with or without an effect.
+    /// Whether the readings are explained, with or without effects.
     pub(crate) fn is_settled(self) -> bool {
         matches!(self, Verdict::Explained | Verdict::NoGap)
     }
 
-    /// Divides the effects `found` into those that are named (first) and those that are only suspected (second), as
-    /// the verdict demands. `suspects` were only suspected from the beginning. No effects are stated if the verdict
-    /// is `unexplained`.
+    /// Divides the effects `found` into those that are named (first) and those that are only suspected (second), as the
+    /// verdict demands. `suspects` are effects that were only suspected before the verdict. No effects are stated if
+    /// the verdict is `unexplained`.
     pub(crate) fn named_and_suspected(
         self,
         found: Vec<Finding>,

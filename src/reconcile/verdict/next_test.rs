@@ -36,8 +36,8 @@ const MODAL_POSES: usize = 4;
 const PROPOSALS: usize = 4;
 /// Difference of the predictions of two models that suffices to decide between them \[standard deviations\].
 pub(crate) const DECIDING_SIGMAS: f64 = 4.0;
-/// Least separation with which a test is proposed \[standard deviations\]. A hundred such readings reach
-/// [`DECIDING_SIGMAS`], because their mean is ten times as sharp as one reading.
+/// Smallest separation with which a test is proposed \[standard deviations\]. A hundred such readings reach
+/// [`DECIDING_SIGMAS`], because the standard deviation of their mean is a tenth of that of one reading.
 pub(crate) const LEAST_SIGMAS: f64 = DECIDING_SIGMAS / 10.0;
 /// Largest number of readings that is printed.
 const MOST_READINGS: f64 = 9999.0;
@@ -56,7 +56,8 @@ enum Test {
     Bench(Vec<WindupRow>),
 }
 
-/// Up to four tests that separate the models of `question` best, the best first.
+/// Up to four tests that separate the models of `question` best, the best first. If the verdict is `unexplained`, the
+/// only test repeats the pose with the largest residuals.
 pub(crate) fn propose(question: &Question) -> Vec<NextTest> {
     if question.verdict == Verdict::Unexplained {
         return question.residuals.iter().map(|pose| repeat(question.campaign, pose)).collect();

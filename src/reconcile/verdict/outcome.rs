@@ -83,7 +83,7 @@ pub struct NextTest {
     pub separates: Vec<String>,
     /// Expected difference between the predictions of the models \[standard deviations\].
     pub expected_sigmas: f64,
-    /// Number of readings like this after which the difference reaches four standard deviations.
+    /// Number of such readings after which the difference reaches four standard deviations of their mean.
     pub readings_needed: usize,
 }
 
@@ -115,15 +115,16 @@ pub struct ReadingResidual {
     pub gross: bool,
 }
 
-/// A model that was compared, with its score.
+/// A model that was compared, with its score. For absolute positions, a row stands for a stage of the fit, and both
+/// numbers are in mm.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evidence {
     /// The model: its effects joined by `+`.
     pub model: String,
-    /// Score of the model (logarithm of the evidence less the price of its effects) minus the score of the best
-    /// model.
+    /// Score of the model (logarithm of the evidence less the price of its effects) minus the score of the best model.
+    /// For positions: median held-out error of the last stage minus that of this stage \[mm\].
     pub score: f64,
-    /// Value of the objective of the fit, which behaves like chi-squared.
+    /// Value of the objective of the fit, which behaves like chi-squared. For positions: median held-out error \[mm\].
     pub objective: f64,
 }
 

@@ -12,8 +12,8 @@ use crate::report::whole_file::{create_folder, write_whole};
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// A factor on the declared standard deviations of a channel below this is not mentioned, because chance produces as
-/// much.
+/// A factor on the declared standard deviations of a channel is mentioned only above this, because chance produces
+/// smaller factors.
 const WORTH_SAYING: f64 = 1.05;
 
 impl Outcome {
@@ -136,7 +136,8 @@ impl Outcome {
         }
     }
 
-    /// Names and contents of the files of the result.
+    /// Names and contents of the files of the result: `verdict.json`, `verdict.txt`, `arm.corrected.json`,
+    /// `residuals.csv`, and one file for each other corrected arm.
     pub fn files(&self) -> Vec<(String, String)> {
         let json = |value: &serde_json::Value| format!("{value:#}\n");
         let mut out = vec![
@@ -150,7 +151,7 @@ impl Outcome {
         out
     }
 
-    /// Writes `verdict.json`, `verdict.txt`, `arm.corrected.json` and `residuals.csv` into a folder.
+    /// Writes the [`files`](Self::files) of the result into a folder.
     ///
     /// # Errors
     /// The folder or a file cannot be written.

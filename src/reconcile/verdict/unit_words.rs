@@ -1,8 +1,8 @@
 //! Says in words which units a factor on the readings of a channel may come from.
 //!
-//! A load in another unit multiplies the readings as a gain of the instrument does: the tip moves in proportion to the
-//! force or the payload. The readings alone cannot tell the two from each other, but a factor that is one between two
-//! units is seldom a gain.
+//! The tip moves in proportion to the force or the payload, so a load in another unit multiplies the readings, as a
+//! gain of the instrument does. The readings alone cannot tell the two causes from each other. But a factor that equals
+//! a factor between two units is seldom a gain.
 
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::sensor_gain;
@@ -15,15 +15,15 @@ use crate::reconcile::verdict::outcome::NextTest;
 /// Largest difference between the logarithms of a found factor and of the factor between two units. A calibrated
 /// stiffness can make up for a difference of a few per cent.
 const NEAR: f64 = 0.06;
-/// A gain nearer to 1 than this is that of an instrument.
+/// A gain that differs from 1 by at most this is taken as the gain of an instrument.
 const USUAL_GAIN: f64 = 0.25;
 
 /// What the description of a next test adds if a column seems to be in another unit.
 const OF_NEXT_TEST: &str = "; the loads are in the unit of the campaign's columns";
 
-/// The effects, with a single factor on the readings of each channel: a gain that was found together with a unit is
-/// multiplied by its factor. The readings show the product only, and neither factor alone is meant. (The corrected arm
-/// has both.)
+/// The effects, with a single factor on the readings of each channel: a gain that was found together with a wrong unit
+/// is multiplied by the factor of the unit, and the unit is not listed. The readings show the product only, so neither
+/// factor means anything by itself. (The corrected arm has both.)
 pub(crate) fn joined(effects: Vec<Finding>) -> Vec<Finding> {
     let is_at = |f: &Finding, name: &str, at: &str| f.effect == name && f.at == at;
     let factor =
@@ -51,7 +51,8 @@ pub(crate) fn note(forward: &Forward, effects: &[Finding], next_tests: &mut [Nex
 }
 
 /// A sentence for each factor on the readings of a channel that one of the `effects` found, if it is near a factor
-/// between two units, or too large for an instrument. The sentence names all units that it is near.
+/// between two units, or outside the range that the gain of an instrument may have. The sentence names all units whose
+/// factor is near.
 fn sentences(forward: &Forward, effects: &[Finding]) -> Vec<String> {
     let is_factor =
         |f: &&Finding| [wrong_unit::KIND.name, sensor_gain::KIND.name].contains(&f.effect.as_str());
