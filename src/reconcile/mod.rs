@@ -1,5 +1,5 @@
-//! From measurements to a better model: where an arm and its model disagree, which piece of physics is missing, how
-//! certain that is, and what it changes.
+//! Improves the model of an arm by measurements: finds where an arm and its model disagree, which piece of physics is
+//! missing, how certain this is, and what it changes.
 //!
 //! The rooms below, from bottom to top:
 //!

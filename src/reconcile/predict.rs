@@ -25,6 +25,10 @@ pub fn channel_of(table: &Table) -> Option<Channel> {
     }
 }
 
+/// The table of readings as CSV text, with columns of the model's predictions added. `arms` are the arm and the other
+/// arms on the same trunk, each with its placement.
+///
+/// # Errors
 /// All faults of the table.
 pub fn predict(arms: &[Placed], statement: &Statement, table: Table) -> Result<String, Faults> {
     let arm = &arms[0].arm;
@@ -63,8 +67,8 @@ pub fn predict(arms: &[Placed], statement: &Statement, table: Table) -> Result<S
     if faults.is_empty() { Ok(text) } else { Err(Faults(faults)) }
 }
 
-/// Predicted positions of the rows of `table` \[mm\], in the frame of the instrument, one for each row. Several arms
-/// load a common trunk by their weights.
+/// Predicted positions of the rows of `table` \[mm\], in the frame of the instrument, one for each row. If there are
+/// several arms, their weights all load the common trunk.
 fn positions_mm(
     arms: &[Placed],
     statement: &Statement,

@@ -40,7 +40,7 @@ pub struct Prediction {
 /// Adds the model's prediction to every row of the file of readings.
 ///
 /// # Errors
-/// All faults of the files, or one file that cannot be read.
+/// A file cannot be read, or files have faults. The error then lists all faults of the files.
 pub fn predict_files(files: &Files, catalogs: &Catalogs) -> Result<Prediction, InputError> {
     let statement = read_statement(files.campaign)?;
     let other_arms = other_arms(files, &statement);
@@ -70,7 +70,7 @@ fn json_of(file: &Path) -> Value {
     serde_json::from_str(&text).unwrap_or_default()
 }
 
-/// Reads an arm file and the placement of the arm in it.
+/// Reads an arm file, and the placement of the arm that its provenance states.
 fn placed(file: &Path, catalogs: &Catalogs) -> Result<Placed, InputError> {
     let arm = read_arm(file, catalogs)?;
     if let Some(fault) = arm.tilt_fault(&file.display().to_string()) {
