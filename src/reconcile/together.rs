@@ -216,7 +216,7 @@ fn with_what_yields(placed: &Campaign, found: &Outcome) -> Campaign {
     out
 }
 
-/// The outcomes for the positions and for the other readings, from which the common outcome is made.
+/// The outcome for the positions and the outcome for the other readings, from which the common outcome is made.
 struct Both<'a> {
     campaign: &'a Campaign,
     /// The arms calibrated from the positions alone, without effects.
@@ -345,12 +345,12 @@ impl Both<'_> {
         out
     }
 
-    /// Root mean squares of the residuals of held-out readings of both kinds together \[sigma\]. `None` if neither kind
-    /// has any; those of one kind if the other has none.
+    /// Root mean squares of the residuals of held-out readings of both kinds together \[sigma\]. If only one kind has
+    /// held-out readings, the result is that of this kind; `None` if neither has.
     ///
     /// `rms_before` is the error of calibration alone. The fit of the positions may already have effects that the other
-    /// readings showed. Its root mean square is therefore multiplied by the ratio of two median errors of position: the
-    /// one with calibration alone, divided by the one with these effects.
+    /// readings showed. Its root mean square is therefore multiplied by the median position error with calibration
+    /// alone, divided by the median position error with these effects.
     fn held_out(&self) -> Option<HeldOut> {
         let (Some(loaded), Some(placed)) = (self.loaded.held_out, self.placed.held_out) else {
             return self.loaded.held_out.or(self.placed.held_out);

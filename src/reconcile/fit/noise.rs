@@ -214,8 +214,8 @@ impl Noise {
         Some(Self { outliers: rows.map(outlier).collect(), ..Self::default() })
     }
 
-    /// This judgement with all rows left out of each frequency list that has several gross errors. The pose, the
-    /// payload or the numbering of such a list is wrong, and its remaining rows would mislead.
+    /// This judgement with further rows left out: all rows of each frequency list that has several gross errors. The
+    /// pose, the payload or the numbering of such a list is wrong, and its remaining rows would mislead.
     fn with_whole_lists(mut self, forward: &Forward, residuals: &[f64]) -> Self {
         for list in gross_lists(forward, &self.weights(forward)) {
             for &(datum, _) in &forward.modal[list].modes {

@@ -169,8 +169,8 @@ impl Positions {
         out
     }
 
-    /// The telling part of the rise of the logarithm of the likelihood that a session brings, less the price of the
-    /// session \[ln of the likelihood\]; and the model without its boundary.
+    /// The gain of a session: the rise of the logarithm of the likelihood that it brings, as far as the rise is not due
+    /// to chance, minus the price of the session. Also returns the model without its boundary.
     fn session_gain(&self, boundary: &Boundary) -> (f64, Self) {
         let without = self.without_session(boundary);
         let own = boundary.earlier;

@@ -1,4 +1,4 @@
-//! How the deflection of a point changes with the calibrated geometry.
+//! Derivatives of the deflection of a point with respect to the calibrated geometry.
 //!
 //! A fit changes the geometry, while the deflection stays as it was computed for the geometry of the fit before. It is
 //! computed again after each stage. So the steps of a fit lack a part of the derivatives with respect to the geometry:

@@ -206,8 +206,9 @@ impl<'a> EightPlacer<'a> {
     }
 
     /// Writes the derivatives of the positions that were placed last into the columns of a matrix, one column for each
-    /// of the `slopes`. The columns start `stride` numbers apart in `out`. Each has x, y and z of the first lane, then of
-    /// the second, and so on, all multiplied by the lane's number in `scales`. `asked` are the points that were placed.
+    /// of the `slopes`. The columns start `stride` numbers apart in `out`. Each column has x, y and z of the first
+    /// lane, then of the second, and so on, each multiplied by its entry in `scales`. `asked` are the points that were
+    /// placed.
     pub(crate) fn write_slopes(
         &self,
         asked: &[Placing],

@@ -33,7 +33,7 @@ struct Group {
     transmissions: Vec<usize>,
     /// Indices of dependences of the nominal deflection.
     dependences: Vec<usize>,
-    /// Whether the sessions that were found are replaced.
+    /// Whether the law takes the place of the sessions that were found.
     sessions: bool,
 }
 

@@ -23,7 +23,7 @@ const FALL: f64 = RISE_AT_95 / 2.0;
 /// Number of steps of the golden section search for the best threshold. They narrow the threshold to an interval of 0.4
 /// %.
 const STEPS: usize = 13;
-/// Part of an interval that the golden section leaves in each step.
+/// Fraction of an interval that remains after each step of the golden section search.
 const GOLDEN: f64 = 0.618_033_988_749_895;
 /// A better threshold is sought between the best one so far divided by this factor and the best one so far times this
 /// factor. The torque scales of play that the search tries differ by about this factor.

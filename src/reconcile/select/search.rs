@@ -38,7 +38,8 @@ pub(crate) struct Scored {
     /// Fitted parameters of the model.
     pub u: Vec<f64>,
     /// Score: the logarithm of the evidence less the price of the effects. The price of an effect is the logarithm of
-    /// the number of places where an effect could be named, each weighted by its prior odds.
+    /// the number of places where an effect could be named, each weighted by its prior odds, divided by the prior odds
+    /// of this effect.
     pub score: f64,
     /// Value of the objective `Σ ρ(r) + Σ u²` (Huber's loss and priors) at the fit.
     pub objective: f64,

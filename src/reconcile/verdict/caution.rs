@@ -1,5 +1,5 @@
-//! Cautions before an effect is believed: effects that cancel each other, effects whose size may be zero, and parts
-//! whose calibrated values are outside their tolerance.
+//! Checks before an effect is named: whether effects cancel each other, whether the size of an effect may be zero, and
+//! whether calibrated values are outside their tolerance.
 
 use super::outcome::Calibrated;
 use crate::arm::effect::entry::Effect;

@@ -20,7 +20,7 @@ use crate::reconcile::select::empirical;
 use crate::reconcile::select::search::Search;
 use std::sync::Arc;
 
-/// A model with more parameters is taken only if it lowers the error on held-out readings by at least this fraction
+/// A model with more parameters is taken only if it lowers the error on held-out readings by more than this fraction
 /// compared with the simpler one.
 const LEAST_IMPROVEMENT: f64 = 0.02;
 
@@ -84,8 +84,8 @@ fn row(model: String, kept_out_rms_sigma: f64) -> Row {
     Row { model, kept_out_rms_sigma, is_written: false }
 }
 
-/// Index of the chosen row: starting with the simplest model, a later row is taken whenever its error is lower than
-/// that of the row taken so far by [`LEAST_IMPROVEMENT`] or more.
+/// Index of the chosen row: starting with the simplest model, a later row is taken whenever its error is lower than the
+/// error of the row taken so far by more than [`LEAST_IMPROVEMENT`].
 fn simplest_of_the_best(rows: &[Row]) -> usize {
     let mut chosen = 0;
     for (i, row) in rows.iter().enumerate() {

@@ -81,7 +81,7 @@ pub struct Step {
     pub held_out_rad: f64,
 }
 
-/// Twist and torque of one row, for the picture. Only every n-th row is kept.
+/// Twist and torque of one row of the records, for the picture of the joint. Only every n-th row is kept.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Traced {
     /// Torque of the spring if a torsion law was found, otherwise of the motor, at the output \[N m\].
@@ -109,7 +109,7 @@ pub struct JointRecord {
     pub effective_rows: f64,
     /// Number of blocks of time that were held out in turn.
     pub blocks: usize,
-    /// Largest less smallest angle of the joint \[rad\].
+    /// Largest minus smallest angle of the joint in the records \[rad\].
     pub range_rad: f64,
     /// Standard deviation of the noise of the twist from row to row \[rad\].
     pub noise_rad: f64,

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-/// Errors of positions (distances of measured from predicted point) at one stage of the fit.
+/// Position errors (distances between measured and predicted point) at one stage of the fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stage {
     /// The effect, or the group of calibrated numbers, that this stage added.
