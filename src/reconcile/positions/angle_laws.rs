@@ -72,8 +72,8 @@ pub(super) struct Competing {
 }
 
 impl Competing {
-    /// Why the transmission error must not be named, as a sentence. Either the law fits clearly better. Or it fits
-    /// about as well with so few numbers that it is far more probable. `None` if neither holds.
+    /// Sentence that the transmission error must not be named, because the law fits clearly better, or about as well
+    /// with so few numbers that it is far more probable. `None` if neither holds.
     pub(super) fn better(&self) -> Option<String> {
         (self.score_gain > 0.0 && self.likelihood_gain.max(self.score_gain) > TIE).then(|| {
             format!(

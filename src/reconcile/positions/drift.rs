@@ -80,7 +80,8 @@ impl Positions {
         is_needless
     }
 
-    /// Why a drift must not be named, as a sentence: sessions are needed too. `None` if there is no drift, or it is steady.
+    /// Sentence that a drift must not be named, because sessions are needed in addition to it. `None` if there is no
+    /// drift, or if no session was found.
     pub(super) fn unsteady_drift(&self) -> Option<String> {
         let jumps = self.sessions.iter().any(|boundary| !boundary.declared);
         (self.drifts() && jumps)

@@ -63,7 +63,7 @@ impl Group {
 }
 
 impl Positions {
-    /// Why effects or sessions of the model must not be named, as a sentence: a law that is no effect explains the positions
+    /// Sentence that effects or sessions of the model must not be named, because a competing law explains the positions
     /// better. `None` if no law does.
     pub(super) fn better_law(&self, campaign: &Campaign) -> Option<String> {
         let competing = CompetingLaws::new(self, campaign);

@@ -261,7 +261,8 @@ impl Positions {
         self.has_far_geometry().then(|| (Verdict::InsufficientData, vec![text.into()]))
     }
 
-    /// Why the positions do not decide for the effects `findings`, as a sentence; `None` if they do.
+    /// Sentence with the reason why the effects `findings` cannot be named although they fit; `None` if they can be
+    /// named.
     fn undecided(&self, findings: &[Finding]) -> Option<String> {
         let crowded = |f: &Finding| too_many_alternatives(&f.label(), f.indistinguishable_from.len());
         if let Some(text) = findings.iter().find_map(crowded) {
