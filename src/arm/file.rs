@@ -453,7 +453,8 @@ fn read_channel(node: &Node) -> Option<f64> {
 /// Checks the place and the parameters of every effect of the arm. Returns `None` after recording a fault.
 fn check_effects(arm: &Arm, root: &Object) -> Option<()> {
     let Some(node) = root.optional("effects") else { return Some(()) };
-    let structure = arm.nominal_structure(super::JointModel::default());
+    let joints = super::JointModel::default();
+    let structure = arm.nominal_structure(joints);
     let mut sound = true;
     for (effect, node) in arm.effects.iter().zip(node.array()?) {
         for fault in effect.faults(&structure) {
@@ -461,12 +462,20 @@ fn check_effects(arm: &Arm, root: &Object) -> Option<()> {
             node.fault_below::<()>(&fault.field, fault.problem, &fault.hint);
         }
     }
-    sound.then_some(())
+    sound.then_some(())?;
+    let (before_kg, after_kg) = (structure.mass_kg(), arm.structure(joints).mass_kg());
+    if after_kg < before_kg.min(0.0) {
+        let problem =
+            format!("the arm, which weighs {before_kg:.3} kg, weighs {after_kg:.3} kg with its effects");
+        return node.fault(problem, "take away less than the mass of the arm");
+    }
+    Some(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde_json::json;
 
     const ARM: &str = r#"{"name": "two", "materials": {"steel": {"youngs_modulus_pa": 2.1e11,
         "shear_modulus_pa": 8.1e10, "density_kg_m3": 7850}},
@@ -477,6 +486,25 @@ mod tests {
 
     fn read(text: &str) -> Result<Arm, Faults> {
         read_arm_document(Document::parse("arm.json", text)?, &Catalogs::default())
+    }
+
+    #[test]
+    fn effects_take_away_less_than_the_arm_weighs() {
+        let with = |delta_kg: f64| {
+            let effect = json!({"effect": "extra_mass", "at": "j2", "parameters": {"delta_kg": delta_kg}});
+            let mut arm: serde_json::Value = serde_json::from_str(ARM).expect("JSON");
+            arm["effects"] = json!([effect]);
+            read(&arm.to_string())
+        };
+        let arm_kg = with(0.0).expect("a sound arm").structure(crate::arm::JointModel::default()).mass_kg();
+        with(-0.9 * arm_kg).expect("a tenth of the arm is left");
+        let faults = with(-1.1 * arm_kg).expect_err("an arm of negative mass").0;
+        assert_eq!((faults.len(), faults[0].field.as_str()), (1, "effects"));
+        assert!(
+            faults[0].to_string().contains(&format!("{:.3} kg with its effects", -0.1 * arm_kg)),
+            "{}",
+            faults[0]
+        );
     }
 
     #[test]
