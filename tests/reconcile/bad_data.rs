@@ -335,3 +335,75 @@ fn tables_of_other_programs_are_refused_in_one_line() {
     });
     assert!(Campaign::read(folder.path(), &Catalogs::default()).is_ok(), "a byte order mark is no fault");
 }
+
+/// The faults of a campaign that is refused, as text.
+fn faults(folder: &Path) -> String {
+    Campaign::read(folder, &Catalogs::builtin()).expect_err("refused").to_string()
+}
+
+/// A campaign in whose file the names of the columns are those that `rename` gives.
+fn with_columns(file: &str, rename: impl Fn(&str) -> String) -> tempfile::TempDir {
+    edited(file, |line, text| {
+        let names = text.split(',').map(&rename).collect::<Vec<_>>().join(",");
+        Some(if line == 1 { names } else { text.into() })
+    })
+}
+
+#[test]
+fn a_missing_column_is_named_with_what_to_write() {
+    let renamed = |file: &str, name: &'static str, other: &'static str| {
+        let folder = with_columns(file, move |column| if column == name { other } else { column }.into());
+        faults(folder.path())
+    };
+    for (file, name) in [("static.csv", "sigma_mm"), ("modal.csv", "sigma_hz")] {
+        let said = renamed(file, name, "scatter");
+        assert!(said.contains("the standard deviation of one reading"), "{said}");
+    }
+    let said = renamed("windup.csv", "windup_arcmin", "twist_deg");
+    assert!(said.contains("multiply its values by 60"), "{said}");
+    let said = renamed("modal.csv", "frequency_hz", "omega_rad_s");
+    assert!(said.contains("divide its values by 2 pi"), "{said}");
+}
+
+#[test]
+fn a_standard_deviation_of_zero_is_one_fault_of_its_row() {
+    let folder = edited("static.csv", |line, text| {
+        let cells: Vec<&str> = text.split(',').collect();
+        Some(if line == 2 { self::cells(text, cells.len() - 1, "0") } else { text.into() })
+    });
+    let said = faults(folder.path());
+    assert_eq!(said.matches("a standard deviation is greater than 0").count(), 1, "{said}");
+}
+
+#[test]
+fn a_file_that_is_missing_is_named_with_the_command_that_writes_one() {
+    let folder = edited("arm.json", |_, text| Some(text.into()));
+    std::fs::remove_file(folder.path().join("arm.json")).expect("removed");
+    let said = faults(folder.path());
+    assert!(said.contains("arm.json") && said.contains("armwright new campaign"), "{said}");
+    let folder = edited("campaign.json", |_, text| Some(text.replace("static.csv", "elsewhere.csv")));
+    let said = faults(folder.path());
+    assert!(said.contains("elsewhere.csv") && said.contains("armwright new campaign"), "{said}");
+}
+
+#[test]
+fn a_file_without_rows_is_said_to_be_unused() {
+    let folder = edited_honest("windup.csv", |line, text| (line == 1).then(|| text.into()));
+    let text = outcome(folder.path()).to_text();
+    assert!(text.contains("windup.csv: has the names of columns and no row of readings"), "{text}");
+}
+
+/// Each displacement is half a metre more than it was: the tip's position.
+#[test]
+fn positions_in_the_columns_of_displacements_are_asked_for() {
+    let folder = edited_honest("static.csv", |line, text| {
+        let cells: Vec<&str> = text.split(',').collect();
+        let moved = cells.iter().enumerate().map(|(i, cell)| match (line, i) {
+            (2.., 15..=17) => format!("{:.4}", 500.0 + cell.parse::<f64>().expect("mm")),
+            _ => cell.to_string(),
+        });
+        Some(moved.collect::<Vec<_>>().join(","))
+    });
+    let text = outcome(folder.path()).to_text();
+    assert!(text.contains("are these positions of the tip?"), "{text}");
+}

@@ -130,6 +130,18 @@ pub(crate) fn read_statement(path: &Path) -> Result<Statement, InputError> {
     Ok(document.finish(statement)?)
 }
 
+/// The fault that a file is missing.
+fn missing(path: &Path, hint: &str) -> Fault {
+    let file = path.display().to_string();
+    Fault {
+        file,
+        line: None,
+        field: String::new(),
+        problem: "there is no such file".into(),
+        hint: hint.into(),
+    }
+}
+
 /// Reads the content of `campaign.json`. `None` after recording a fault.
 fn statement(node: &Node) -> Option<Statement> {
     let root = node.shaped(&CAMPAIGN)?;
@@ -248,7 +260,18 @@ impl Campaign {
         let mut faults = Vec::new();
         let statement = keep_faults(read_statement(&folder.join("campaign.json")), &mut faults)?;
         let arm_file = statement.as_ref().map_or("arm.json", |s| s.arm_file.as_str());
-        let arm = keep_faults(read_arm(&folder.join(arm_file), catalogs), &mut faults)?;
+        let arm_path = folder.join(arm_file);
+        let arm = match arm_path.exists() {
+            true => keep_faults(read_arm(&arm_path, catalogs), &mut faults)?,
+            false => {
+                faults.push(missing(
+                    &arm_path,
+                    "the arm file of the campaign belongs here; `armwright new campaign ARM --out DIR` starts a folder with \
+                     a copy of its arm",
+                ));
+                None
+            }
+        };
         let mut other_arms = Vec::new();
         for file in statement.iter().flat_map(|s| &s.other_arm_files) {
             other_arms.extend(keep_faults(read_arm(&folder.join(file), catalogs), &mut faults)?);
@@ -273,11 +296,28 @@ impl Campaign {
         faults.extend(arms.filter_map(|arm| arm.tilt_fault(&arm.name)));
         for channel in Channel::ALL {
             if let Some(file) = campaign.file(channel) {
+                if !file.exists() {
+                    faults.push(missing(
+                        &file,
+                        &format!(
+                            "campaign.json names it for the {} readings; `armwright new campaign ARM --out DIR` writes such \
+                             a file with its columns",
+                            channel.word()
+                        ),
+                    ));
+                    continue;
+                }
                 let source = campaign.statement.source(channel);
                 let mut table = Table::read_from(&file, &source)?;
                 table.refuse_more_than(MOST_READINGS);
                 campaign.read_channel(channel, &table);
                 campaign.remarks.extend(table.unused());
+                campaign.remarks.extend(table.rows.is_empty().then(|| {
+                    format!(
+                        "{}: has the names of columns and no row of readings: it is not used",
+                        table.short_name()
+                    )
+                }));
                 faults.extend(table.into_faults());
             }
         }

@@ -232,13 +232,13 @@ impl Table {
     /// Records a fault of the file. `line` is the line number in the file and `column` the name of the column; they are
     /// `None` and empty if the fault is not at one place.
     pub fn fault(&self, line: Option<usize>, column: &str, problem: String, hint: &str) {
-        self.faults.borrow_mut().push(Fault {
-            file: self.file.clone(),
-            line,
-            field: self.place(line, column),
-            problem,
-            hint: hint.to_string(),
-        });
+        let field = self.place(line, column);
+        let fault = Fault { file: self.file.clone(), line, field, problem, hint: hint.to_string() };
+        let mut faults = self.faults.borrow_mut();
+        // several readings of a row may share a cell, such as that of their standard deviation
+        if faults.last() != Some(&fault) {
+            faults.push(fault);
+        }
     }
 
     /// Name of the column `column` for a message: its names in this program and in the file and, for a spreadsheet,
@@ -275,9 +275,10 @@ impl Table {
                 return None;
             }
             let found = format!("columns found: {}", self.columns.join(", "));
-            let hint = match closest(name, &self.unasked()) {
+            let unasked = self.unasked();
+            let hint = match closest(name, &unasked) {
                 Some(near) => format!("is it \"{near}\"? {}; {found}", renamed(name, near)),
-                None => found,
+                None => converted(name, &unasked).map_or(found.clone(), |text| format!("{text}; {found}")),
             };
             self.fault(Some(self.header_line), name, "the column is missing".into(), &hint);
             None
@@ -425,6 +426,34 @@ const UNITS: [&str; 24] = [
 fn unit_of(column: &str) -> Option<&'static str> {
     let (_, end) = column.rsplit_once('_')?;
     UNITS.into_iter().find(|unit| end.eq_ignore_ascii_case(unit))
+}
+
+/// Readings that are often given as another quantity: the column of this program, the end of the other column's name,
+/// and how its values are converted.
+const CONVERSIONS: [(&str, &str, &str); 7] = [
+    ("windup_arcmin", "_deg", "multiply its values by 60"),
+    ("windup_arcmin", "_mrad", "multiply its values by 3.43775"),
+    ("windup_arcmin", "_rad", "multiply its values by 3437.75"),
+    ("windup_arcmin", "_arcsec", "divide its values by 60"),
+    ("frequency_hz", "_rad_s", "divide its values by 2 pi"),
+    ("frequency_hz", "_rpm", "divide its values by 60"),
+    ("frequency_hz", "_khz", "multiply its values by 1000"),
+];
+
+/// What to write if the column `name` is missing and none of the columns `unasked` has nearly its name; `None` if that
+/// is not known.
+fn converted(name: &str, unasked: &[&str]) -> Option<String> {
+    if name.starts_with("sigma_") {
+        let text = "write into every row the standard deviation of one reading, for example that of ten repeated readings";
+        return Some(text.into());
+    }
+    CONVERSIONS.into_iter().filter(|(own, ..)| *own == name).find_map(|(_, end, how)| {
+        let has_end = |column: &&&str| column.ends_with(end) && !column.starts_with("sigma_");
+        let column = unasked.iter().find(has_end)?;
+        Some(format!(
+            "is it \"{column}\"? {how}, and the standard deviations if they are in that unit too, and name the column {name}"
+        ))
+    })
 }
 
 /// Whether a column is none of standard deviations. Those are known by the beginning of their names.
