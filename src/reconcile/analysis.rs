@@ -212,6 +212,7 @@ impl Analysis<'_> {
         if matches!(verdict, Verdict::Explained | Verdict::Unexplained) {
             reasons.extend(self.at_a_limit());
         }
+        reasons.extend(units::like_positions(self.forward));
         reasons.extend(self.remarks.iter().cloned());
         // the findings are named with the verdict `Explained`, and are suspects with `NoGap` and `InsufficientData`
         let findings = match verdict {

@@ -13,6 +13,7 @@ mod forward;
 mod gauge;
 mod generated;
 mod generator;
+mod honest_verdicts;
 #[path = "../../examples/measured/mod.rs"]
 mod measured;
 mod moved;

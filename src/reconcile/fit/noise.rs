@@ -407,6 +407,20 @@ mod tests {
     }
 
     #[test]
+    fn noise_at_its_limit_and_several_odd_rows_are_beyond_the_declaration() {
+        let said = |scale: f64, sigmas: &[f64]| {
+            let outlier =
+                |(row, sigmas): (usize, &f64)| Outlier { channel: Channel::Static, row, sigmas: *sigmas };
+            let outliers = sigmas.iter().enumerate().map(outlier).collect();
+            Noise { scale: [scale, 1.0, 1.0], outliers }.beyond_declaration()
+        };
+        assert_eq!(said(1.39, &[7.0, 8.0, 98.0]), [""; 0], "two odd rows and a slip");
+        assert_eq!(said(1.0, &[7.0, 8.0, 9.0]), ["3 row(s) of the static readings are off by 7, 8, 9 sigma"]);
+        let at_limit = said(LARGEST_SCALE, &[7.0]);
+        assert!(at_limit.len() == 2 && at_limit[0].contains("at least 1.4 times"), "{at_limit:?}");
+    }
+
+    #[test]
     fn a_declaration_is_neither_improved_nor_blamed_for_missing_physics() {
         assert_eq!(scale((0..40).map(|_| (0.5, 0.0))), 1.0);
         assert_eq!(scale((0..40).map(|_| (5.0, 0.0))), LARGEST_SCALE);

@@ -110,6 +110,35 @@ fn other_signs(forward: &Forward) -> Vec<String> {
     (0..3).filter_map(of_component).collect()
 }
 
+/// Displacements are taken for positions if they are this many times the largest displacement of the nominal arm.
+const LIKE_POSITIONS: f64 = 20.0;
+
+/// Sentence which asks whether the static readings are positions of the tip rather than its displacements: those of a
+/// component are all on one side of zero, and far larger than any displacement of the nominal arm. `None` if none is.
+pub(crate) fn like_positions(forward: &Forward) -> Option<String> {
+    let nominal = forward.predict(&forward.coefficients(&forward.nominal));
+    let range = forward.range(Channel::Static);
+    let largest = nominal[range.clone()].iter().fold(0.0f64, |m, d| m.max(d.abs()));
+    let of_component = |c: usize| {
+        let own: Vec<f64> = range
+            .clone()
+            .filter(|i| forward.data[*i].component == c)
+            .map(|i| forward.data[i].value)
+            .collect();
+        let least = own.iter().fold(f64::INFINITY, |m, d| m.min(d.abs()));
+        let one_sided = own.iter().all(|d| *d > 0.0) || own.iter().all(|d| *d < 0.0);
+        let is_far = own.len() >= FEWEST_ALIKE && one_sided && least > LIKE_POSITIONS * largest;
+        is_far.then_some((DISPLACEMENT.values[c], median(own)))
+    };
+    let (column, value) = (0..3).find_map(of_component)?;
+    Some(format!(
+        "{column} is about {} mm in every row, and the arm as given moves by at most {} mm: are these positions of the \
+         tip? {column} is the displacement from the reference state, so subtract the reading there, or write positions.csv",
+        crate::report::number::significant(value, 3),
+        crate::report::number::significant(largest, 2)
+    ))
+}
+
 /// Least-squares factor between readings and their predictions for the nominal arm. Each of the `pairs` has a reading
 /// and its prediction. `None` if there are too few readings, or if the factor is not positive.
 fn ratio(pairs: &[(f64, f64)]) -> Option<f64> {

@@ -211,4 +211,10 @@ mod tests {
         assert!((honest_parts_for_one(-2.0) - 1.0 / 0.0455).abs() < 0.05);
         assert!((honest_parts_for_one(3.0) - 370.4).abs() < 0.1);
     }
+
+    #[test]
+    fn a_part_is_rare_beyond_the_deviation_that_one_in_a_thousand_has() {
+        // the normal distribution: 0.1 % beyond 3.2905 standard deviations
+        assert!(has_rare(&[0.0, -3.30]) && !has_rare(&[3.28, -3.28]));
+    }
 }
