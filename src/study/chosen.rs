@@ -3,6 +3,7 @@
 
 use super::definition::Study;
 use super::gear_remarks::life_remarks;
+use super::given_tube_remarks::given_tube_remarks_on;
 use super::guide_remarks::guide_remarks_on;
 use super::joint_obstacle::{first_fit_at, obstacle_at};
 use super::load::{refuse_choices, refuse_empty};
@@ -82,8 +83,15 @@ pub(crate) fn sizing_in(
     let of_reactions = reaction_remark_on(problem, catalogs, chosen, "in the sizing cases");
     let of_bearings = stated_bearing_remarks_on(problem, catalogs, chosen);
     let of_guides = guide_remarks_on(problem, chosen);
+    let of_tubes = given_tube_remarks_on(problem, chosen);
     let of_study = study.remarks.iter().cloned();
-    let remarks = of_study.chain(of_lives).chain(of_bearings).chain(of_guides).chain(of_reactions).collect();
+    let remarks = of_study
+        .chain(of_lives)
+        .chain(of_bearings)
+        .chain(of_guides)
+        .chain(of_tubes)
+        .chain(of_reactions)
+        .collect();
     Ok(Sizing { rows, remarks })
 }
 

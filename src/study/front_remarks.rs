@@ -5,6 +5,7 @@ use super::definition::Study;
 use super::gear_remarks::{life_remarks_on, play_remarks};
 use super::given_parts::given_parts;
 use super::given_remarks::GivenDrives;
+use super::given_tube_remarks::given_tube_remarks;
 use super::guide_remarks::guide_remarks;
 use super::outcome::Front;
 use super::reaction_remarks::reaction_remark;
@@ -35,9 +36,10 @@ pub fn table_and_remarks(
     let of_play = play_remarks(&study.space, catalogs, &table);
     let of_given = given.remarks(front.len());
     let of_guides = guide_remarks(problem, &table);
+    let of_tubes = given_tube_remarks(problem, &table);
     let of_reactions = reaction_remark(problem, catalogs, &table);
     let of_drives = of_lives.into_iter().chain(of_play).chain(of_given).chain(of_reactions);
-    let of_parts = of_bearings.into_iter().chain(of_stated).chain(of_drives).chain(of_guides);
+    let of_parts = of_bearings.into_iter().chain(of_stated).chain(of_drives).chain(of_guides).chain(of_tubes);
     let remarks = of_study.chain(of_parts).collect();
     (table, remarks)
 }

@@ -29,6 +29,7 @@ pub(crate) mod front_remarks;
 pub(crate) mod gear_remarks;
 pub(crate) mod given_parts;
 pub(crate) mod given_remarks;
+mod given_tube_remarks;
 mod guide_remarks;
 mod harness;
 pub(crate) mod import_ranges;

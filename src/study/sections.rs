@@ -3,7 +3,7 @@
 use super::choose_keys::{
     GRID, PROFILE_FILTER, PROFILES, RECTANGULAR_BARS, RECTANGULAR_TUBES, ROUND_BARS, ROUND_TUBES,
 };
-use crate::arm::link_file::{material_of, shear_modulus_hint};
+use crate::arm::link_file::{lacks_shear_strength, material_of, shear_modulus_hint};
 use crate::arm::section::Section;
 use crate::arm::{Link, LinkBody};
 use crate::catalog::Catalogs;
@@ -346,8 +346,6 @@ pub(super) fn options(
                 material: elastic,
                 section: *section,
                 profile: profile.as_ref().map(|p| p.designation.clone()),
-                strength_pa: material.strength_pa,
-                compressive_strength_pa: material.compressive_strength_pa,
                 cost_eur_per_kg: material.cost_eur_per_kg,
             });
         }
@@ -356,8 +354,13 @@ pub(super) fn options(
 }
 
 fn missing_rating(material: &Material, constraints: &Constraints) -> Option<&'static str> {
-    if constraints.stress_safety_factor_min.is_some() && material.strength_pa.is_none() {
-        return Some("strength");
+    if constraints.stress_safety_factor_min.is_some() {
+        if material.strength_pa.is_none() {
+            return Some("strength");
+        }
+        if lacks_shear_strength(material) {
+            return Some("shear strength (shear_strength_pa)");
+        }
     }
     if constraints.material_cost_max_eur.is_some() && material.cost_eur_per_kg.is_none() {
         return Some("cost");
