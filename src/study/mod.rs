@@ -41,6 +41,7 @@ pub(crate) mod load;
 pub(crate) mod load_limits;
 pub(crate) mod motion;
 mod motor_kinds;
+mod motor_remarks;
 pub(crate) mod named;
 pub(crate) mod near;
 pub(crate) mod omissions;
