@@ -6,7 +6,7 @@ use super::gear_remarks::{life_remarks_on, play_remarks};
 use super::given_parts::given_parts;
 use super::given_remarks::GivenDrives;
 use super::guide_remarks::guide_remarks;
-use super::motor_remarks::stop_remark;
+use super::motor_remarks::{heat_remark, stop_remark};
 use super::outcome::Front;
 use super::reaction_remarks::reaction_remark;
 use super::stated_bearing_remarks::stated_bearing_remarks;
@@ -38,7 +38,8 @@ pub fn table_and_remarks(
     let of_guides = guide_remarks(problem, &table);
     let of_reactions = reaction_remark(problem, catalogs, &table);
     let of_stops = stop_remark(problem, catalogs, &table);
-    let of_drives = of_lives.into_iter().chain(of_play).chain(of_given).chain(of_reactions).chain(of_stops);
+    let of_motors = of_stops.into_iter().chain(heat_remark(problem, catalogs, &table));
+    let of_drives = of_lives.into_iter().chain(of_play).chain(of_given).chain(of_reactions).chain(of_motors);
     let of_parts = of_bearings.into_iter().chain(of_stated).chain(of_drives).chain(of_guides);
     let remarks = of_study.chain(of_parts).collect();
     (table, remarks)
