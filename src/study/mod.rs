@@ -8,6 +8,7 @@ mod balance;
 pub(crate) mod balance_choices;
 pub(crate) mod ballast;
 pub(crate) mod bearing_remarks;
+mod blank_remarks;
 pub(crate) mod bodies;
 pub(crate) mod bounds;
 pub(crate) mod budget;
