@@ -7,6 +7,7 @@ use super::given_tube_remarks::given_tube_remarks_on;
 use super::guide_remarks::guide_remarks_on;
 use super::joint_obstacle::{first_fit_at, obstacle_at};
 use super::load::{refuse_choices, refuse_empty};
+use super::motor_remarks::{heat_remark_on, stop_remark_on};
 use super::reaction_remarks::reaction_remark_on;
 use super::refusal::Refusal;
 use super::stated_bearing_remarks::stated_bearing_remarks_on;
@@ -63,7 +64,8 @@ pub struct Sizing {
     /// The joints with a drive from the catalogs, tip first.
     pub rows: Vec<JointSizingRow>,
     /// Remarks in sentences: on the question, on the lives of the gears, on bearings and guides that the study states,
-    /// and on what joints hold while others move.
+    /// on what joints hold while others move, and on motors that cannot make the emergency stop of their joint or
+    /// would overheat at the representative efficiency of their gears.
     pub remarks: Vec<String>,
 }
 
@@ -85,13 +87,10 @@ pub(crate) fn sizing_in(
     let of_guides = guide_remarks_on(problem, chosen);
     let of_tubes = given_tube_remarks_on(problem, chosen);
     let of_study = study.remarks.iter().cloned();
-    let remarks = of_study
-        .chain(of_lives)
-        .chain(of_bearings)
-        .chain(of_guides)
-        .chain(of_tubes)
-        .chain(of_reactions)
-        .collect();
+    let of_stops = stop_remark_on(problem, catalogs, chosen, "in the sizing cases");
+    let of_motion = of_reactions.into_iter().chain(of_stops).chain(heat_remark_on(&rows));
+    let of_structure = of_guides.into_iter().chain(of_tubes);
+    let remarks = of_study.chain(of_lives).chain(of_bearings).chain(of_structure).chain(of_motion).collect();
     Ok(Sizing { rows, remarks })
 }
 

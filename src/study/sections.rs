@@ -7,9 +7,10 @@ use crate::arm::link_file::{lacks_shear_strength, material_of, shear_modulus_hin
 use crate::arm::section::Section;
 use crate::arm::{Link, LinkBody};
 use crate::catalog::Catalogs;
+use crate::catalog::lookup::hint_for_unknown;
 use crate::catalog::material::Material;
 use crate::catalog::profile::{Profile, ProfileShape};
-use crate::input::json::{Node, Object, closest};
+use crate::input::json::{Node, Object};
 use crate::space::constraint::Constraints;
 use crate::space::design_space::{DesignSpace, LinkOption, SpacePiece};
 use std::collections::{BTreeSet, HashSet};
@@ -62,10 +63,9 @@ pub(super) fn read_materials<'c>(node: &Node, catalogs: &'c Catalogs) -> Option<
         .map(|n| {
             let name = n.string()?;
             let Some(material) = catalogs.materials.iter().find(|m| m.name == name) else {
-                let near = closest(name, &names).map_or(String::new(), |c| format!("did you mean \"{c}\"? "));
                 return n.fault(
                     format!("material \"{name}\" is not in the catalog"),
-                    &format!("{near}`armwright catalog show materials` lists them"),
+                    &hint_for_unknown(name, &names, "materials"),
                 );
             };
             match material.shear_modulus_pa {
