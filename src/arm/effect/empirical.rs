@@ -264,10 +264,14 @@ fn soften(numbers: &[f64], at: &str, subject: &mut Subject) {
     }
 }
 
-/// The sum of the further angle of torsion `before`, if there is one, and `twist`. The result has the reference torque
-/// of `twist`.
+/// The sum of the further angle of torsion `before`, if there is one, and `twist`. The result has the larger of both
+/// reference torques, beyond which it is continued as a straight line.
 fn added(before: Option<FurtherTwist>, twist: FurtherTwist) -> FurtherTwist {
-    let Some(before) = before else { return twist };
+    let Some(mut before) = before else { return twist };
+    let mut twist = twist;
+    if before.torque_nm > twist.torque_nm {
+        std::mem::swap(&mut before, &mut twist);
+    }
     let ratio = twist.torque_nm / before.torque_nm;
     let sum = |own: [f64; 2], other: [f64; 2], powers: [i32; 2]| {
         [own[0] + other[0] * ratio.powi(powers[0]), own[1] + other[1] * ratio.powi(powers[1])]
@@ -300,7 +304,7 @@ mod tests {
         apply(&of_joint([1e-4, -2e-5, 3e-5, 1e-5, 20.0], [0.0; 2]), "j1", &mut subject);
         apply(&of_joint([0.0, 4e-5, 0.0, 2e-5, 50.0], [0.0; 2]), "j1", &mut subject);
         let law = subject.structure.joint_mut("j1").expect("j1").law;
-        for torque_nm in [-70.0, -10.0, 5.0, 60.0] {
+        for torque_nm in [-20.0, -10.0, 5.0, 15.0] {
             let sum = first.angle_rad(torque_nm) + second.angle_rad(torque_nm);
             assert!((law.angle_rad(torque_nm) - torque_nm / 1e5 - sum).abs() < 1e-15, "{torque_nm}");
         }
