@@ -103,7 +103,7 @@ impl Noise {
         out
     }
 
-    /// Whether the model of `fit` fits most readings of every channel, by the robust standard deviation of its
+    /// Whether the model of `fit` fits most readings of every channel, judged by the robust standard deviation of the
     /// residuals.
     pub fn is_close(forward: &Forward, fit: &Fit) -> bool {
         let residuals = declared_residuals(forward, &fit.point.predicted);

@@ -20,7 +20,8 @@ const LEAST_GAIN: f64 = 2.0;
 /// Number of laws that are fitted by a few steps when one is to be added: those that are the best ones if readings are taken
 /// as linear.
 const ROUGH_FITS: usize = 12;
-/// Number of laws that are fitted in full when one is to be added: those that a few steps of a fit find the best.
+/// When a law is to be added, this many laws are fitted in full. They are those with the best scores after a few steps
+/// of a fit.
 const FULL_FITS: usize = 5;
 /// Largest number of times that the poses of a model are prepared again.
 const MOST_TURNS: usize = 6;
@@ -56,7 +57,7 @@ impl WithLaws {
         Self { weights: Arc::clone(&weights), ..fitted(&weighed, &scored.effects, &scored.u, forward) }
     }
 
-    /// The search `search` about the poses of this model.
+    /// The search `search`, with the campaign prepared in the poses of this model.
     fn about<'s>(&'s self, search: &Search<'s>) -> Search<'s> {
         Search { forward: self.forward.as_deref().unwrap_or(search.forward), ..*search }
     }
@@ -70,8 +71,8 @@ impl WithLaws {
 }
 
 /// The model `from` with one law without a name, with two, and so on, as long as each raises the score by more than
-/// [`LEAST_GAIN`]; then the last of these models with laws exchanged, if that raises the score. The laws are the candidates
-/// of `search` from the index `first` on. Empty if no law raises the score.
+/// [`LEAST_GAIN`]; then the last of these models with a law left out or exchanged, if that raises the score. The laws
+/// are the candidates of `search` from the index `first` on. Empty if no law raises the score.
 pub(crate) fn with_laws(search: &Search, first: usize, from: &WithLaws) -> Vec<WithLaws> {
     let mut out: Vec<WithLaws> = Vec::new();
     let mut here = from.clone();
@@ -107,7 +108,7 @@ fn exchanged(search: &Search, first: usize, best: &WithLaws) -> Option<WithLaws>
     (better.scored.score > best.scored.score + 1e-3).then_some(better)
 }
 
-/// The model `here` with the law added that gives the best score; `None` if there is none. The law `left_out` is not tried:
+/// The model `here` with that law added that gives the best score; `None` if no law is left. The law `left_out` is not tried:
 /// with it the model is known.
 fn next_law(search: &Search, first: usize, here: &WithLaws, left_out: Option<usize>) -> Option<WithLaws> {
     let (about, from) = (here.about(search), &here.scored);
@@ -176,8 +177,8 @@ fn columns(about: &Search, from: &Scored, fit: &Fit, law: usize, start: &[f64]) 
     free.filter(|(_, parameter)| parameter.is_size()).map(column).collect()
 }
 
-/// The model with the effects `effects`, fitted from the parameters `u` about the poses of `forward`. If the arm does not
-/// stand in these poses, the fit is repeated about the poses in which it stands.
+/// The model with the effects `effects`, fitted from the parameters `u` with the poses of `forward`. If the fitted
+/// zeros differ from those of these poses, the fit is repeated with poses that are prepared with the fitted zeros.
 fn fitted(search: &Search, effects: &[usize], u: &[f64], forward: Option<Arc<Forward>>) -> WithLaws {
     let fit_about = |u: &[f64], forward: &Option<Arc<Forward>>| {
         let about = Search { forward: forward.as_deref().unwrap_or(search.forward), ..*search };

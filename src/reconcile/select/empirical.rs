@@ -9,7 +9,7 @@
 //! - a joint whose stiffness changes with the order of the tests;
 //! - a joint that stands at another angle than stated, or that twists under the torques of its neighbours;
 //! - readings that are a nonlinear function of the true value, or that have a gain of their own in each direction;
-//! - displacements of which each direction also shows a part of the others;
+//! - displacement readings in which each direction also shows a part of the other directions;
 //! - loads that act otherwise than stated, or that move the readings wherever the tip is;
 //! - a base that turned, an instrument that moved, or a payload that slipped, once in the course of the tests.
 
