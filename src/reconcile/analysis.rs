@@ -24,8 +24,8 @@ use super::select::settle::Settled;
 use super::select::unnamed::{self, Better};
 use super::verdict::corrected_model::Choice;
 use super::verdict::judgement::{
-    BEYOND_TOLERANCE, NOTHING_MISSING, SHOWN_BY_ONE_FOLD, TOO_FAR_OFF, WEAK_EVIDENCE, does_not_predict,
-    shows_in_few_poses, too_many_alternatives,
+    BEYOND_TOLERANCE, MOST_UNCONFIRMED, NOTHING_MISSING, SHOWN_BY_ONE_FOLD, TOO_FAR_OFF, WEAK_EVIDENCE,
+    does_not_predict, shows_in_few_poses, too_many_alternatives,
 };
 use super::verdict::next_test;
 use super::verdict::outcome::{Calibrated, Evidence, Law, Located, Outcome, ReadingResidual, Row, Verdict};
@@ -436,10 +436,10 @@ impl Analysis<'_> {
         if blind.is_empty() { Vec::new() } else { vec![text] }
     }
 
-    /// Whether an effect shows in the poses of one fold alone. Even a right model then leaves an error of more than
-    /// [`SHOWN_BY_ONE_FOLD`] standard deviations on held-out poses, so held-out poses cannot confirm it.
+    /// Whether one of a few effects shows in the poses of one fold alone. Even a right model then leaves an error of more
+    /// than [`SHOWN_BY_ONE_FOLD`] standard deviations on held-out poses, so held-out poses cannot confirm it.
     fn shows_in_one_fold(&self) -> bool {
-        self.expected_rms > SHOWN_BY_ONE_FOLD
+        self.expected_rms > SHOWN_BY_ONE_FOLD && self.best.model.effects.len() <= MOST_UNCONFIRMED
     }
 
     fn held_out(&self) -> Option<HeldOut> {
@@ -473,7 +473,7 @@ impl Analysis<'_> {
             |fit: &Fit, effects: &[usize]| self.with_laws.fit(effects, &fit.point.u, Effort::default());
         let chosen = &self.selection.best.effects;
         let (baseline, named) = (again(&self.baseline, &[]), again(&self.best, chosen));
-        corrected_model::choose(self.with_laws, first_law, self.noise, baseline, named, chosen)
+        corrected_model::choose(self.with_laws, first_law, self.noise, &baseline, &named, chosen)
     }
 
     fn competitors(&self, effect: usize) -> Vec<(String, String)> {
