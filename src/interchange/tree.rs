@@ -225,6 +225,10 @@ impl Builder<'_> {
             return;
         }
         for (i, (twist, working)) in element.twists.iter().zip(workings).enumerate() {
+            // a spring may be rigid about one axis only, such as that of a base whose feet lift off about the other
+            if working.is_rigid() {
+                continue;
+            }
             let name = match is_joint {
                 true if slides => format!("{}.drive", element.name),
                 true => format!("{}.gear", element.name),
