@@ -108,7 +108,7 @@ pub(crate) fn reach_m(tip_m: &Vector3<f64>, down: &Vector3<f64>) -> f64 {
 /// links of median mass and the lightest drives.
 ///
 /// # Errors
-/// The study has no such design, or a drive of the design does not meet even the study's own payload.
+/// The study has nothing to choose from or no such design, or a drive of the design does not meet even the study's own payload.
 pub fn capacity_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Result<Capacity, Refusal> {
     let (space, chosen) = chosen_design(study, id, catalogs)?;
     let problem = ArmProblem::new(&space, catalogs);

@@ -6,7 +6,7 @@ use super::gear_remarks::life_remarks;
 use super::given_tube_remarks::given_tube_remarks_on;
 use super::guide_remarks::guide_remarks_on;
 use super::joint_obstacle::{first_fit_at, obstacle_at};
-use super::load::{refuse_choices, refuse_empty};
+use super::load::refuse_empty;
 use super::motor_remarks::{heat_remark_on, stop_remark_on};
 use super::reaction_remarks::reaction_remark_on;
 use super::refusal::Refusal;
@@ -53,7 +53,6 @@ pub fn arm_of_design(study: &Study, id: &str, catalogs: &Catalogs) -> Result<(Ar
 /// # Errors
 /// The study has nothing to choose from, or no design with this id, or no drive meets the demand at some joint.
 pub fn sizing_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Result<Sizing, Refusal> {
-    refuse_empty(study, catalogs)?;
     let (space, chosen) = chosen_design(study, id, catalogs)?;
     sizing_in(study, &ArmProblem::new(&space, catalogs), &chosen, catalogs)
 }
@@ -101,13 +100,13 @@ const MOST_OPTIONS: u32 = 4096;
 /// `design_id` given as `id`, or without an id a design with links of median mass.
 ///
 /// # Errors
-/// The study has no design with this id, or leaves values of springs or counterweights open.
+/// The study has nothing to choose from, no design with this id, or leaves values of springs or counterweights open.
 pub(crate) fn chosen_design(
     study: &Study,
     id: Option<&str>,
     catalogs: &Catalogs,
 ) -> Result<(DesignSpace, Vec<u32>), Refusal> {
-    refuse_choices(study)?;
+    refuse_empty(study, catalogs)?;
     let Some(id) = id else {
         let space = study.space.middle(MOST_OPTIONS);
         let chosen = middle(&ArmProblem::new(&space, catalogs));
