@@ -16,6 +16,7 @@ use super::readings::campaign::Campaign;
 use super::readings::components::DISPLACEMENT;
 use super::select::empirical;
 use super::select::few_rows;
+use super::select::in_series::InSeries;
 use super::select::lack_of_fit::{LackOfFit, lack_of_fit};
 use super::select::screening::Selection;
 use super::select::search::{Scored, Search};
@@ -23,13 +24,10 @@ use super::select::seen::seen;
 use super::select::settle::Settled;
 use super::select::unnamed::{self, Better};
 use super::verdict::corrected_model::Choice;
-use super::verdict::judgement::{
-    BEYOND_TOLERANCE, MOST_UNCONFIRMED, NOTHING_MISSING, SHOWN_BY_ONE_FOLD, TOO_FAR_OFF, WEAK_EVIDENCE,
-    does_not_predict, shows_in_few_poses, too_many_alternatives,
-};
+use super::verdict::judgement::{BEYOND_TOLERANCE, NOTHING_MISSING, WEAK_EVIDENCE, shows_in_few_poses};
 use super::verdict::next_test;
 use super::verdict::outcome::{Calibrated, Evidence, Law, Located, Outcome, ReadingResidual, Row, Verdict};
-use super::verdict::too_little::{rows, too_little};
+use super::verdict::too_little::rows;
 use super::verdict::{caution, correct, corrected_model, fitted, locate, unit_words};
 use crate::arm::Arm;
 use serde_json::Value;
@@ -41,7 +39,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
     let few = rows(campaign) < few_rows::FEWEST_ROWS;
     let candidates = sought(campaign, &forward, &nuisance, few);
-    let found = settled(campaign, &mut forward, &nuisance, &candidates, few);
+    let mut found = settled(campaign, &mut forward, &nuisance, &candidates, few);
     let weights = found.noise.weights(&forward);
     let chosen = &found.selection.best;
     let coefficients = Model::of(&nuisance, &candidates, &chosen.effects).coefficients(&forward, &chosen.u);
@@ -54,10 +52,19 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         weights: &weights,
     };
     let hopeless = found.selection.given_up || !search.may_explain(chosen);
-    let best = match hopeless {
+    let mut best = match hopeless {
         true => search.fit(&chosen.effects, &chosen.u, Effort::default()),
         false => search.polish(&chosen.effects, &chosen.u),
     };
+    let in_series = match few || hopeless {
+        true => None,
+        false => InSeries::of_rare_factors(&search, &search.scored(&chosen.effects, &best)),
+    };
+    if let Some(found_in_series) = &in_series {
+        found.selection.best = found_in_series.model.clone();
+        best = search.polish(&found_in_series.model.effects, &found_in_series.model.u);
+    }
+    let chosen = &found.selection.best;
     let baseline = search.fit(&[], &found.selection.baseline.u, Effort::default());
     let with_laws = [candidates.as_slice(), &empirical::laws(&forward, &baseline, &weights)].concat();
     let fit_test = lack_of_fit(campaign, &forward, &best, &weights);
@@ -85,6 +92,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         baseline,
         lack_of_fit: fit_test,
         unnamed,
+        in_series,
         alternatives,
         explaining,
         without,
@@ -149,33 +157,37 @@ fn settled(
     again
 }
 
-struct Analysis<'a> {
-    campaign: &'a Campaign,
-    forward: &'a Forward,
-    search: &'a Search<'a>,
+/// An analysis of the readings: the models that were fitted, and what is needed to judge them.
+pub(super) struct Analysis<'a> {
+    pub(super) campaign: &'a Campaign,
+    pub(super) forward: &'a Forward,
+    pub(super) search: &'a Search<'a>,
     /// A copy of `search` to whose candidates the laws without a name are appended.
-    with_laws: &'a Search<'a>,
-    selection: &'a Selection,
-    noise: &'a Noise,
-    remarks: &'a [String],
-    weights: &'a Weights,
-    best: Fit<'a>,
-    baseline: Fit<'a>,
-    lack_of_fit: LackOfFit,
+    pub(super) with_laws: &'a Search<'a>,
+    pub(super) selection: &'a Selection,
+    pub(super) noise: &'a Noise,
+    pub(super) remarks: &'a [String],
+    pub(super) weights: &'a Weights,
+    pub(super) best: Fit<'a>,
+    pub(super) baseline: Fit<'a>,
+    pub(super) lack_of_fit: LackOfFit,
     /// A law without a name that explains the readings better than the named effects, or better than calibration alone
     /// if the model fails the test for lack of fit. `None` if there is no such law.
-    unnamed: Option<Better>,
-    alternatives: Vec<Vec<Scored>>,
+    pub(super) unnamed: Option<Better>,
+    /// An effect of the best model that was offered because a calibrated factor without it is rare; `None` if there is
+    /// none.
+    pub(super) in_series: Option<InSeries>,
+    pub(super) alternatives: Vec<Vec<Scored>>,
     /// All sets of effects that explain the readings. `None` unless the campaign has only a handful of rows.
-    explaining: Option<Vec<Scored>>,
+    pub(super) explaining: Option<Vec<Scored>>,
     /// Result of the test for lack of fit of calibration alone; `None` unless the evidence for the effects is weak.
-    without: Option<LackOfFit>,
+    pub(super) without: Option<LackOfFit>,
     /// 95 % intervals of the parameters of the best model's effects. They are computed when they are first asked for.
-    ends: OnceCell<Vec<Interval>>,
+    pub(super) ends: OnceCell<Vec<Interval>>,
     /// Residuals of held-out readings \[sigma\]: with the baseline, then with the best model.
-    left_out: [Vec<Option<f64>>; 2],
+    pub(super) left_out: [Vec<Option<f64>>; 2],
     /// Root mean square that the residuals of held-out poses would have if the best model were right \[sigma\].
-    expected_rms: f64,
+    pub(super) expected_rms: f64,
 }
 
 /// The corrected arm, and what was changed in it: calibrated factors and laws without a name.
@@ -192,9 +204,10 @@ impl Analysis<'_> {
         let held_out = self.held_out();
         let (verdict, mut reasons) = self.verdict(&held_out);
         if verdict == Verdict::Explained && self.shows_in_one_fold() {
-            let several = self.best.model.effects.len() > 1;
-            let label = self.best.model.label();
-            reasons.push(shows_in_few_poses(&if several { format!("one of {label}") } else { label }));
+            reasons.push(shows_in_few_poses(&self.best.model.label()));
+        }
+        if verdict == Verdict::Unexplained {
+            reasons.splice(0..0, self.other_conventions());
         }
         if matches!(verdict, Verdict::Explained | Verdict::Unexplained) {
             reasons.extend(self.at_a_limit());
@@ -216,8 +229,8 @@ impl Analysis<'_> {
         if matches!(verdict, Verdict::Explained | Verdict::NoGap) {
             let shown = if verdict == Verdict::NoGap { &self.baseline } else { &self.best };
             if let Some(text) = caution::beyond_tolerance(fitted::tolerances(shown), &calibrated) {
-                let within = reasons.iter_mut().filter(|reason| *reason == NOTHING_MISSING);
-                within.for_each(|reason| *reason = BEYOND_TOLERANCE.into());
+                let within = reasons.iter_mut().filter(|reason| reason.starts_with(NOTHING_MISSING));
+                within.for_each(|reason| *reason = reason.replacen(NOTHING_MISSING, BEYOND_TOLERANCE, 1));
                 reasons.push(text);
             }
         }
@@ -269,177 +282,10 @@ impl Analysis<'_> {
         Corrections { calibrated, empirical, models, corrected, provenance }
     }
 
-    fn verdict(&self, held_out: &Option<HeldOut>) -> (Verdict, Vec<String>) {
-        let mut reasons = too_little(self.campaign, self.forward);
-        if !reasons.is_empty() {
-            if let Some(explaining) = self.explaining.as_ref().filter(|_| !self.forward.data.is_empty()) {
-                reasons.extend(few_rows::sentences(self.search, self.campaign, &self.baseline, explaining));
-            }
-            reasons.extend(self.unidentified());
-            return (Verdict::InsufficientData, reasons);
-        }
-        if self.lack_of_fit.fails {
-            return (Verdict::Unexplained, self.left_over());
-        }
-        let (tolerances, calibrated) = (fitted::tolerances(&self.best), fitted::calibrated(&self.best));
-        if let Some(text) =
-            caution::impossible_calibration(self.campaign, &self.best.model.label(), tolerances, &calibrated)
-        {
-            return (Verdict::Unexplained, vec![text]);
-        }
-        if self.best.model.effects.is_empty() {
-            return (Verdict::NoGap, vec![NOTHING_MISSING.to_string()]);
-        }
-        if let Some(better) = &self.unnamed {
-            return (Verdict::Unexplained, vec![self.beaten(better)]);
-        }
-        if let Some(text) = caution::opposed(self.forward, &self.best) {
-            return (Verdict::Unexplained, vec![text]);
-        }
-        if let Some(without) = &self.without {
-            return self.weak(without);
-        }
-        for (effect, competitors) in self.best.model.effects.iter().zip(&self.alternatives) {
-            if let Some(text) = too_many_alternatives(&effect.label(), competitors.len()) {
-                return (Verdict::InsufficientData, vec![text]);
-            }
-        }
-        if let Some((verdict, text)) = held_out.and_then(|held_out| self.badly_predicted(held_out)) {
-            return (verdict, vec![text]);
-        }
-        if let Some(&i) = caution::may_be_absent(&self.best, self.ends()).first() {
-            let text = format!(
-                "the 95 % interval of {} contains its absence: it is a suspect and no finding",
-                self.best.model.effects[i].label()
-            );
-            return (Verdict::InsufficientData, vec![text]);
-        }
-        (Verdict::Explained, vec![self.gap_sentence()])
-    }
-
-    /// Verdict and reason if the best effects predict the readings of held-out poses badly; `None` if they do not.
-    fn badly_predicted(&self, held_out: HeldOut) -> Option<(Verdict, String)> {
-        let HeldOut { rms_before, rms_after, .. } = held_out;
-        // if one fold alone shows an effect, a fit without this fold knows nothing of the effect and cannot predict it
-        if self.shows_in_one_fold() && rms_after <= TOO_FAR_OFF * self.expected_rms {
-            return None;
-        }
-        if rms_after > rms_before + 0.02 {
-            let [after, before] = [rms_after, rms_before].map(|rms| format!("{rms:.2} sigma"));
-            let text = does_not_predict(&self.best.model.label(), &after, &before);
-            return Some((Verdict::InsufficientData, text));
-        }
-        (rms_after > TOO_FAR_OFF).then(|| {
-            let text = format!(
-                "with {} the readings of poses held out of the fit are still {rms_after:.1} sigma off: something else is missing",
-                self.best.model.label()
-            );
-            (Verdict::Unexplained, text)
-        })
-    }
-
-    /// Verdict and reasons if the evidence for the best effects is weak. These effects are only suspected. The
-    /// verdict is `no_gap` if calibration alone leaves only noise (`without` passes the test for lack of fit),
-    /// otherwise `insufficient_data`.
-    fn weak(&self, without: &LackOfFit) -> (Verdict, Vec<String>) {
-        let gain = self.selection.best.score - self.selection.baseline.score;
-        let suspected = format!(
-            "{} is a suspect: ln of the evidence rises by {gain:.1} with it (chi-squared {:.0} to {:.0}), odds of {:.0} to 1. \
-             Take the next test before relying on it",
-            self.best.model.label(),
-            self.baseline.point.objective,
-            self.best.point.objective,
-            libm::exp(gain)
-        );
-        match without.fails {
-            true => (Verdict::InsufficientData, [without.sentences(), vec![suspected]].concat()),
-            false => (Verdict::NoGap, vec![NOTHING_MISSING.to_string(), suspected]),
-        }
-    }
-
-    fn gap_sentence(&self) -> String {
-        format!(
-            "with {} ln of the evidence rises by {:.1} (chi-squared {:.0} to {:.0} on {} readings)",
-            self.best.model.label(),
-            self.selection.best.score - self.selection.baseline.score,
-            self.baseline.point.objective,
-            self.best.point.objective,
-            self.forward.data.len()
-        )
-    }
-
     /// 95 % intervals of the parameters of all effects of the best model, in the order of the parameters. The first
     /// call computes them.
-    fn ends(&self) -> &[Interval] {
+    pub(super) fn ends(&self) -> &[Interval] {
         self.ends.get_or_init(|| intervals(self.forward, &self.best, self.weights))
-    }
-
-    /// Sentence which says that one of the best effects has the largest size that is sought; `None` if none has. It
-    /// does not name the effect, because the effect may not be the right one.
-    fn at_a_limit(&self) -> Option<String> {
-        let text = "the size of one of the best effects is the largest that is looked for: is arm.json the arm that was measured?";
-        self.best.model.is_at_a_limit(&self.best.point.u).then(|| text.to_string())
-    }
-
-    /// Sentences on the structure that the best model leaves in the residuals, without names of effects.
-    fn left_over(&self) -> Vec<String> {
-        let mut out = units::other_conventions(self.forward);
-        let beyond = self.lack_of_fit.sentences_beyond_scatter();
-        let declared = self.lack_of_fit.sentences();
-        if beyond.is_empty() && !declared.is_empty() {
-            out.push(format!(
-                "the readings scatter {:.1} times as much as declared. If this is their noise, they follow nothing that was \
-                 asked, and sigma in the files is too small. If sigma is right, they do:",
-                self.lack_of_fit.chi2_per_dof.sqrt()
-            ));
-            out.extend(declared);
-        } else {
-            out.extend(beyond);
-        }
-        out.push(format!(
-            "the best model leaves {:.2} times the declared variance; no effect of the library explains the rest",
-            self.lack_of_fit.chi2_per_dof
-        ));
-        out.extend(self.unnamed.as_ref().map(|law| {
-            format!(
-                "the best law without a name is {}: added to calibration alone it lowers chi-squared from {:.0} to {:.0}",
-                law.what, self.baseline.point.objective, law.objective
-            )
-        }));
-        out
-    }
-
-    /// Sentence which says that `law`, a law without a name, explains the readings better than the effects of the
-    /// library.
-    fn beaten(&self, law: &Better) -> String {
-        format!(
-            "the library lacks this law, and it explains the readings better than any effect of the library: {} \
-             (chi-squared {:.0} with its {} parameter(s), {:.0} with {} of the best effects; ln of the evidence rises by {:.1})",
-            law.what,
-            law.objective,
-            law.numbers,
-            self.best.point.objective,
-            self.best.model.free_parameters().count(),
-            law.gain
-        )
-    }
-
-    /// Sentence that lists the stiffnesses about which the readings say nothing: their standard deviation after the fit
-    /// is more than 90 % of the one that their tolerance gives. Empty if there are none.
-    fn unidentified(&self) -> Vec<String> {
-        let blind: Vec<String> = fitted::calibrated(&self.best)
-            .into_iter()
-            .filter(|c| c.learnt > 0.9 && c.name.ends_with("stiffness"))
-            .map(|c| c.name)
-            .collect();
-        let text = format!("the readings say nothing about {}", blind.join(", "));
-        if blind.is_empty() { Vec::new() } else { vec![text] }
-    }
-
-    /// Whether one of a few effects shows in the poses of one fold alone. Even a right model then leaves an error of more
-    /// than [`SHOWN_BY_ONE_FOLD`] standard deviations on held-out poses, so held-out poses cannot confirm it.
-    fn shows_in_one_fold(&self) -> bool {
-        self.expected_rms > SHOWN_BY_ONE_FOLD && self.best.model.effects.len() <= MOST_UNCONFIRMED
     }
 
     fn held_out(&self) -> Option<HeldOut> {

@@ -24,6 +24,7 @@ pub mod predict;
 pub mod predict_files;
 pub mod readings;
 pub mod records;
+mod ruling;
 pub(crate) mod select;
 pub(crate) mod starter;
 pub(crate) mod together;

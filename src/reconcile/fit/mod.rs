@@ -5,6 +5,7 @@ pub(crate) mod curve_interval;
 pub mod descent;
 pub(crate) mod held_out;
 pub(crate) mod interval;
+pub(crate) mod load_units;
 pub mod noise;
 pub(crate) mod stats;
 pub(crate) mod steps;

@@ -51,6 +51,9 @@ pub(crate) const FEW: f64 = 0.10;
 /// Largest fraction of a channel's rows that can be gross errors before any effect is sought. It is smaller than
 /// [`FEW`], because an effect may change only a few frequencies, and these must not be left out.
 const FEW_UNSEEN: f64 = 0.05;
+/// If at least this many rows of a channel are gross errors below [`UNMISTAKABLE_SIGMAS`], they are no slips: slips are
+/// few, and mostly much larger.
+const FEWEST_ODD_ROWS: usize = 3;
 /// Largest fraction of the frequency lists (modes of one pose and payload) that can have been numbered wrongly.
 const FEW_LISTS: f64 = 0.34;
 /// Largest number of gross errors that may be assumed instead of an effect. More of them have a common cause.
@@ -242,6 +245,28 @@ impl Noise {
         }
         self.outliers.sort_by_key(Outlier::place);
         self
+    }
+
+    /// Sentences on channels whose readings scatter more than noise as declared and single slips can explain: the
+    /// factor on the declared standard deviations is at its limit, or several rows are somewhat too far off to be noise.
+    /// Empty if there are none.
+    pub(crate) fn beyond_declaration(&self) -> Vec<String> {
+        let of_channel = |channel: Channel| {
+            let at_limit = self.scale[channel as usize] >= LARGEST_SCALE;
+            let is_near = |o: &&Outlier| o.channel == channel && o.sigmas < UNMISTAKABLE_SIGMAS;
+            let near = self.outliers.iter().filter(is_near);
+            let near: Vec<String> = near.map(|o| format!("{:.0}", o.sigmas)).collect();
+            let is_odd = near.len() >= if at_limit { 1 } else { FEWEST_ODD_ROWS };
+            let word = channel.word();
+            let scatter = at_limit.then(|| {
+                format!("the {word} readings scatter at least {LARGEST_SCALE} times as much as declared")
+            });
+            let odd = is_odd.then(|| {
+                format!("{} row(s) of the {word} readings are off by {} sigma", near.len(), near.join(", "))
+            });
+            scatter.into_iter().chain(odd)
+        };
+        CHANNELS.into_iter().flat_map(of_channel).collect()
     }
 
     /// Whether this judgement and `other` leave out the same rows.

@@ -10,7 +10,6 @@ use crate::arm::effect::channel::Channel;
 use crate::arm::effect::wrong_unit::{self, UnitColumn, UnitSlip};
 use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::prepared::Forward;
-use crate::reconcile::forward::statics::StaticPose;
 use crate::reconcile::model::parameters::Candidate;
 use crate::reconcile::readings::components::{DISPLACEMENT, FEWEST_ALIKE};
 use std::collections::BTreeSet;
@@ -131,36 +130,21 @@ fn seeming_slip<'s>(pairs: &[(f64, f64)], ratio: f64, slips: &[&'s UnitSlip]) ->
     is_near.then_some(nearest)
 }
 
-/// One sentence for each component of the displacement, and for each kind of load, whose readings seem to be in another
-/// unit while the other static readings are not. If all static readings are in another unit, the effect `wrong_unit`
+/// One sentence for each component of the displacement whose readings seem to be in another unit while the other static
+/// readings are not. If all static readings are in another unit, the effect `wrong_unit`
 /// describes it.
 fn other_units(forward: &Forward) -> Vec<String> {
     let nominal = forward.predict(&forward.coefficients(&forward.nominal));
     let pairs = |own: &[usize]| -> Vec<(f64, f64)> {
         own.iter().map(|&i| (forward.data[i].value, nominal[i])).collect()
     };
-    let of = |column: UnitColumn| -> Vec<&UnitSlip> {
-        let own = wrong_unit::SLIPS.iter().filter(|unit| unit.is_of(Channel::Static));
-        own.filter(|unit| unit.column == column).collect()
-    };
-    let (readings, forces, payloads) =
-        (of(UnitColumn::Reading), of(UnitColumn::Force), of(UnitColumn::Payload));
+    let is_reading = |unit: &&UnitSlip| unit.is_of(Channel::Static) && unit.column == UnitColumn::Reading;
+    let slips: Vec<&UnitSlip> = wrong_unit::SLIPS.iter().filter(is_reading).collect();
     let range = forward.range(Channel::Static);
     let of_component =
         |c: usize| -> Vec<usize> { range.clone().filter(|i| forward.data[*i].component == c).collect() };
-    let loaded = |payload: bool| -> Vec<usize> {
-        let all = forward.statics.iter().flat_map(StaticPose::loaded_by);
-        let own = all.filter(|(_, by)| by.payload == payload && by.force != payload);
-        own.map(|(datum, _)| datum).collect()
-    };
-    let parts: [(String, Vec<usize>, Vec<&UnitSlip>); 5] = [
-        (DISPLACEMENT.values[0].into(), of_component(0), readings.clone()),
-        (DISPLACEMENT.values[1].into(), of_component(1), readings.clone()),
-        (DISPLACEMENT.values[2].into(), of_component(2), readings),
-        ("every reading under a payload alone".into(), loaded(true), payloads),
-        ("every reading under a force alone".into(), loaded(false), forces),
-    ];
-    let found = parts.into_iter().filter_map(|(what, own, slips)| {
+    let found = (0..3).filter_map(|component| {
+        let (what, own) = (DISPLACEMENT.values[component], of_component(component));
         // a set, because a campaign may have 100,000 rows
         let own_set: BTreeSet<usize> = own.iter().copied().collect();
         let rest: Vec<usize> = range.clone().filter(|i| !own_set.contains(i)).collect();

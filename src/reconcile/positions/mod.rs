@@ -43,6 +43,7 @@ pub(crate) mod fit;
 pub(crate) mod fitted;
 pub(crate) mod fitted_placement;
 mod geometry_slopes;
+mod in_series;
 mod intervals;
 pub(crate) mod kinematics;
 pub(crate) mod kinematics_lanes;

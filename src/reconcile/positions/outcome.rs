@@ -57,7 +57,9 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         without.iter().enumerate().map(|(i, without)| found.competitors(i, without)).collect();
     let findings = found.findings(campaign, &without, &competitors);
     let adjusted = found.adjusted(&found.fitted);
-    let (verdict, mut reasons) = found.verdict(campaign, &lack_of_fit, &findings, &adjusted);
+    let offered = found.in_series();
+    let (verdict, mut reasons) =
+        found.verdict(campaign, &lack_of_fit, &findings, &adjusted, offered.as_ref());
     reasons.extend(found.remarks(campaign, &adjusted));
     let next_tests = found.next_tests(campaign, verdict, &lack_of_fit, &competitors);
     let helps = verdict == Verdict::Unexplained && found.helps(&findings);
@@ -70,7 +72,8 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     };
     let mut provenance = correct::provenance(campaign, verdict, found.calibrated(shown));
     let corrected = found.corrected_arms(campaign, shown, in_arm, &mut provenance);
-    let (effects, suspects) = verdict.named_and_suspected(findings, Vec::new());
+    let (effects, suspects) =
+        verdict.named_and_suspected(findings, offered.into_iter().map(|(finding, _)| finding).collect());
     let scale_mm = 1e3 * found.fitted.scale_m;
     let residuals = found.residuals(campaign);
     Outcome {
@@ -175,6 +178,7 @@ impl Positions {
         left: &LackOfFit,
         findings: &[Finding],
         adjusted: &[Calibrated],
+        offered: Option<&(Finding, String)>,
     ) -> (Verdict, Vec<String>) {
         if let Some(said) = self.not_described(campaign, left, findings) {
             return said;
@@ -186,7 +190,7 @@ impl Positions {
         if let Some(text) = self.unsteady_drift().or_else(|| self.better_law(campaign)) {
             return (Verdict::Unexplained, vec![text]);
         }
-        if let Some(said) = self.not_calibrated(campaign, findings, adjusted) {
+        if let Some(said) = self.not_calibrated(campaign, findings, adjusted, offered) {
             return said;
         }
         if findings.is_empty() {
@@ -235,13 +239,15 @@ impl Positions {
         findings.iter().find_map(beyond_bounds).map(|text| (Verdict::Unexplained, vec![text]))
     }
 
-    /// Verdict and reasons if the calibration cannot be right: the poses do not determine it, no faultless part has
-    /// such a factor, or the geometry is far from the arm file. Otherwise `None`.
+    /// Verdict and reasons if the calibration cannot be right: the poses do not determine it, a factor is rare among
+    /// faultless parts, or the geometry is far from the arm file. Otherwise `None`. `offered` is the compliance that may
+    /// take the place of the rare factors.
     fn not_calibrated(
         &self,
         campaign: &Campaign,
         findings: &[Finding],
         adjusted: &[Calibrated],
+        offered: Option<&(Finding, String)>,
     ) -> Option<(Verdict, Vec<String>)> {
         let last = &self.stages[self.stages.len() - 1];
         if last.median_mm > UNSTABLE * last.fitted_median_mm.max(campaign.positions[0].sigma_mm()) {
@@ -251,6 +257,9 @@ impl Positions {
                 last.median_mm, last.fitted_median_mm
             );
             return Some((Verdict::InsufficientData, vec![text]));
+        }
+        if let Some((_, text)) = offered {
+            return Some((Verdict::InsufficientData, vec![text.clone()]));
         }
         let named = findings.iter().map(Finding::label).collect::<Vec<_>>().join(" + ");
         if let Some(text) = caution::impossible_calibration(campaign, &named, self.tolerances(), adjusted) {
@@ -334,7 +343,7 @@ impl Positions {
         }
     }
 
-    fn finding(&self, i: usize, without: &Fitted, competitors: &[(usize, Fitted)]) -> Finding {
+    pub(super) fn finding(&self, i: usize, without: &Fitted, competitors: &[(usize, Fitted)]) -> Finding {
         let candidate = &self.candidates[self.fitted.effects[i]];
         let (c, reaches) = (&self.fitted.compliances[i], self.reaches(i));
         let parameters = match candidate.rotation {

@@ -13,7 +13,7 @@ use crate::reconcile::fit::descent::{
     jacobian, normal, objective,
 };
 use crate::reconcile::fit::steps::WIDE_SMOOTHING;
-use crate::reconcile::model::parameters::Model;
+use crate::reconcile::model::parameters::{Candidate, Model};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::cell::OnceCell;
@@ -70,11 +70,11 @@ pub(crate) struct Selection {
 }
 
 /// A candidate that was added to a model without a full fit.
-struct Screened {
+pub(super) struct Screened {
     /// Index of the candidate.
-    candidate: usize,
+    pub(super) candidate: usize,
     /// The parameters from which a full fit starts.
-    u: Vec<f64>,
+    pub(super) u: Vec<f64>,
     score: f64,
 }
 
@@ -358,6 +358,15 @@ impl<'a> Search<'a> {
     /// The candidates that, according to the linearized model, raise the score of the model `base` most, the best
     /// first.
     fn screen(&self, base: &Scored) -> Vec<Screened> {
+        self.screen_among(base, |_| true)
+    }
+
+    /// The same as [`Self::screen`], but among the candidates for which `is_open` is true.
+    pub(super) fn screen_among(
+        &self,
+        base: &Scored,
+        is_open: impl Fn(&Candidate) -> bool + Sync,
+    ) -> Vec<Screened> {
         let model = self.model(&base.effects);
         let sharp = self.linearized(&model, &base.u);
         // the smoothing must be the same before and after a change, because the nominal curves of other joints have
@@ -375,7 +384,7 @@ impl<'a> Search<'a> {
         };
         let mut tried: Vec<Screened> = (0..self.candidates.len())
             .into_par_iter()
-            .filter(|i| base.effects.iter().all(|e| !self.candidates[*e].is_variant_of(&self.candidates[*i])))
+            .filter(|i| self.is_new(base, *i) && is_open(&self.candidates[*i]))
             .filter_map(|i| self.best_start(&model, about(i), i))
             .map(|s| Screened { score: s.score - self.price(&[s.candidate]), ..s })
             .collect();
@@ -390,6 +399,11 @@ impl<'a> Search<'a> {
         });
         tried.truncate(FULL_FITS);
         tried
+    }
+
+    /// Whether the model `base` has no variant of the candidate with the index `candidate`.
+    fn is_new(&self, base: &Scored, candidate: usize) -> bool {
+        base.effects.iter().all(|e| !self.candidates[*e].is_variant_of(&self.candidates[candidate]))
     }
 
     /// The candidates that come closest to the readings when they are added to the model `base` at one of a few
@@ -422,7 +436,7 @@ impl<'a> Search<'a> {
             let (objective, u) = least(tried.map(|u| (misfit(&u, self.weights), u)))?;
             Some(Screened { candidate: index, u, score: -0.5 * objective })
         };
-        let open = (0..self.candidates.len()).into_par_iter().filter(|i| !base.effects.contains(i));
+        let open = (0..self.candidates.len()).into_par_iter().filter(|i| self.is_new(base, *i));
         let mut tried: Vec<Screened> = open.filter_map(best_size).collect();
         tried.sort_by(Screened::best_first);
         tried.truncate(FULL_FITS);

@@ -18,8 +18,8 @@ const NEIGHBOUR_DISTANCE: usize = 2;
 const TOLERANCE_SIGMAS: f64 = 2.0;
 /// A calibrated factor is called improbable if fewer than one in this many faultless parts deviate so far.
 const RARE_PARTS: f64 = 200.0;
-/// If fewer than one in this many faultless parts have such a calibrated factor, tolerance cannot be its cause.
-const IMPOSSIBLE_PARTS: f64 = 1e6;
+/// If fewer than one in this many faultless parts have such a calibrated factor, tolerance is not taken as its cause.
+const IMPOSSIBLE_PARTS: f64 = 1e3;
 
 /// Sentence that two effects of the model have opposite signs at neighbouring places; `None` if there are no such
 /// effects. Only two effects of the same kind, or two masses, are compared. Each then cancels a part of the other.
@@ -131,9 +131,7 @@ pub(crate) fn impossible_calibration(
     deviations: impl Iterator<Item = f64>,
     calibrated: &[Calibrated],
 ) -> Option<String> {
-    let impossible = deviations.zip(calibrated).filter(|(sd, of)| one_in(*sd, of) > IMPOSSIBLE_PARTS);
-    let words = impossible.map(|(sd, of)| format!("{})", departure_words(sd, of)));
-    let words: Vec<String> = words.collect();
+    let words = rare_words(deviations, calibrated);
     if words.is_empty() {
         return None;
     }
@@ -147,10 +145,29 @@ pub(crate) fn impossible_calibration(
         named => format!("{named} and calibration explain"),
     };
     Some(format!(
-        "{explained} the readings, but only with factors that less than one honest part in a million has: {}. The \
-         part is another than the arm file says, something else deflects or has mass there{stated}",
-        words.join(", ")
+        "{explained} the readings, but only with factors that less than one honest part in a thousand has: {words}. The \
+         part is another than the arm file says, something else deflects or has mass there{stated}"
     ))
+}
+
+/// The calibrated factors that are rarer than [`IMPOSSIBLE_PARTS`], in words; empty if there are none. `deviations` has,
+/// for each factor, the standard deviation of its logarithm that follows from the tolerance.
+pub(crate) fn rare_words(deviations: impl Iterator<Item = f64>, calibrated: &[Calibrated]) -> String {
+    let rare = deviations.zip(calibrated).filter(|(sd, of)| one_in(*sd, of) > IMPOSSIBLE_PARTS);
+    let words =
+        rare.map(|(sd, of)| format!("{}; {})", departure_words(sd, of), rarity_words(one_in(sd, of))));
+    words.collect::<Vec<_>>().join(", ")
+}
+
+/// Whether a calibrated factor is rarer than [`IMPOSSIBLE_PARTS`]. `deviation` is the deviation of its logarithm
+/// from nominal, in standard deviations of the tolerance.
+pub(crate) fn is_rare(deviation: f64) -> bool {
+    honest_parts_for_one(deviation) > IMPOSSIBLE_PARTS
+}
+
+/// Whether one of several calibrated factors is rare ([`is_rare`]).
+pub(crate) fn has_rare(deviations: &[f64]) -> bool {
+    deviations.iter().any(|deviation| is_rare(*deviation))
 }
 
 /// A calibrated factor, its deviation from nominal and its tolerance, in words. The caller adds the closing bracket.

@@ -7,9 +7,6 @@ use crate::reconcile::model::estimate::Finding;
 /// Limit of the residuals that the best model would leave on held-out poses even if it were right \[standard
 /// deviations\]. Above it, only the poses of one fold show some effect, so held-out poses cannot confirm it.
 pub(crate) const SHOWN_BY_ONE_FOLD: f64 = 1.5;
-/// Largest number of effects that may be named although held-out poses cannot confirm them. More of them, each fitted to
-/// poses of its own, would describe any readings.
-pub(crate) const MOST_UNCONFIRMED: usize = 2;
 /// An effect is only suspected if it raises the natural logarithm of the evidence by less than this. Such evidence is
 /// not yet strong (Kass and Raftery 1995, table of Bayes factors).
 pub(crate) const WEAK_EVIDENCE: f64 = 3.0;
