@@ -145,6 +145,7 @@ fn read_material(node: &Node) -> Option<LinkMaterial> {
         shear_modulus_pa: shear?,
         density_kg_m3: density?,
         poisson: poisson?,
+        strength: None,
         class: class.map_or(Some(None), |read| read.map(Some))?,
     })
 }

@@ -270,7 +270,8 @@ impl LostMotion {
 }
 
 /// A further angle of torsion found in readings, as a polynomial of the torque. With `p = T / torque_nm` it is
-/// `odd[0] p |p| + odd[1] p³ + even[0] |p| + even[1] p²`.
+/// `odd[0] p |p| + odd[1] p³ + even[0] |p| + even[1] p²`. Beyond the reference torque, where no reading was, it continues
+/// as a straight line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FurtherTwist {
     /// Coefficients of the terms that change sign with the torque \[rad\].
@@ -285,16 +286,22 @@ impl FurtherTwist {
     /// Angle of torsion \[rad\] that this further term adds under the total torque on the joint \[N m\].
     pub fn angle_rad(&self, torque_nm: f64) -> f64 {
         let p = torque_nm / self.torque_nm;
+        let edge = p.clamp(-1.0, 1.0);
         let ([a, b], [c, d]) = (self.odd_rad, self.even_rad);
-        a * p * p.abs() + b * p.powi(3) + c * p.abs() + d * p * p
+        let inside = a * edge * edge.abs() + b * edge.powi(3) + c * edge.abs() + d * edge * edge;
+        inside + (p - edge) * self.slope_rad(edge)
     }
 
     /// Tangent compliance \[rad/(N m)\] of this further term at a torque \[N m\]. It is negative where the term makes
     /// the joint stiffer.
     pub fn tangent_compliance_rad_per_nm(&self, torque_nm: f64) -> f64 {
-        let p = torque_nm / self.torque_nm;
+        self.slope_rad((torque_nm / self.torque_nm).clamp(-1.0, 1.0)) / self.torque_nm
+    }
+
+    /// Derivative of the polynomial by p.
+    fn slope_rad(&self, p: f64) -> f64 {
         let ([a, b], [c, d]) = (self.odd_rad, self.even_rad);
-        (2.0 * a * p.abs() + 3.0 * b * p * p + c * sense(torque_nm) + 2.0 * d * p) / self.torque_nm
+        2.0 * a * p.abs() + 3.0 * b * p * p + c * sense(p * self.torque_nm) + 2.0 * d * p
     }
 }
 

@@ -4,7 +4,7 @@ use super::body::read_link_bodies;
 use super::element_keys::read_name;
 use super::keys::{RECTANGULAR_BAR, RECTANGULAR_TUBE, ROUND_BAR, ROUND_TUBE};
 use super::load::vector;
-use super::section::{LinkMaterial, Section};
+use super::section::{LinkMaterial, Section, Strength};
 use super::section_file::{read_i_beam, read_stated_section};
 use super::{Link, LinkBody};
 use crate::catalog::Catalogs;
@@ -111,8 +111,26 @@ pub(crate) fn material_of(row: &Material) -> Option<LinkMaterial> {
         shear_modulus_pa: row.shear_modulus_pa?,
         density_kg_m3: row.density_kg_m3,
         poisson: row.poisson.unwrap_or(DEFAULT_POISSON),
+        strength: strength_of(row),
         class: Some(row.class),
     })
+}
+
+/// The strength of a row of the catalog. `None` if the row does not state it, or if the material is weak in shear and the
+/// row does not state its strength in shear.
+fn strength_of(row: &Material) -> Option<Strength> {
+    let tensile_pa = row.strength_pa?;
+    let along_pa = row.compressive_strength_pa.map_or(tensile_pa, |pa| pa.min(tensile_pa));
+    (!lacks_shear_strength(row)).then_some(Strength { along_pa, shear_pa: row.shear_strength_pa })
+}
+
+/// Whether the strength in shear of a row of the catalog is unknown: the row does not state it, and it does not follow
+/// from the strength along the link. It does not in wood, in layers whose fibres all run along the link, and in other
+/// materials whose shear modulus is less than half of `E/2(1+ν)`.
+pub(crate) fn lacks_shear_strength(row: &Material) -> bool {
+    let isotropic_pa = row.youngs_modulus_pa / (2.0 * (1.0 + row.poisson.unwrap_or(DEFAULT_POISSON)));
+    let is_soft = row.shear_modulus_pa.is_some_and(|shear_pa| shear_pa < 0.5 * isotropic_pa);
+    row.shear_strength_pa.is_none() && (row.unidirectional || row.class == MaterialClass::Wood || is_soft)
 }
 
 /// Advice on a row of the catalog that states no shear modulus. The program does not compute the missing value for the

@@ -57,6 +57,8 @@ impl Factors {
                 material_name: format!("{material_name}{MARK}{}, mass x {})", self.stiffness, self.mass),
                 material: LinkMaterial {
                     density_kg_m3: material.density_kg_m3 * self.mass,
+                    // The stress at the edge of a hole or an insert is not known.
+                    strength: None,
                     ..material.stiffened(self.stiffness)
                 },
                 section,

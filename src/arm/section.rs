@@ -36,6 +36,8 @@ pub struct LinkMaterial {
     pub density_kg_m3: f64,
     /// Poisson's ratio. It is used only in Cowper's shear factor. It is never derived from E and G.
     pub poisson: f64,
+    /// Strength of the material; `None` if it is not known. Then no stress is compared with it.
+    pub strength: Option<Strength>,
     /// Class of the material, from which a report knows whether it creeps. `None` if it is not stated. No number
     /// depends on it.
     pub class: Option<MaterialClass>,
@@ -50,6 +52,25 @@ impl LinkMaterial {
             shear_modulus_pa: self.shear_modulus_pa * factor,
             ..*self
         }
+    }
+}
+
+/// Strength of a material along a link.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Strength {
+    /// Strength along the link \[Pa\]. Bending puts one side of a link in tension and the other in compression, so this
+    /// is the lower of both strengths.
+    pub along_pa: f64,
+    /// Strength in shear \[Pa\]. `None` in an isotropic material, for which von Mises gives `along_pa / √3`.
+    pub shear_pa: Option<f64>,
+}
+
+impl Strength {
+    /// Factor on a shear stress τ such that von Mises' stress √(σ² + 3 τ²) reaches `along_pa` where the criterion of the
+    /// material is reached: (σ/X)² + (τ/S)² = 1 with X along the link and S in shear. This is the criterion of Tsai and
+    /// Hill for a layer of fibres along the link. The factor is 1 in an isotropic material.
+    pub fn shear_factor(&self) -> f64 {
+        self.shear_pa.map_or(1.0, |shear_pa| self.along_pa / (3f64.sqrt() * shear_pa))
     }
 }
 
@@ -140,6 +161,7 @@ impl StatedSection {
             shear_modulus_pa: STATED_PA,
             density_kg_m3: 1.0,
             poisson: 0.0,
+            strength: None,
             class: None,
         }
     }

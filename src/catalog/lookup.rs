@@ -152,6 +152,31 @@ fn find<'p, T>(
     Err(PartError::Unknown { kind, name: name.into(), nearest: nearest(&wanted, ids) })
 }
 
+/// A hint for a reader whose file has the name `name`, which no part has. It names the parts of `known` that may be meant:
+/// the one that differs by a typing error, else those with a name or a word that begins so. `list` is the list of
+/// `armwright catalog show` that has them all.
+pub(crate) fn hint_for_unknown(name: &str, known: &[&str], list: &str) -> String {
+    let wanted = name.trim().to_lowercase();
+    let longer = |fits: fn(&str, &str) -> bool| {
+        let mut found: Vec<&str> =
+            known.iter().copied().filter(|id| fits(&id.to_lowercase(), &wanted)).collect();
+        found.sort_unstable();
+        found.dedup();
+        found
+    };
+    let ways: [fn(&str, &str) -> bool; 2] = [begins, has_word];
+    let near = match closest(name, known) {
+        Some(id) => vec![id],
+        None => ways.into_iter().map(longer).find(|found| !found.is_empty()).unwrap_or_default(),
+    };
+    let meant = match near.as_slice() {
+        [] => "no name is similar; ".to_string(),
+        [one] => format!("did you mean \"{one}\"? "),
+        several => format!("did you mean one of {}? ", first_names(several, NAMES_SHOWN)),
+    };
+    format!("{meant}`armwright catalog show {list}` lists them")
+}
+
 /// Whether `id` begins with `name`, and `name` does not end within a number of `id`: `F11-1` is no beginning of
 /// `F11-10`.
 fn begins(id: &str, name: &str) -> bool {
@@ -226,5 +251,19 @@ mod tests {
     fn unknown_names_come_with_the_nearest() {
         let error = Catalogs::builtin().motor("F11-1O").expect_err("letter O");
         assert!(error.to_string().starts_with("no motor is called \"F11-1O\"; nearest: F11-10"), "{error}");
+    }
+
+    #[test]
+    fn the_hint_for_an_unknown_name_names_what_may_be_meant() {
+        let known = ["Aluminium 6061-T6", "Aluminium 6082-T6", "Structural steel S355", "Invar 36"];
+        let hint = |name| hint_for_unknown(name, &known, "materials");
+        let lists = "`armwright catalog show materials` lists them";
+        assert_eq!(hint("Aluminum 6061-T6"), format!("did you mean \"Aluminium 6061-T6\"? {lists}"));
+        assert_eq!(hint("S355"), format!("did you mean \"Structural steel S355\"? {lists}"));
+        assert_eq!(
+            hint("aluminium"),
+            format!("did you mean one of Aluminium 6061-T6, Aluminium 6082-T6? {lists}")
+        );
+        assert_eq!(hint("Beryllium copper"), format!("no name is similar; {lists}"));
     }
 }

@@ -75,6 +75,9 @@ pub struct Material {
     pub strength_pa: Option<f64>,
     /// Compressive strength along the link \[Pa\]; `None` if it equals the tensile strength or is unknown.
     pub compressive_strength_pa: Option<f64>,
+    /// Shear strength of a link that is twisted \[Pa\]; for unidirectional composites it is the in-plane shear strength of
+    /// a layer; `None` if unknown. In an isotropic material it follows from `strength_pa`.
+    pub shear_strength_pa: Option<f64>,
     /// Kind of strength that `strength_pa` states.
     pub strength_kind: String,
     /// Cost of the raw material \[EUR/kg\]; `None` if unknown.

@@ -224,6 +224,7 @@ const MATERIALS: &[Column] = &[
     figure_of("poisson", Cell::Number),
     figure("yield_or_strength_pa"),
     figure("compressive_strength_pa"),
+    figure("shear_strength_pa"),
     remark("strength_kind"),
     figure_of("cte_1_per_k", Cell::Number),
     figure_of("cost_eur_per_kg", Cell::NonNegative),

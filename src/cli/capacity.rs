@@ -56,11 +56,12 @@ pub(super) fn run(args: &CapacityArgs, catalogs: &Catalogs) -> Result<String, Fa
     if is_arm(&args.study) {
         return of_arm(args, catalogs);
     }
+    // read before the flags are judged: a file that cannot be parsed is neither a study nor an arm file
+    let (study, _) = load_study(&args.study, catalogs)?;
     if args.cases.is_some() || args.limits.is_some() {
         let words = "--cases and --limits are for arm files; a study has its own poses and drives";
         return Err(Failure::Usage(words.into()));
     }
-    let (study, _) = load_study(&args.study, catalogs)?;
     let name = match &args.design {
         Some(id) => format!("{}, design {id},", study.name),
         None => study.name.clone(),

@@ -10,7 +10,7 @@ use crate::catalog::Catalogs;
 use crate::catalog::schema::CatalogFile;
 use crate::input::json::{Document, Fault, Faults, InputError};
 use crate::interchange::given::{MovingJoint, read_given};
-use crate::interchange::urdf_file::UrdfTree;
+use crate::interchange::urdf_file::read_urdf;
 use crate::reconcile::Campaign;
 use crate::reconcile::readings::record_spec::DEFAULT_FILE as DEFAULT_RECORD;
 use crate::reconcile::readings::source::DEFAULT_FILES;
@@ -194,7 +194,7 @@ fn check_written(kind: &str, path: &Path, document: &Document) -> Result<(), Pro
 /// Checks a URDF file.
 fn check_urdf(path: &Path) -> Result<(), Problem> {
     let text = fs_err::read_to_string(path).map_err(|e| Problem::Unreadable(e.to_string()))?;
-    UrdfTree::read(&path.display().to_string(), &text).map(drop).map_err(Problem::Faulty)
+    read_urdf(&path.display().to_string(), &text).map(drop).map_err(Problem::Faulty)
 }
 
 /// Checks a stiffness file against the `arm.json` in the same folder. If there is none, a joint slides if the file

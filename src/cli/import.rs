@@ -60,7 +60,7 @@ pub(super) fn run(args: &ImportArgs, catalogs: &Catalogs) -> Result<String, Fail
         Some(path) => read_given(Document::read(path)?, &robot.joints(), catalogs)?,
         None => Vec::new(),
     };
-    let (arm, report) = robot.arm(&given);
+    let (arm, report) = robot.arm(&given)?;
     let mut files = vec![
         ("arm.json".to_string(), pretty(&arm.to_json())),
         ("import.json".to_string(), pretty(&report.to_json())),

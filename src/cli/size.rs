@@ -17,7 +17,6 @@ use crate::space::design_space::SpacePiece;
 use crate::space::problem::{ArmProblem, Partial};
 use crate::study::chosen::{Sizing, chosen_design, sizing_in, why_not_held};
 use crate::study::definition::Study;
-use crate::study::load::refuse_empty;
 use clap::Args;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -52,7 +51,6 @@ pub(crate) struct SizeArgs {
 /// Runs `armwright size` and returns the text to print.
 pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs, log: Log) -> Result<String, Failure> {
     let (study, _) = study_of(&args.study, catalogs)?;
-    refuse_empty(&study, catalogs)?;
     let (space, chosen) = chosen_design(&study, args.design.as_deref(), catalogs)?;
     let problem = ArmProblem::new(&space, catalogs);
     let paragraphs = |remarks: &[String]| -> String {

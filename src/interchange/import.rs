@@ -13,11 +13,13 @@
 use super::free_name::FreeNames;
 use super::given::{GivenJoint, GivenSprings, MovingJoint};
 use super::report::{Held, ImportReport};
-use super::urdf_file::{UrdfTree, isometry, moves, slides, tensor};
+use super::urdf_faults::impossible_and_still;
+use super::urdf_file::read_urdf;
+use super::urdf_tree::{UrdfTree, isometry, moves, slides, tensor};
 use crate::arm::body::RigidBody;
 use crate::arm::extras::Extras;
 use crate::arm::joint_law::Curve;
-use crate::arm::{Arm, Element, GRAVITY_M_S2, Joint, JointBodies, Link, LinkBody, Prismatic};
+use crate::arm::{Arm, Element, GRAVITY_M_S2, Joint, JointBodies, Link, LinkBody, MOST_ELEMENTS, Prismatic};
 use crate::input::json::{Fault, Faults};
 use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
 use std::collections::{BTreeMap, BTreeSet};
@@ -28,17 +30,60 @@ pub(crate) struct Robot<'a> {
     file: &'a str,
     tree: UrdfTree,
     tip: &'a str,
+    /// How each joint moves, in the order of the file.
+    motions: Vec<Moves>,
 }
 
-/// How a joint on the path to the tip moves.
-enum Moves<'t> {
+/// How a joint moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Moves {
     /// The joint does not move. It is held at this angle \[rad\] or travel \[m\].
     Not(f64),
     /// The joint is driven, with an angle or travel of its own.
     Driven,
-    /// The joint follows another joint: its angle is a factor times the angle of a driven joint, plus a constant
-    /// \[rad\]. The fields are the name of the driven joint, the factor and the constant.
-    With(&'t str, f64, f64),
+    /// The joint follows a joint on the path to the tip: its angle is a factor times the angle of this driven joint, plus
+    /// a constant \[rad\]. The fields are the index of the driven joint, the factor and the constant.
+    With(usize, f64, f64),
+}
+
+/// How each joint of a robot moves, in the order of the file. If a joint mimics one that itself mimics another one, it
+/// follows the joint at the end of this sequence. `tip` is the link where the arm ends.
+fn motions(tree: &UrdfTree, tip: &str) -> Vec<Moves> {
+    let on_way: BTreeSet<&str> = tree.path_to(tip).iter().map(|joint| joint.name.as_str()).collect();
+    let followed = |joint: usize| tree.joint_index(&tree.joints[joint].mimic.as_ref()?.joint);
+    let mut found: Vec<Option<Moves>> = vec![None; tree.joints.len()];
+    for start in 0..found.len() {
+        // from this joint to the first one whose motion is known, and back; no joints of a file mimic each other in a circle
+        let mut way = Vec::new();
+        let mut at = Some(start);
+        while let Some(joint) = at.filter(|joint| found[*joint].is_none() && way.len() < found.len()) {
+            way.push(joint);
+            at = followed(joint);
+        }
+        for index in way.into_iter().rev() {
+            let joint = &tree.joints[index];
+            let ahead = followed(index).and_then(|other| Some((other, found[other]?)));
+            found[index] = Some(match (&joint.mimic, ahead) {
+                _ if !moves(joint) => Moves::Not(0.0),
+                (Some(mimic), Some((other, ahead))) => {
+                    let (factor, offset) = (mimic.multiplier.unwrap_or(1.0), mimic.offset.unwrap_or(0.0));
+                    match ahead {
+                        Moves::Not(at) => Moves::Not(offset + factor * at),
+                        Moves::With(driver, further, at) => {
+                            Moves::With(driver, factor * further, offset + factor * at)
+                        }
+                        Moves::Driven if on_way.contains(tree.joints[other].name.as_str()) => {
+                            Moves::With(other, factor, offset)
+                        }
+                        // the joint that it follows is not on the path and is held, so this joint is held too
+                        Moves::Driven => Moves::Not(offset),
+                    }
+                }
+                _ => Moves::Driven,
+            });
+        }
+    }
+    found.into_iter().map(|motion| motion.unwrap_or(Moves::Driven)).collect()
 }
 
 impl<'a> Robot<'a> {
@@ -48,7 +93,9 @@ impl<'a> Robot<'a> {
     /// All faults of the file; or that the tip is no link of the robot, or that a joint on the path is of a kind that
     /// no arm has.
     pub(crate) fn read(file: &'a str, text: &str, tip: &'a str) -> Result<Self, Faults> {
-        let robot = Self { file, tree: UrdfTree::read(file, text)?, tip };
+        let tree = read_urdf(file, text)?;
+        let motions = motions(&tree, tip);
+        let robot = Self { file, tree, tip, motions };
         if robot.tree.link(tip).is_none() {
             let names: Vec<&str> = robot.tree.links.iter().map(|link| link.name.as_str()).collect();
             let hint = format!(
@@ -102,62 +149,45 @@ impl<'a> Robot<'a> {
     /// The joints of the arm, base to tip, including passive ones.
     pub(crate) fn joints(&self) -> Vec<MovingJoint<'_>> {
         let path = self.tree.path_to(self.tip).into_iter();
-        let moving = path.filter(|joint| !matches!(self.motion_of(&joint.name), Moves::Not(_)));
+        let moving = path.filter(|joint| !matches!(self.motion_of(joint), Moves::Not(_)));
         moving.map(|joint| MovingJoint { name: &joint.name, slides: slides(joint) }).collect()
     }
 
     /// Whether the angle of a joint follows another joint (`<mimic>`).
     fn follows(&self, joint: &urdf_rs::Joint) -> bool {
-        matches!(self.motion_of(&joint.name), Moves::With(..))
+        matches!(self.motion_of(joint), Moves::With(..))
     }
 
     /// Whether the angle of a joint follows the travel of a joint that slides.
     fn follows_a_slide(&self, joint: &urdf_rs::Joint) -> bool {
-        let Moves::With(driver, ..) = self.motion_of(&joint.name) else { return false };
-        self.tree.joints.iter().any(|other| other.name == driver && slides(other))
+        matches!(self.motion_of(joint), Moves::With(driver, ..) if slides(&self.tree.joints[driver]))
     }
 
-    /// How the joint `name` moves. If it mimics a joint that itself mimics another one, it follows the joint at the end
-    /// of this sequence.
-    fn motion_of(&self, name: &str) -> Moves<'_> {
-        let (mut factor, mut offset_rad) = (1.0, 0.0);
-        let on_way: BTreeSet<&str> = self.tree.path_to(self.tip).iter().map(|j| j.name.as_str()).collect();
-        let mut at = name;
-        for _ in 0..=self.tree.joints.len() {
-            let Some(joint) = self.tree.joints.iter().find(|j| j.name == at) else { break };
-            if !moves(joint) {
-                return Moves::Not(offset_rad);
-            }
-            let Some(mimic) = &joint.mimic else {
-                return match (joint.name == name, on_way.contains(joint.name.as_str())) {
-                    (true, _) => Moves::Driven,
-                    (false, true) => Moves::With(&joint.name, factor, offset_rad),
-                    // the joint that it follows is not on the path and is held, so this joint is held too
-                    (false, false) => Moves::Not(offset_rad),
-                };
-            };
-            offset_rad += factor * mimic.offset.unwrap_or(0.0);
-            factor *= mimic.multiplier.unwrap_or(1.0);
-            at = &mimic.joint;
-        }
-        Moves::Not(offset_rad)
+    /// How a joint moves.
+    fn motion_of(&self, joint: &urdf_rs::Joint) -> Moves {
+        self.tree.joint_index(&joint.name).map_or(Moves::Driven, |index| self.motions[index])
     }
 
     /// Where the joints that follow another joint are held if they are on side branches, by name. Other joints of side
     /// branches are held at zero.
     fn held_beside_way(&self) -> BTreeMap<&str, Held> {
         let mimicking = self.tree.joints.iter().filter(|joint| moves(joint) && joint.mimic.is_some());
-        let held = |joint: &'_ urdf_rs::Joint| match self.motion_of(&joint.name) {
+        let held = |joint: &'_ urdf_rs::Joint| match self.motion_of(joint) {
             Moves::Not(at) => Held { at, follows: None },
             Moves::Driven => Held::default(),
-            Moves::With(driver, factor, at) => Held { at, follows: Some((driver.to_string(), factor)) },
+            Moves::With(driver, factor, at) => {
+                Held { at, follows: Some((self.tree.joints[driver].name.clone(), factor)) }
+            }
         };
         mimicking.map(|joint| (joint.name.as_str(), held(joint))).collect()
     }
 
     /// Converts the robot to an arm whose joints have the elastic properties `given`. Returns the arm, and the report
     /// of the import.
-    pub(crate) fn arm(&self, given: &[GivenJoint]) -> (Arm, ImportReport) {
+    ///
+    /// # Errors
+    /// The arm has more joints and links than an arm file may have.
+    pub(crate) fn arm(&self, given: &[GivenJoint]) -> Result<(Arm, ImportReport), Faults> {
         let mut walk = Walk {
             tree: &self.tree,
             on_way: self.tree.path_to(self.tip).iter().map(|joint| joint.child.link.as_str()).collect(),
@@ -174,9 +204,16 @@ impl<'a> Robot<'a> {
         walk.begin(root);
         for joint in self.tree.path_to(self.tip) {
             walk.at *= isometry(&joint.origin);
-            walk.pass(joint, self.motion_of(&joint.name), given);
+            walk.pass(joint, self.motion_of(joint), given);
         }
         walk.end_link();
+        if walk.chain.len() > MOST_ELEMENTS {
+            let elements = walk.chain.len();
+            let problem =
+                format!("the arm has {elements} joints and links, and the limit is {MOST_ELEMENTS}");
+            let hint = "choose a link nearer to the root, or make joints on the way to it fixed";
+            return Err(Faults(vec![self.fault("--tip", problem, hint.into())]));
+        }
         let mut report = walk.report;
         report.finish(&self.tree, &walk.at, self.tip);
         let arm = Arm {
@@ -187,11 +224,11 @@ impl<'a> Robot<'a> {
             effects: Vec::new(),
             springs: Vec::new(),
         };
-        let still = self.tree.impossible_and_still();
+        let still = impossible_and_still(&self.tree);
         report.impossible = arm.impossible_bodies().into_iter().chain(still).map(String::from).collect();
         report.impossible.dedup();
         report.mass_kg = arm.mass_kg();
-        (arm, report)
+        Ok((arm, report))
     }
 }
 
@@ -219,11 +256,11 @@ struct Walk<'t> {
 impl<'t> Walk<'t> {
     /// Begins a link of the arm at the URDF link `link`. The bodies of this link and of the side branches that hang on
     /// it are added to it.
-    fn begin(&mut self, link: &str) {
+    fn begin(&mut self, link: &'t str) {
         self.start_m = self.at.translation.vector;
         // in a URDF a link and a joint may have the same name; in an arm no two elements may
         self.name = self.names.take(link, "_link");
-        self.lump(link, self.at, None);
+        self.lump(link, self.at);
     }
 
     /// Goes past a joint on the path to the tip, to the URDF link that is its child. `motion` says how the joint moves.
@@ -235,10 +272,12 @@ impl<'t> Walk<'t> {
             Moves::Not(held_at) => {
                 self.at *= moved(joint, held_at);
                 self.report.joined(joint, &self.name, held_at);
-                return self.lump(child, self.at, None);
+                return self.lump(child, self.at);
             }
             Moves::Driven => (None, 0.0),
-            Moves::With(driver, factor, offset_rad) => (Some(vec![(driver.to_string(), factor)]), offset_rad),
+            Moves::With(driver, factor, offset_rad) => {
+                (Some(vec![(self.tree.joints[driver].name.clone(), factor)]), offset_rad)
+            }
         };
         self.end_link();
         let springs = given.iter().find(|given| given.name == joint.name).map(|given| &given.springs);
@@ -269,25 +308,25 @@ impl<'t> Walk<'t> {
     }
 
     /// Adds bodies to the link of the arm that is being built: the body of the URDF link `link`, whose frame is `at`,
-    /// and the bodies of all side branches that hang on it. If `link` is itself in a side branch, `by` is the joint by
-    /// which it hangs.
-    fn lump(&mut self, link: &str, at: Isometry3<f64>, by: Option<&urdf_rs::Joint>) {
+    /// and the bodies of all side branches that hang on it.
+    fn lump(&mut self, link: &'t str, at: Isometry3<f64>) {
         let tree = self.tree;
-        let Some(found) = tree.link(link) else { return };
-        let body = body_at(found, &at, &self.start_m);
-        if let Some(joint) = by {
-            let held = self.held.get(joint.name.as_str()).cloned().unwrap_or_default();
-            self.report.lumped(found, &self.name, joint, &held);
-        }
-        self.bodies.extend(body);
-        for joint in tree.child_joints(link) {
-            if !self.on_way.contains(joint.child.link.as_str()) {
-                let held_at = self.held.get(joint.name.as_str()).map_or(0.0, |held| held.at);
-                self.lump(
-                    &joint.child.link,
-                    at * isometry(&joint.origin) * moved(joint, held_at),
-                    Some(joint),
-                );
+        // links of side branches, each with its frame and the joint by which it hangs; a branch may be very long
+        let mut open: Vec<(&'t str, Isometry3<f64>, Option<&'t urdf_rs::Joint>)> = vec![(link, at, None)];
+        while let Some((link, at, by)) = open.pop() {
+            let Some(found) = tree.link(link) else { continue };
+            if let Some(joint) = by {
+                let held = self.held.get(joint.name.as_str()).cloned().unwrap_or_default();
+                self.report.lumped(found, &self.name, joint, &held);
+            }
+            self.bodies.extend(body_at(found, &at, &self.start_m));
+            // the last one that is pushed is the first one that is taken
+            for joint in tree.child_joints(link).rev() {
+                let child = joint.child.link.as_str();
+                if !self.on_way.contains(child) {
+                    let held_at = self.held.get(joint.name.as_str()).map_or(0.0, |held| held.at);
+                    open.push((child, at * isometry(&joint.origin) * moved(joint, held_at), Some(joint)));
+                }
             }
         }
     }

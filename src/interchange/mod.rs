@@ -2,7 +2,8 @@
 //! simulation and purchase.
 //!
 //! - Import: `import` makes an arm of the path from the root of a URDF file to a tip. `urdf_file` reads the file with
-//!   the crate `urdf-rs`, and `urdf_place` finds the lines of faults, which the crate does not report. `given` reads
+//!   the crate `urdf-rs` as a tree of links (`urdf_tree`). `urdf_place` finds the lines of faults, which the crate does
+//!   not report, and `urdf_faults` what it does not check; `circles` finds loops. `given` reads
 //!   the stiffness file, which states the stiffness of the joints. `keys` has the keys of the stiffness file and of
 //!   `import.json`. `report` says what became of every link and joint of the URDF.
 //! - Export: `request` has the input of an export, and `export` writes an arm in a load case. `snapshot` has the
@@ -15,6 +16,7 @@ pub(crate) mod bill;
 mod bill_motors;
 mod bill_rows;
 pub(crate) mod calculix;
+mod circles;
 mod csv_text;
 pub(crate) mod design_table;
 pub(crate) mod export;
@@ -31,10 +33,12 @@ pub(crate) mod snapshot;
 mod table_notes;
 mod time_step;
 pub(crate) mod tree;
+mod urdf_faults;
 pub(crate) mod urdf_file;
 pub(crate) mod urdf_out;
 mod urdf_place;
 mod urdf_shapes;
+mod urdf_tree;
 pub(crate) mod xml;
 
 pub use export::Format;
@@ -78,6 +82,6 @@ pub fn import_urdf(
         Some(document) => given::read_given(document, &robot.joints(), catalogs)?,
         None => Vec::new(),
     };
-    let (arm, report) = robot.arm(&given);
+    let (arm, report) = robot.arm(&given)?;
     Ok((arm, report.to_json()))
 }

@@ -2,7 +2,7 @@
 //! which joints are rigid because no stiffness is known.
 
 use super::given::GivenSprings;
-use super::urdf_file::{UrdfTree, moves, slides};
+use super::urdf_tree::{UrdfTree, moves, slides};
 use crate::input::magnitude::beyond_calculation;
 use nalgebra::Isometry3;
 use serde_json::{Value, json};
@@ -30,6 +30,8 @@ pub(crate) struct ImportReport {
     /// Names of the joints that are rigid because the stiffness file does not name them.
     pub left_rigid: Vec<String>,
     ignored: Vec<String>,
+    /// Limits that no joint can have, with what was made of them.
+    odd_limits: Vec<String>,
     tip_frame: Value,
     /// Names of elements with an inertia that no solid can have.
     pub impossible: Vec<String>,
@@ -49,6 +51,7 @@ impl ImportReport {
             guessed: Vec::new(),
             left_rigid: Vec::new(),
             ignored: Vec::new(),
+            odd_limits: Vec::new(),
             tip_frame: Value::Null,
             impossible: Vec::new(),
             mass_kg: 0.0,
@@ -87,6 +90,7 @@ impl ImportReport {
                 joint.name
             ));
         }
+        self.odd_limits.extend(odd_limits(joint));
         let positive = |x: f64| finite(x).filter(|x| *x > 0.0);
         let (effort, velocity) = (positive(joint.limit.effort), positive(joint.limit.velocity));
         if slides(joint) {
@@ -194,7 +198,7 @@ impl ImportReport {
             "joints": self.joints,
             "joined": self.joined,
             "lumped": self.lumped,
-            "guessed": self.guessed,
+            "guessed": self.guessed.iter().chain(&self.odd_limits).collect::<Vec<_>>(),
             "left_rigid": self.left_rigid,
             "ignored": self.ignored,
             "impossible_inertias": self.impossible,
@@ -223,11 +227,33 @@ impl ImportReport {
             out +=
                 &format!("  left rigid, because nothing gives a stiffness: {}\n", self.left_rigid.join(", "));
         }
+        for words in &self.odd_limits {
+            out += &format!("  {words}\n");
+        }
         if !self.impossible.is_empty() {
             out += &format!("  no solid has the inertia of: {}\n", self.impossible.join(", "));
         }
         out
     }
+}
+
+/// Limits of a joint on the path to the tip that no joint can have, in words.
+fn odd_limits(joint: &Joint) -> Vec<String> {
+    let limit = &joint.limit;
+    let largest = [("effort", limit.effort), ("velocity", limit.velocity)];
+    let negative = largest.into_iter().filter(|(_, value)| *value < 0.0 || value.is_nan());
+    let mut out: Vec<String> = negative
+        .map(|(key, value)| {
+            format!("{}: <limit {key}=\"{value}\"> is no largest value, taken as unknown", joint.name)
+        })
+        .collect();
+    if joint.joint_type != JointType::Continuous && limit.lower > limit.upper {
+        out.push(format!(
+            "{}: <limit lower=\"{}\" upper=\"{}\"> has its lower end above its upper end: no pose is within this range",
+            joint.name, limit.lower, limit.upper
+        ));
+    }
+    out
 }
 
 /// The number; `None` if it is infinite, or so large that no file may state it.

@@ -224,7 +224,9 @@ impl Builder<'_> {
         if !is_compliant || is_passive {
             return;
         }
-        for (i, (twist, working)) in element.twists.iter().zip(workings).enumerate() {
+        // a spring may be rigid about one axis only, such as that of a base whose feet lift off about the other
+        let springs = element.twists.iter().zip(workings).enumerate();
+        for (i, (twist, working)) in springs.filter(|(_, (_, working))| !working.is_rigid()) {
             let name = match is_joint {
                 true if slides => format!("{}.drive", element.name),
                 true => format!("{}.gear", element.name),

@@ -27,6 +27,7 @@ pub const STEEL: LinkMaterial = LinkMaterial {
     shear_modulus_pa: 2.1e11 / 2.6,
     density_kg_m3: 7850.0,
     poisson: 0.3,
+    strength: None,
     class: None,
 };
 

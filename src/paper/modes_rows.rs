@@ -195,6 +195,7 @@ fn thin_tubes() -> Vec<PaperRow> {
         shear_modulus_pa: 7.0e10 / 2.66,
         density_kg_m3: 2700.0,
         poisson: 0.33,
+        strength: None,
         class: None,
     };
     let thin = Section::RectangularTube { width_m: 0.07, height_m: 0.07, wall_m: 0.002 };

@@ -320,7 +320,7 @@ impl Analysis<'_> {
             |fit: &Fit, effects: &[usize]| self.with_laws.fit(effects, &fit.point.u, Effort::default());
         let chosen = &self.selection.best.effects;
         let (baseline, named) = (again(&self.baseline, &[]), again(&self.best, chosen));
-        corrected_model::choose(self.with_laws, first_law, self.noise, baseline, named, chosen)
+        corrected_model::choose(self.with_laws, first_law, self.noise, &baseline, &named, chosen)
     }
 
     fn competitors(&self, effect: usize) -> Vec<(String, String)> {

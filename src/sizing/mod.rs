@@ -47,6 +47,7 @@ pub(crate) mod heat;
 pub(crate) mod limits;
 pub(crate) mod missing;
 mod motor_curve;
+pub(crate) mod motor_stop;
 pub(crate) mod rail;
 pub(crate) mod requirement;
 pub(crate) mod select;

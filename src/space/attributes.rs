@@ -21,7 +21,8 @@ pub(crate) struct OptionAttributes {
     pub slender: bool,
 }
 
-/// Factors with which the forces and moments at an end of a link give its von Mises stress. Forces and moments are in
+/// Factors with which the forces and moments at an end of a link give its equivalent stress (von Mises; in a material
+/// with a shear strength of its own, Tsai and Hill). Forces and moments are in
 /// the section frame of the link.
 pub(crate) struct StressCheck {
     /// Normal stress per axial force \[1/m²\].
@@ -30,11 +31,11 @@ pub(crate) struct StressCheck {
     pub per_moment_y: f64,
     /// Largest normal stress per bending moment about the section's z axis \[1/m³\].
     pub per_moment_z: f64,
-    /// Largest shear stress per torsional moment \[1/m³\].
+    /// Largest shear stress per torsional moment \[1/m³\], times [`Strength::shear_factor`].
     pub per_torsion: f64,
     /// Whether the section is round. The stresses of the two bending moments then add as vectors.
     pub round: bool,
-    /// Strength with which the stress is compared \[Pa\].
+    /// Strength along the link, with which the stress is compared \[Pa\].
     pub strength_pa: f64,
 }
 
@@ -42,17 +43,18 @@ impl StressCheck {
     pub(crate) fn new(option: &LinkOption) -> Option<Self> {
         let p = option.section.properties(option.material.poisson);
         let (width, height) = option.section.outer_m();
+        let strength = option.material.strength?;
         Some(Self {
             per_axial_n: 1.0 / p.area_m2,
             per_moment_y: height / 2.0 / p.second_moment_y_m4,
             per_moment_z: width / 2.0 / p.second_moment_z_m4,
-            per_torsion: p.torsion_shear_per_m3,
+            per_torsion: p.torsion_shear_per_m3 * strength.shear_factor(),
             round: option.section.is_round(),
-            strength_pa: option.lower_strength_pa()?,
+            strength_pa: strength.along_pa,
         })
     }
 
-    /// Ratio of the von Mises stress (bending, axial force and torsion) to the strength, at the point `at_m` \[m\] of
+    /// Ratio of the equivalent stress (bending, axial force and torsion) to the strength, at the point `at_m` \[m\] of
     /// the link's axis. `wrench` is the force and moment that the section at this point transmits, with the moment
     /// taken about the world's origin. `place` is the position and attitude of the link.
     pub(crate) fn ratio(&self, wrench: &Vector6<f64>, at_m: &Vector3<f64>, place: &Place) -> f64 {
@@ -88,7 +90,7 @@ pub(crate) fn attributes_of(space: &DesignSpace, option: &LinkOption, length_m: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arm::section::{LinkMaterial, Section};
+    use crate::arm::section::{LinkMaterial, Section, Strength};
 
     /// `τ = T r / J` on the outside of a round tube with a thick wall; Bredt's formula gives a sixth less here.
     #[test]
@@ -98,10 +100,11 @@ mod tests {
             shear_modulus_pa: 8.1e10,
             density_kg_m3: 7850.0,
             poisson: 0.3,
+            strength: Some(Strength { along_pa: 355e6, shear_pa: None }),
             class: None,
         };
         let section = Section::RoundTube { diameter_m: 0.06, wall_m: 0.012 };
-        let option = LinkOption { strength_pa: Some(355e6), ..LinkOption::given(material, section) };
+        let option = LinkOption::given(material, section);
         let check = StressCheck::new(&option).unwrap();
         let polar_m4 = std::f64::consts::PI / 32.0 * (0.06f64.powi(4) - 0.036f64.powi(4));
         let shear_pa = 0.03 / polar_m4;

@@ -48,7 +48,8 @@ pub fn number(level_sizes: &[u32], options: &[u32]) -> u128 {
 pub fn options(level_sizes: &[u32], mut number: u128) -> Option<Vec<u32>> {
     let mut out = vec![0; level_sizes.len()];
     for (slot, &size) in out.iter_mut().zip(level_sizes).rev() {
-        *slot = (number % u128::from(size)) as u32;
+        // a level without options has no designs
+        *slot = number.checked_rem(u128::from(size))? as u32;
         number /= u128::from(size);
     }
     (number == 0).then_some(out)

@@ -49,6 +49,7 @@ use std::sync::Arc;
 ///     shear_modulus_pa: 8.1e10,
 ///     density_kg_m3: 7850.0,
 ///     poisson: 0.3,
+///     strength: Some(Strength { along_pa: 355e6, shear_pa: None }),
 ///     class: None,
 /// };
 /// let tube = |wall_m: f64| LinkOption {
@@ -57,8 +58,6 @@ use std::sync::Arc;
 ///     material: steel,
 ///     section: Section::RectangularTube { width_m: 0.12, height_m: 0.12, wall_m },
 ///     profile: None,
-///     strength_pa: Some(355e6),
-///     compressive_strength_pa: None,
 ///     cost_eur_per_kg: None,
 /// };
 /// let drive = DriveChoice::Given { curve: Curve::Linear(405e3), mass_kg: 8.2, gear: None, motor: None };
@@ -336,11 +335,6 @@ pub struct LinkOption {
     pub section: Section,
     /// Designation of the catalog profile; `None` if the section is not from a catalog.
     pub profile: Option<String>,
-    /// Strength of the material \[Pa\]. If the strength in compression differs, this is the strength in tension.
-    /// `None` if unknown.
-    pub strength_pa: Option<f64>,
-    /// Strength of the material in compression \[Pa\]; `None` if it equals the strength in tension.
-    pub compressive_strength_pa: Option<f64>,
     /// Cost of the material \[EUR/kg\]; `None` if unknown.
     pub cost_eur_per_kg: Option<f64>,
 }
@@ -430,17 +424,8 @@ impl LinkOption {
             material,
             section,
             profile: None,
-            strength_pa: None,
-            compressive_strength_pa: None,
             cost_eur_per_kg: None,
         }
-    }
-
-    /// The strength with which a stress is compared \[Pa\]; `None` if unknown. Bending puts one side of a link in
-    /// tension and the other in compression, so the lower of both strengths counts.
-    pub fn lower_strength_pa(&self) -> Option<f64> {
-        let tensile_pa = self.strength_pa?;
-        Some(self.compressive_strength_pa.map_or(tensile_pa, |pa| pa.min(tensile_pa)))
     }
 
     /// Mass of the link per length \[kg/m\].

@@ -25,6 +25,7 @@ pub(crate) mod group;
 pub(crate) mod guide;
 pub(crate) mod joints;
 pub(crate) mod levels;
+pub(crate) mod link_stress;
 pub(crate) mod overload;
 pub(crate) mod piece_masses;
 pub(crate) mod posed;

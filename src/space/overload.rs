@@ -55,6 +55,11 @@ impl ArmProblem<'_> {
                 if let Some(fails) = self.given_overload(cases, &partial, slot, catalogs) {
                     return Some((piece, Fails::Check(fails)));
                 }
+                let of_tube = self.given_tube_stress(cases, &partial, slot);
+                let least = self.space().constraints.stress_safety_factor_min;
+                if least.zip(of_tube).is_some_and(|(least, ratio)| ratio * least > 1.0) {
+                    return Some((piece, Fails::Stress));
+                }
                 if !self.add(slot, option, &mut partial) {
                     return Some((piece, Fails::Stress));
                 }

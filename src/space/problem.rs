@@ -436,17 +436,8 @@ impl<'c> ArmProblem<'c> {
             let Some(stress) = &link.stress else { continue };
             // In a sizing case the arm accelerates. In the other cases it is at rest.
             let factor = if self.space.sizing_cases.contains(&case) { self.peak_factor } else { 1.0 };
-            // Between the ends, only the weight of the link, its bodies and the springs change force and moment. The
-            // stress is therefore checked at both ends and at the points where springs pull.
-            let at_root = state.wrench + carried.weight;
-            for (wrench, at_m) in [(&outboard, &place.end_m), (&at_root, &place.root_m)] {
-                to.stress_ratio = to.stress_ratio.max(stress.ratio(wrench, at_m, place) * factor);
-            }
-            for (at_m, loads) in carried.at_pulls(place, &outboard, &options[option as usize].weight) {
-                for wrench in &loads {
-                    to.stress_ratio = to.stress_ratio.max(stress.ratio(wrench, &at_m, place) * factor);
-                }
-            }
+            let largest = stress.largest(place, carried, &outboard, &options[option as usize].weight);
+            to.stress_ratio = to.stress_ratio.max(largest * factor);
         }
         self.space.constraints.stress_safety_factor_min.is_none_or(|least| to.stress_ratio * least <= 1.0)
     }

@@ -253,6 +253,8 @@ pub(crate) fn link_slot<'c>(space: &DesignSpace, link: &Link) -> Slot<'c> {
             let option = LinkOption::given(*material, *section);
             let mut attributes = attributes_of(space, &option, link.vector_m.norm());
             attributes.material = None;
+            // The search checks the stress of the links that it chooses. Results say the stress of a given tube.
+            attributes.stress = None;
             Slot::Link { options: vec![attributes], open: false }
         }
     }

@@ -14,6 +14,7 @@ use super::chosen::{chosen_design, why_not_held};
 use super::definition::Study;
 use super::guide_remarks::guide_limits_remark;
 use super::largest_speed::{LargestSpeed, largest_speed, with_these_drives};
+use super::motor_remarks::stop_remark_on;
 use super::overload::{Overload, overload};
 use super::reaction_remarks::reaction_remark_on;
 use super::refusal::Refusal;
@@ -107,7 +108,7 @@ pub(crate) fn reach_m(tip_m: &Vector3<f64>, down: &Vector3<f64>) -> f64 {
 /// links of median mass and the lightest drives.
 ///
 /// # Errors
-/// The study has no such design, or a drive of the design does not meet even the study's own payload.
+/// The study has nothing to choose from or no such design, or a drive of the design does not meet even the study's own payload.
 pub fn capacity_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Result<Capacity, Refusal> {
     let (space, chosen) = chosen_design(study, id, catalogs)?;
     let problem = ArmProblem::new(&space, catalogs);
@@ -118,13 +119,7 @@ pub fn capacity_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Resu
     found.remarks.extend(unjudged_remark(&problem, catalogs));
     found.remarks.extend(unchecked_bearings(&problem, catalogs));
     found.remarks.extend(guide_limits_remark(&problem));
-    found.remarks.extend(reactions_remark(
-        &problem,
-        arm.slot_options(),
-        &study.own_payloads,
-        &found,
-        catalogs,
-    ));
+    found.remarks.extend(moving_remarks(&problem, arm.slot_options(), &study.own_payloads, &found, catalogs));
     let built = problem.arm_of(&arm);
     found.remarks.extend(built.and_then(|built| limits_remark(&space, &built, &study.own_payloads)));
     Ok(found)
@@ -156,19 +151,19 @@ fn capacity(space: &DesignSpace, catalogs: &Catalogs, options: &[u32], own: &[us
     Capacity::new(window(&space.sizing_cases, &loaded), table, remarks)
 }
 
-/// A sentence on what the drives must hold while other joints move, with the largest payload of `found` in the cases in
-/// which the payload is varied. `options` are those of the design, one for each slot. `None` if there is nothing to say,
-/// or if no payload is the largest.
-fn reactions_remark(
+/// Sentences on what the drives must hold while other joints move, and on the motors that cannot make the emergency stop
+/// of their joint, with the largest payload of `found` in the cases in which the payload is varied. `options` are those
+/// of the design, one for each slot. Empty if there is nothing to say, or if no payload is the largest.
+fn moving_remarks(
     problem: &ArmProblem,
     options: &[u32],
     own: &[usize],
     found: &Capacity,
     catalogs: &Catalogs,
-) -> Option<String> {
+) -> Vec<String> {
     let most_kg = found.window.most.payload_kg;
     if !found.window.holds() || !most_kg.is_finite() {
-        return None;
+        return Vec::new();
     }
     // with the drives that the design has, and not with those that first fit would take for the largest payload
     let (mut space, options) = with_these_drives(problem, options);
@@ -177,7 +172,9 @@ fn reactions_remark(
     }
     let loaded = ArmProblem::new(&space, catalogs);
     let chosen: Vec<u32> = loaded.level_slots().iter().map(|&slot| options[slot]).collect();
-    reaction_remark_on(&loaded, catalogs, &chosen, "in the sizing cases with the largest payload")
+    let whose = "in the sizing cases with the largest payload";
+    let of_reactions = reaction_remark_on(&loaded, catalogs, &chosen, whose);
+    of_reactions.into_iter().chain(stop_remark_on(&loaded, catalogs, &chosen, whose)).collect()
 }
 
 /// The sizing cases in which the payload is varied: all but those with the indices `own`, which state a payload of their

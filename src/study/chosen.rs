@@ -3,9 +3,11 @@
 
 use super::definition::Study;
 use super::gear_remarks::life_remarks;
+use super::given_tube_remarks::given_tube_remarks_on;
 use super::guide_remarks::guide_remarks_on;
 use super::joint_obstacle::{first_fit_at, obstacle_at};
-use super::load::{refuse_choices, refuse_empty};
+use super::load::refuse_empty;
+use super::motor_remarks::{heat_remark_on, stop_remark_on};
 use super::reaction_remarks::reaction_remark_on;
 use super::refusal::Refusal;
 use super::stated_bearing_remarks::stated_bearing_remarks_on;
@@ -51,7 +53,6 @@ pub fn arm_of_design(study: &Study, id: &str, catalogs: &Catalogs) -> Result<(Ar
 /// # Errors
 /// The study has nothing to choose from, or no design with this id, or no drive meets the demand at some joint.
 pub fn sizing_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Result<Sizing, Refusal> {
-    refuse_empty(study, catalogs)?;
     let (space, chosen) = chosen_design(study, id, catalogs)?;
     sizing_in(study, &ArmProblem::new(&space, catalogs), &chosen, catalogs)
 }
@@ -62,7 +63,8 @@ pub struct Sizing {
     /// The joints with a drive from the catalogs, tip first.
     pub rows: Vec<JointSizingRow>,
     /// Remarks in sentences: on the question, on the lives of the gears, on bearings and guides that the study states,
-    /// and on what joints hold while others move.
+    /// on what joints hold while others move, and on motors that cannot make the emergency stop of their joint or
+    /// would overheat at the representative efficiency of their gears.
     pub remarks: Vec<String>,
 }
 
@@ -82,8 +84,12 @@ pub(crate) fn sizing_in(
     let of_reactions = reaction_remark_on(problem, catalogs, chosen, "in the sizing cases");
     let of_bearings = stated_bearing_remarks_on(problem, catalogs, chosen);
     let of_guides = guide_remarks_on(problem, chosen);
+    let of_tubes = given_tube_remarks_on(problem, chosen);
     let of_study = study.remarks.iter().cloned();
-    let remarks = of_study.chain(of_lives).chain(of_bearings).chain(of_guides).chain(of_reactions).collect();
+    let of_stops = stop_remark_on(problem, catalogs, chosen, "in the sizing cases");
+    let of_motion = of_reactions.into_iter().chain(of_stops).chain(heat_remark_on(&rows));
+    let of_structure = of_guides.into_iter().chain(of_tubes);
+    let remarks = of_study.chain(of_lives).chain(of_bearings).chain(of_structure).chain(of_motion).collect();
     Ok(Sizing { rows, remarks })
 }
 
@@ -94,13 +100,13 @@ const MOST_OPTIONS: u32 = 4096;
 /// `design_id` given as `id`, or without an id a design with links of median mass.
 ///
 /// # Errors
-/// The study has no design with this id, or leaves values of springs or counterweights open.
+/// The study has nothing to choose from, no design with this id, or leaves values of springs or counterweights open.
 pub(crate) fn chosen_design(
     study: &Study,
     id: Option<&str>,
     catalogs: &Catalogs,
 ) -> Result<(DesignSpace, Vec<u32>), Refusal> {
-    refuse_choices(study)?;
+    refuse_empty(study, catalogs)?;
     let Some(id) = id else {
         let space = study.space.middle(MOST_OPTIONS);
         let chosen = middle(&ArmProblem::new(&space, catalogs));

@@ -8,8 +8,9 @@ use crate::arm::file::read_gear_mass;
 use crate::arm::transmission::Stage;
 use crate::catalog::Catalogs;
 use crate::catalog::gear::{Gear, GearKind, GearMass};
+use crate::catalog::lookup::hint_for_unknown;
 use crate::catalog::motor::{Motor, MotorKind};
-use crate::input::json::{Node, Object, closest};
+use crate::input::json::{Node, Object};
 use crate::sizing::select::DriveFilter;
 
 /// The catalog parts from which drives are chosen.
@@ -50,14 +51,16 @@ pub(super) fn read_drives(node: &Node, catalogs: &Catalogs) -> Option<Drives> {
     let usual_gears = if named { None } else { Some(vec![GearKind::StrainWave]) };
     let usual_motors = if object.has("motor_models") { None } else { Some(usual_motor_kinds()) };
     let actuators = object.or("actuators", Some(Vec::new()), |n| read_actuators(n, catalogs));
-    let (gear_series, gear_ids) =
-        (names(&object, "gear_series", &known_series), names(&object, "gears", &known_gears));
+    let (gear_series, gear_ids) = (
+        names(&object, "gear_series", &known_series, "gears"),
+        names(&object, "gears", &known_gears, "gears"),
+    );
     let (ratios, gear_kinds) = (
         object.or("ratios", None, |n| read_ratios(n, &known_ratios).map(Some)),
         object.or("gear_kinds", usual_gears, |n| read_gear_kinds(n, catalogs).map(Some)),
     );
     let motor_kinds = object.or("motors", usual_motors, |n| read_motor_kinds(n).map(Some));
-    let motor_ids = names(&object, "motor_models", &known_motors);
+    let motor_ids = names(&object, "motor_models", &known_motors, "motors");
     let only_actuators = object.has("actuators") && !GEAR_KEYS.iter().any(|key| object.has(key));
     Some(Drives {
         filter: DriveFilter {
@@ -84,27 +87,26 @@ fn read_actuators(node: &Node, catalogs: &Catalogs) -> Option<Option<Vec<String>
         return Some(None);
     }
     let actuators = catalogs.gears.iter().filter(|g| g.kind == GearKind::Actuator);
-    list(node, &actuators.map(|g| g.id.as_str()).collect::<Vec<_>>()).map(Some)
+    list(node, &actuators.map(|g| g.id.as_str()).collect::<Vec<_>>(), "actuators").map(Some)
 }
 
 /// Reads a list of names, all of which must be among `known`. The inner `None` means that the object has no such key,
-/// which is no restriction; the outer `None` means that a fault was recorded.
-fn names(object: &Object, key: &str, known: &[&str]) -> Option<Option<Vec<String>>> {
-    object.or(key, None, |node| list(node, known).map(Some))
+/// which is no restriction; the outer `None` means that a fault was recorded. `parts` is as in [`list`].
+fn names(object: &Object, key: &str, known: &[&str], parts: &str) -> Option<Option<Vec<String>>> {
+    object.or(key, None, |node| list(node, known, parts).map(Some))
 }
 
-fn list(node: &Node, known: &[&str]) -> Option<Vec<String>> {
+/// Reads a list of names, all of which must be among `known`. `parts` is the list of `armwright catalog show` that has them.
+/// Returns `None` after recording a fault.
+fn list(node: &Node, known: &[&str], parts: &str) -> Option<Vec<String>> {
     let read: Vec<Option<String>> = node
         .array()?
         .iter()
         .map(|n| match n.string()? {
             name if known.contains(&name) => Some(name.to_string()),
-            name => n.fault(
-                format!("\"{name}\" is not in the catalog"),
-                &closest(name, known).map_or("`armwright catalog show` lists what is".into(), |c| {
-                    format!("did you mean \"{c}\"?")
-                }),
-            ),
+            name => {
+                n.fault(format!("\"{name}\" is not in the catalog"), &hint_for_unknown(name, known, parts))
+            }
         })
         .collect();
     read.into_iter().collect()

@@ -5,7 +5,9 @@ use super::definition::Study;
 use super::gear_remarks::{life_remarks_on, play_remarks};
 use super::given_parts::given_parts;
 use super::given_remarks::GivenDrives;
+use super::given_tube_remarks::given_tube_remarks;
 use super::guide_remarks::guide_remarks;
+use super::motor_remarks::{heat_remark, stop_remark};
 use super::outcome::Front;
 use super::reaction_remarks::reaction_remark;
 use super::stated_bearing_remarks::stated_bearing_remarks;
@@ -19,7 +21,7 @@ use crate::space::problem::ArmProblem;
 use serde_json::{Value, json};
 
 /// The table of the front of a study, and remarks in sentences: on the question, and on the output bearings, gears,
-/// given drives and guides in the answer. The remarks are those that `run.json` has under `remarks`.
+/// motors, given drives and guides in the answer. The remarks are those that `run.json` has under `remarks`.
 pub fn table_and_remarks(
     study: &Study,
     problem: &ArmProblem,
@@ -35,9 +37,13 @@ pub fn table_and_remarks(
     let of_play = play_remarks(&study.space, catalogs, &table);
     let of_given = given.remarks(front.len());
     let of_guides = guide_remarks(problem, &table);
+    let of_tubes = given_tube_remarks(problem, &table);
     let of_reactions = reaction_remark(problem, catalogs, &table);
-    let of_drives = of_lives.into_iter().chain(of_play).chain(of_given).chain(of_reactions);
-    let of_parts = of_bearings.into_iter().chain(of_stated).chain(of_drives).chain(of_guides);
+    let of_stops = stop_remark(problem, catalogs, &table);
+    let of_motors = of_stops.into_iter().chain(heat_remark(problem, catalogs, &table));
+    let of_drives = of_lives.into_iter().chain(of_play).chain(of_given).chain(of_reactions).chain(of_motors);
+    let of_structure = of_guides.into_iter().chain(of_tubes);
+    let of_parts = of_bearings.into_iter().chain(of_stated).chain(of_drives).chain(of_structure);
     let remarks = of_study.chain(of_parts).collect();
     (table, remarks)
 }

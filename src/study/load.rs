@@ -50,7 +50,7 @@ pub fn load_study(name: &str, catalogs: &Catalogs) -> Result<(Study, String), Re
 }
 
 /// Refuses a study that leaves values of springs or counterweights open, because its space has the first choice alone.
-pub(super) fn refuse_choices(study: &Study) -> Result<(), Refusal> {
+fn refuse_choices(study: &Study) -> Result<(), Refusal> {
     match study.balance_choices {
         1 => Ok(()),
         choices => Err(Refusal::Unknown(format!(

@@ -13,12 +13,11 @@ use crate::catalog::gear::{Gear, GearKind};
 use crate::catalog::lookup::first_names;
 use crate::space::design_space::{DesignSpace, DriveChoice, SpaceJoint, SpacePiece};
 
-/// Sentences on the physics and the checks that the results of a study do not include; empty if no joint has a gear
-/// and no rail is sized.
+/// Sentences on the physics and the checks that the results of a study do not include.
 pub(super) fn omissions(space: &DesignSpace) -> Vec<String> {
     let with_gear: Vec<&SpaceJoint> = joints(space).filter(|joint| has_gear(joint)).collect();
     if with_gear.is_empty() && !has_sized_rail(space) {
-        return Vec::new();
+        return vec![left_out_without_gears(space)];
     }
     let named = |wanted: fn(&SpaceJoint) -> bool| {
         let names: Vec<&str> =
@@ -110,17 +109,53 @@ pub(super) fn unchecked_remark(space: &DesignSpace, catalogs: &Catalogs) -> Opti
     })
 }
 
-/// Physics that no number of this study includes, such as temperature, as a sentence.
+/// Physics and checks that no number of a study includes in which no joint has a gear and no rail is sized, as a sentence.
+/// Stiffness and mass of its joints are stated.
+fn left_out_without_gears(space: &DesignSpace) -> String {
+    let has_joints = joints(space).next().is_some();
+    let of_joints = |words: &str| has_joints.then(|| words.to_string());
+    let connected = except(&places_of(space, CONNECTION.name));
+    let list = [
+        has_joints.then(|| {
+            format!(
+                "what the stated stiffness of a joint does not contain, such as its connections{connected} and (where no \
+                 bearing is stated) its tilt"
+            )
+        }),
+        of_joints("the strength and the heat of the drives"),
+        (!has_harness(space)).then(|| "the cables along the links".into()),
+        Some("end plates and castings at the ends of tubes".into()),
+        of_joints("the friction of the joints"),
+        has_stages(space).then(|| "the pull and the strength of belts and stages".into()),
+        guide_words(space).map(String::from),
+        places_of(space, BASE.name).is_empty().then(|| "the floor".into()),
+        Some("whether the parts fit into each other".into()),
+    ];
+    let words = list.into_iter().flatten().collect::<Vec<_>>().join(", ");
+    format!(
+        "Left out of every number: {words}, and temperature. How much some of these may be: docs/left-out.md."
+    )
+}
+
+/// Words that exclude the places at which the study states an effect; empty if it states it nowhere.
+fn except(places: &[&str]) -> String {
+    match places {
+        [] => String::new(),
+        places => format!(" (except at {}, where the study states it)", places.join(", ")),
+    }
+}
+
+/// Whether some joint has a stage before or behind its gear.
+fn has_stages(space: &DesignSpace) -> bool {
+    joints(space).any(|joint| joint.stages != Stages::default())
+}
+
+/// Physics that no number of a study with gears or a sized rail includes, such as temperature, as a sentence.
 fn left_out_everywhere(space: &DesignSpace) -> String {
     let fits = joints_that_ask(space).next().is_some();
     let rigid = connection_share(space) == 0.0;
-    let has_stages = joints(space).any(|joint| joint.stages != Stages::default());
     let connected = places_of(space, CONNECTION.name);
     let tilts = places_of(space, BASE.name);
-    let except = |places: &[&str]| match places {
-        [] => String::new(),
-        places => format!(" (except at {}, where the study states it)", places.join(", ")),
-    };
     let words_of = |words: &str| Some(words.to_string());
     let list = [
         rigid.then(|| {
@@ -129,7 +164,7 @@ fn left_out_everywhere(space: &DesignSpace) -> String {
         (!has_harness(space)).then(|| "the cables along the links".into()),
         words_of("end plates and castings between gears and tubes"),
         words_of("the scatter and the friction of gears"),
-        has_stages.then(|| "the pull and the strength of belts and stages".into()),
+        has_stages(space).then(|| "the pull and the strength of belts and stages".into()),
         has_sized_rail(space).then(|| "the friction of guides".into()),
         guide_words(space).map(String::from),
         tilts.is_empty().then(|| "the floor".into()),

@@ -107,8 +107,6 @@ fn asked_link(choice: &LinkChoice) -> AskedLink {
     let tube = |option: &LinkOption| AskedTube {
         material: option.material,
         section: option.section,
-        strength_pa: option.strength_pa,
-        compressive_strength_pa: option.compressive_strength_pa,
         cost_eur_per_kg: option.cost_eur_per_kg,
     };
     AskedLink {

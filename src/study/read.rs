@@ -4,6 +4,7 @@
 //! millimetres. Everything else is in SI units. The resolved [`DesignSpace`] is entirely in SI units.
 
 use super::balance::{balance_remarks, read_balance, read_number_of_choices};
+use super::blank_remarks::blank_remarks;
 use super::bodies::impossible_bodies_remark;
 use super::cases::{Cases, read_cases};
 use super::choose_keys::CHOOSE;
@@ -179,6 +180,7 @@ fn remarks_on(space: &DesignSpace, harness_kg_per_m: f64, catalogs: &Catalogs) -
     out.extend(rail_remarks(space));
     out.extend(fit_remarks(space, catalogs));
     out.extend(omissions(space));
+    out.extend(blank_remarks(space, catalogs));
     out.extend(actuators_remark(space, catalogs));
     out.extend(roller_life_remark(space, catalogs));
     out.extend(unchecked_remark(space, catalogs));

@@ -3,13 +3,14 @@
 use super::choose_keys::{
     GRID, PROFILE_FILTER, PROFILES, RECTANGULAR_BARS, RECTANGULAR_TUBES, ROUND_BARS, ROUND_TUBES,
 };
-use crate::arm::link_file::{material_of, shear_modulus_hint};
+use crate::arm::link_file::{lacks_shear_strength, material_of, shear_modulus_hint};
 use crate::arm::section::Section;
 use crate::arm::{Link, LinkBody};
 use crate::catalog::Catalogs;
+use crate::catalog::lookup::hint_for_unknown;
 use crate::catalog::material::Material;
 use crate::catalog::profile::{Profile, ProfileShape};
-use crate::input::json::{Node, Object, closest};
+use crate::input::json::{Node, Object};
 use crate::space::constraint::Constraints;
 use crate::space::design_space::{DesignSpace, LinkOption, SpacePiece};
 use std::collections::{BTreeSet, HashSet};
@@ -62,10 +63,9 @@ pub(super) fn read_materials<'c>(node: &Node, catalogs: &'c Catalogs) -> Option<
         .map(|n| {
             let name = n.string()?;
             let Some(material) = catalogs.materials.iter().find(|m| m.name == name) else {
-                let near = closest(name, &names).map_or(String::new(), |c| format!("did you mean \"{c}\"? "));
                 return n.fault(
                     format!("material \"{name}\" is not in the catalog"),
-                    &format!("{near}`armwright catalog show materials` lists them"),
+                    &hint_for_unknown(name, &names, "materials"),
                 );
             };
             match material.shear_modulus_pa {
@@ -346,8 +346,6 @@ pub(super) fn options(
                 material: elastic,
                 section: *section,
                 profile: profile.as_ref().map(|p| p.designation.clone()),
-                strength_pa: material.strength_pa,
-                compressive_strength_pa: material.compressive_strength_pa,
                 cost_eur_per_kg: material.cost_eur_per_kg,
             });
         }
@@ -356,8 +354,13 @@ pub(super) fn options(
 }
 
 fn missing_rating(material: &Material, constraints: &Constraints) -> Option<&'static str> {
-    if constraints.stress_safety_factor_min.is_some() && material.strength_pa.is_none() {
-        return Some("strength");
+    if constraints.stress_safety_factor_min.is_some() {
+        if material.strength_pa.is_none() {
+            return Some("strength");
+        }
+        if lacks_shear_strength(material) {
+            return Some("shear strength (shear_strength_pa)");
+        }
     }
     if constraints.material_cost_max_eur.is_some() && material.cost_eur_per_kg.is_none() {
         return Some("cost");

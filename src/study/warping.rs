@@ -103,6 +103,7 @@ mod tests {
         shear_modulus_pa: 8.1e10,
         density_kg_m3: 7850.0,
         poisson: 0.3,
+        strength: None,
         class: None,
     };
     const IPE_200: Section = Section::IBeam { width_m: 0.1, height_m: 0.2, web_m: 0.0056, flange_m: 0.0085 };

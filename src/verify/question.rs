@@ -203,10 +203,6 @@ pub struct AskedTube {
     pub material: LinkMaterial,
     /// Cross-section of the tube.
     pub section: Section,
-    /// Tensile strength of the material \[Pa\]. The stress is not checked if it is unknown.
-    pub strength_pa: Option<f64>,
-    /// Compressive strength \[Pa\]; `None` if it equals the tensile strength.
-    pub compressive_strength_pa: Option<f64>,
     /// Cost of the material \[EUR/kg\]; `None` if it is not known.
     pub cost_eur_per_kg: Option<f64>,
 }

@@ -172,12 +172,13 @@ fn keys(tube: &TubeNumbers) -> Vec<f64> {
     vec![1.5 * libm::log(tube.mass_kg), bending_y, bending_z, 0.3 * torsion]
 }
 
-/// Stress per axial force, moment about y, moment about z and torque, each divided by the strength. In bending,
-/// tension and compression are equal, so the lower of the two strengths decides. In a round tube bending and
-/// torsion stress both have their maximum on the outside.
+/// Stress per axial force, moment about y, moment about z and torque, each divided by the strength. The torsion stress
+/// is divided by √3 times the strength in shear, because the bound adds three times its square; in an isotropic
+/// material this is the strength itself. In a round tube bending and torsion stress both have their maximum on the
+/// outside.
 fn stresses(tube: &AskedTube) -> [f64; STRESSES] {
-    let Some(tensile_pa) = tube.strength_pa else { return [0.0; STRESSES] };
-    let strength_pa = tensile_pa.min(tube.compressive_strength_pa.unwrap_or(f64::INFINITY));
+    let Some(strength) = tube.material.strength else { return [0.0; STRESSES] };
+    let shear_pa = strength.shear_pa.map_or(strength.along_pa, |pa| 3f64.sqrt() * pa);
     let section = tube.section.properties(tube.material.poisson);
     let (width_m, height_m) = tube.section.outer_m();
     let per_load = [
@@ -186,7 +187,9 @@ fn stresses(tube: &AskedTube) -> [f64; STRESSES] {
         width_m / (2.0 * section.second_moment_z_m4),
         section.torsion_shear_per_m3,
     ];
-    per_load.map(|per| per / strength_pa)
+    let [axial, about_y, about_z, torsion] = per_load;
+    let [axial, about_y, about_z] = [axial, about_y, about_z].map(|per| per / strength.along_pa);
+    [axial, about_y, about_z, torsion / shear_pa]
 }
 
 /// Stiffnesses of a tube, in the order of [`STIFFNESSES`]; infinite where the link model has no such strain.
@@ -243,7 +246,7 @@ impl TubeNumbers {
         let kg_per_m = tube.material.density_kg_m3 * tube.section.properties(tube.material.poisson).area_m2;
         let piece = question.link_piece(choice.with_tube(tube));
         let numbers = Self::new(question, carrier, &piece, kg_per_m * choice.vector_m.norm(), waters);
-        let is_round = tube.strength_pa.is_some() && tube.section.is_round();
+        let is_round = tube.material.strength.is_some() && tube.section.is_round();
         Self { stresses: stresses(tube), round: f64::from(u8::from(is_round)), ..numbers }
     }
 

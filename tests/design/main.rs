@@ -20,6 +20,7 @@ mod exact_ties;
 mod fits;
 mod frozen_designs;
 mod given_drives;
+mod link_strength;
 mod loads_and_linkages;
 mod lowest_mode;
 mod mechanics_reference;

@@ -115,6 +115,11 @@ def fixed_arms():
         joint("j3", [0, 1, 0], 2e5, 5.0), box("fore", [0.6, 0, 0], "steel", 0.1, 0.1, 0.005),
         joint("level", [0, 1, 0], 5e4, 1.5, coupled={"j2": -1, "j3": -1}), offset("hand", [0.15, 0, -0.05], 0.5),
         joint("j4", [0, 0, 1], 2e4, 1.0), offset("tool", [0, 0, -0.1])]), [case("level", [25, -40, 65, 15], 6.0, (0.02, 0.01, -0.05))]))
+    out.append(("driver outboard", arm("driver outboard", [
+        joint("j1", [0, 0, 1], 4e5, 8.0), box("column", [0, 0, 0.5], "steel", 0.16, 0.16, 0.008),
+        joint("lead", [0, 1, 0], None, 2.0, coupled={"j3": 0.5}), box("upper", [0.5, 0, 0], "steel", 0.1, 0.1, 0.005),
+        joint("j2", [0, 1, 0], 1.5e5, 5.0), box("fore", [0.5, 0, 0], "aluminium", 0.1, 0.1, 0.005),
+        joint("j3", [0, 1, 0], 6e4, 2.0), offset("hand", [0.1, 0, -0.05], 0.5)]), [case("low", [20, 15, 30], 5.0, (0.02, 0.01, -0.05))]))
     ibeam = {"shape": "i_beam", "width_m": 0.08, "height_m": 0.14, "web_m": 0.008, "flange_m": 0.01}
     bar = {"shape": "rectangular_bar", "width_m": 0.06, "height_m": 0.09}
     rod = {"shape": "round_bar", "diameter_m": 0.08}

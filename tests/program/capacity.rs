@@ -293,3 +293,47 @@ fn poses_beyond_the_ranges_of_an_imported_robot_are_named() {
     let bent = said(&["--cases", "poses.json"]);
     assert!(!bent.contains("cannot take"), "{bent}");
 }
+
+#[test]
+fn a_link_without_sections_is_refused_as_size_and_run_refuse_it() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut study = studies().swap_remove(1);
+    study["chain"][1] = json!({"type": "link", "name": "upper", "vector_m": [0.5, 0, 0], "choose": {
+        "materials": ["Structural steel S355"],
+        "sections": [{"shape": "round_tube", "diameter_mm": [60, 90], "wall_mm": []}]}});
+    std::fs::write(dir.path().join("s.json"), study.to_string()).expect("written");
+    let said: Vec<String> =
+        [&["size", "s.json"][..], &["capacity", "s.json"], &["capacity", "s.json", "--design", "x0"]]
+            .iter()
+            .map(|words| {
+                let output = armwright(words, dir.path());
+                assert_eq!(output.status.code(), Some(5), "{words:?}: {output:?}");
+                String::from_utf8_lossy(&output.stderr).into_owned()
+            })
+            .collect();
+    assert!(said[0].contains("has nothing to choose from") && said[0].contains("link upper"), "{}", said[0]);
+    assert!(said.iter().all(|other| *other == said[0]), "{said:#?}");
+}
+
+#[test]
+fn a_file_that_is_no_json_is_refused_with_its_line_whatever_the_flags() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let text = "{\"name\": \"a\",\n \"chain\": [{\"type\": \"joint\", \"name\": \"j\", \"axis\": [0, 1, 0],";
+    std::fs::write(dir.path().join("arm.json"), text).expect("written");
+    for file in ["c.json", "l.json"] {
+        std::fs::write(dir.path().join(file), "[]").expect("written");
+    }
+    for flags in
+        [&[][..], &["--cases", "c.json", "--limits", "l.json"], &["--limits", "l.json"], &["--design", "x1"]]
+    {
+        let output = armwright(&[&["capacity", "arm.json"], flags].concat(), dir.path());
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(3), "{flags:?}: {said}");
+        assert!(said.contains("arm.json:2: column 57: not valid JSON"), "{flags:?}: {said}");
+    }
+    // a study that can be read still says that these flags are not for it
+    std::fs::write(dir.path().join("s.json"), studies()[0].to_string()).expect("written");
+    let output = armwright(&["capacity", "s.json", "--cases", "c.json"], dir.path());
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.code() == Some(2) && said.contains("are for arm files"), "{said}");
+}

@@ -29,6 +29,8 @@ mod kept;
 mod left_out;
 mod links;
 mod mutations;
+mod odd_exports;
+mod odd_robots;
 mod operations;
 mod other_poses;
 mod output_schemas;

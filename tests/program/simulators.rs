@@ -60,6 +60,6 @@ fn calculix_finds_the_deflections_and_frequencies_of_exported_arms() {
     // all arms take a minute or more: ARMWRIGHT_CALCULIX=all
     match std::env::var("ARMWRIGHT_CALCULIX").as_deref() {
         Ok("all") => compared("python3", "calculix.py", &[]),
-        _ => compared("python3", "calculix.py", &["linkage", "bodies"]),
+        _ => compared("python3", "calculix.py", &["linkage", "bodies", "driver outboard"]),
     }
 }

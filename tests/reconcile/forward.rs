@@ -51,8 +51,8 @@ fn law(at: &str, parameters: &[(&str, &[f64])]) -> Effect {
 }
 
 /// A joint that softens while it is tested, a base that turns once, one that tilts more about one axis, a payload that slips,
-/// joints that twist under the torques of their neighbours, an instrument that moves.
-fn laws() -> [Effect; 8] {
+/// joints that twist under the torques of their neighbours, an instrument that moves, loads that act otherwise than stated.
+fn laws() -> [Effect; 10] {
     let softening: [(&str, &[f64]); 5] = [
         ("static_softening", &[0.3]),
         ("static_softening_rows", &[7.0]),
@@ -74,6 +74,18 @@ fn laws() -> [Effect; 8] {
     };
     let shift: [(&str, &[f64]); 3] =
         [("shift_mm", &[0.1, -0.2, 0.3]), ("base_turn_from_row", &[4.0]), ("base_turn_file", &[0.0])];
+    let loads: [(&str, &[f64]); 5] = [
+        ("force_part", &[0.1]),
+        ("payload_pull", &[0.02, -0.03]),
+        ("sway_mm_per_n", &[1e-3, 2e-3, -3e-3]),
+        ("grip_n", &[2.0, -3.0, 4.0]),
+        ("remaining_part", &[0.1]),
+    ];
+    let moving: [(&str, &[f64]); 3] = [
+        ("base_turn_rad", &[1e-4, -2e-4, 3e-4]),
+        ("shift_mm", &[0.1, 0.0, -0.1]),
+        ("base_turn_rows", &[5.0]),
+    ];
     [
         law("j2", &softening),
         law("static", &turn),
@@ -83,6 +95,8 @@ fn laws() -> [Effect; 8] {
         twist("j1"),
         twist("j3"),
         law("static", &shift),
+        law("static", &loads),
+        law("static", &moving),
     ]
 }
 

@@ -231,17 +231,23 @@ fn with_law(folder: &Path, law: &Value) -> Campaign {
 }
 
 #[test]
-fn what_moved_once_and_what_twists_with_its_neighbour_are_laws_of_the_corrected_arm() {
+fn what_moved_once_what_twists_with_its_neighbour_and_how_loads_act_are_laws_of_the_corrected_arm() {
     let slip = json!({"slip_m": [0.05, -0.03, 0.04], "static_slip_from_row": 41, "modal_slip_from_row": 1});
     let shift = json!({"shift_mm": [0.03, -0.02, 0.04], "base_turn_from_row": 33});
     let twist = json!({"neighbour_twist_rad_per_nm": [0.0, 1.2e-5]});
     let play = json!({"load_play_rad": 4e-4, "load_play_nm": 1.0});
+    let force = json!({"force_part": 0.1});
+    let pull = json!({"payload_pull": [0.04, -0.03]});
+    let sway = json!({"sway_mm_per_n": [2e-3, -1e-3, 3e-3]});
     // with the number of each law that is compared, and its true value
     for (at, parameters, words, (which, right)) in [
         ("payload", slip, "a payload whose centre of gravity moved before row 41 of the static", (0, 0.05)),
         ("static", shift, "an instrument that moved before row 33 of the static readings", (0, 0.03)),
         ("j2", twist, "a twist of j2 under the torques of its neighbours", (1, 1.2e-5)),
         ("j3", play, "a play of j3 that opens from the unloaded arm to both sides", (0, 4e-4)),
+        ("static", force, "tip forces that are a factor of what is stated", (0, 0.1)),
+        ("static", pull, "payloads that do not pull straight down", (0, 0.04)),
+        ("static", sway, "static readings that follow the load wherever the tip is", (0, 2e-3)),
     ] {
         let plan = Plan { static_poses: 16, modal_poses: 6, bench: false, ..Plan::plain() };
         let folder = campaigns_of(&json!({"effect": "creep", "at": "static", "amount": 0.0}), &plan);

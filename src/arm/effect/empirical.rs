@@ -5,8 +5,10 @@
 //!   neighbours; play that opens from the unloaded arm; an angle whose zero is off.
 //! - At the base it is a tilt that differs about x and y.
 //! - At the payload it is a centre of gravity that moved once between two rows.
-//! - At a channel it is one of five laws: a nonlinearity; a gain for each direction; a rotation of the base or a motion of
-//!   the instrument between two rows; axes that each show a part of the other directions.
+//! - At a channel it is one of eleven laws: a nonlinearity; a gain for each direction; a rotation of the base or a motion of
+//!   the instrument between two rows; axes that each show a part of the other directions; forces that are larger than stated;
+//!   payloads that do not pull straight down; displacements that follow the load wherever the tip is; a force of the gripper
+//!   wherever there is a payload; displacements that remain; a base or an instrument that moves more and more.
 
 use super::channel::Channel;
 use super::kind::{Kind, Parameter, Place, Scale, Scope, Traits};
@@ -61,6 +63,18 @@ pub(crate) const NEIGHBOUR_TWIST: &str = "neighbour_twist_rad_per_nm";
 pub(crate) const LOAD_PLAY: &str = "load_play_rad";
 /// Name of the parameter with the torque of the load at which 76 % of [`LOAD_PLAY`] is reached.
 pub(crate) const LOAD_PLAY_TORQUE: &str = "load_play_nm";
+/// Name of the parameter with the part of a stated force on the tip by which the force is larger.
+pub(crate) const FORCE_PART: &str = "force_part";
+/// Name of the parameter with the horizontal pull of a payload along world x and y, as a part of its weight.
+pub(crate) const PAYLOAD_PULL: &str = "payload_pull";
+/// Name of the parameter with the displacement in each direction per force of the load in this direction.
+pub(crate) const SWAY: &str = "sway_mm_per_n";
+/// Name of the parameter with the force on the tip in every load case with a payload, in the last frame.
+pub(crate) const GRIP: &str = "grip_n";
+/// Name of the parameter with the part of the displacement of the load before, in the same pose, that remains.
+pub(crate) const REMAINING: &str = "remaining_part";
+/// Name of the parameter with the number of rows in which 63 % of a turn of the base or a motion of the instrument came.
+pub(crate) const BASE_TURN_ROWS: &str = "base_turn_rows";
 /// Name of the parameter with the displacement by which the instrument moved once between two rows.
 pub(crate) const SHIFT: &str = "shift_mm";
 /// Name of the parameter with the mark of the file in which the base turned or the instrument moved.
@@ -114,6 +128,12 @@ const OF_STATIC: &[Parameter] = &[
     optional(MIX, 6, -2.0, 2.0, 0.0),
     optional(SHIFT, 3, -1e4, 1e4, 0.0),
     optional(BASE_TURN_FILE, 1, 0.0, 1e9, 0.0),
+    optional(FORCE_PART, 1, -0.9, 10.0, 0.0),
+    optional(PAYLOAD_PULL, 2, -1.0, 1.0, 0.0),
+    optional(SWAY, 3, -1e4, 1e4, 0.0),
+    optional(GRIP, 3, -1e6, 1e6, 0.0),
+    optional(REMAINING, 1, -1.0, 1.0, 0.0),
+    optional(BASE_TURN_ROWS, 1, 0.0, 1e6, 0.0),
 ];
 
 /// A parameter of `count` numbers that a file may leave out. Each number is then `default`, with which the effect
@@ -209,13 +229,22 @@ fn apply_to_channel(numbers: &[f64], at: &str, subject: &mut Subject) {
         (reading.bend, reading.bend_scale) = ([a, b], bend_scale);
     }
     reading.gain.iter_mut().zip([x, y, z]).for_each(|(own, gain)| *own *= gain);
-    let [x, y, z, from_row, xy, xz, yx, yz, zx, zy, dx, dy, dz, file] = of_static[..] else { return };
+    let [x, y, z, from_row, xy, xz, yx, yz, zx, zy, dx, dy, dz, file, ref loads @ ..] = of_static[..] else {
+        return;
+    };
     reading.mix += Matrix3::new(0.0, xy, xz, yx, 0.0, yz, zx, zy, 0.0);
     let (turn_rad, shift_m) = (Vector3::new(x, y, z), Vector3::new(dx, dy, dz) / 1e3);
     let happened = (turn_rad, shift_m) != (Vector3::zeros(), Vector3::zeros());
     let event = Event::of_file(from_row.max(1.0), file).filter(|_| happened);
-    let turned = event.map(|event| Turned { turn_rad, shift_m, event });
-    subject.setup_mut(at).into_iter().for_each(|setup| setup.turned.extend(turned));
+    let [force_part, along_x, along_y, sx, sy, sz, gx, gy, gz, remaining, rows] = loads[..] else { return };
+    let Some(setup) = subject.setup_mut(at) else { return };
+    setup.turned.extend(event.map(|event| Turned { turn_rad, shift_m, event, rows }));
+    let loading = &mut setup.loading;
+    loading.force_part += force_part;
+    loading.payload_pull = [loading.payload_pull[0] + along_x, loading.payload_pull[1] + along_y];
+    loading.sway_m_per_n += Vector3::new(sx, sy, sz) / 1e3;
+    loading.grip_n += Vector3::new(gx, gy, gz);
+    loading.remaining += remaining;
 }
 
 /// Makes the compliance of the joint `at` change in the course of the static and of the modal tests. The five
@@ -235,10 +264,14 @@ fn soften(numbers: &[f64], at: &str, subject: &mut Subject) {
     }
 }
 
-/// The sum of the further angle of torsion `before`, if there is one, and `twist`. The result has the reference torque
-/// of `twist`.
+/// The sum of the further angle of torsion `before`, if there is one, and `twist`. The result has the larger of both
+/// reference torques, beyond which it is continued as a straight line.
 fn added(before: Option<FurtherTwist>, twist: FurtherTwist) -> FurtherTwist {
-    let Some(before) = before else { return twist };
+    let Some(mut before) = before else { return twist };
+    let mut twist = twist;
+    if before.torque_nm > twist.torque_nm {
+        std::mem::swap(&mut before, &mut twist);
+    }
     let ratio = twist.torque_nm / before.torque_nm;
     let sum = |own: [f64; 2], other: [f64; 2], powers: [i32; 2]| {
         [own[0] + other[0] * ratio.powi(powers[0]), own[1] + other[1] * ratio.powi(powers[1])]
@@ -271,7 +304,7 @@ mod tests {
         apply(&of_joint([1e-4, -2e-5, 3e-5, 1e-5, 20.0], [0.0; 2]), "j1", &mut subject);
         apply(&of_joint([0.0, 4e-5, 0.0, 2e-5, 50.0], [0.0; 2]), "j1", &mut subject);
         let law = subject.structure.joint_mut("j1").expect("j1").law;
-        for torque_nm in [-70.0, -10.0, 5.0, 60.0] {
+        for torque_nm in [-20.0, -10.0, 5.0, 15.0] {
             let sum = first.angle_rad(torque_nm) + second.angle_rad(torque_nm);
             assert!((law.angle_rad(torque_nm) - torque_nm / 1e5 - sum).abs() < 1e-15, "{torque_nm}");
         }
@@ -314,7 +347,7 @@ mod tests {
     fn an_axis_shows_a_part_of_the_others() {
         let mut subject = super::super::validate::testing::two_link_subject();
         let plain = [0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0];
-        let mixing = [&plain[..], &[0.01, 0.02, 0.03, 0.04, 0.05, 0.06], &[0.0; 4]].concat();
+        let mixing = [&plain[..], &[0.01, 0.02, 0.03, 0.04, 0.05, 0.06], &[0.0; 15]].concat();
         apply(&mixing, "static", &mut subject);
         let reading = &subject.channels[Channel::Static as usize];
         let seen = reading.along_own_axes(&Vector3::new(1.0, 10.0, 100.0));

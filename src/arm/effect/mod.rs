@@ -54,7 +54,7 @@ pub use catalogue::{KINDS, kind};
 pub use channel::{Channel, Reading};
 pub use entry::Effect;
 pub use kind::{Kind, Parameter, Place, Scale, Scope};
-pub use setup::{Event, LoadTwist, Setup, Slipped, Turned};
+pub use setup::{Event, LoadTwist, Loading, Setup, Slipped, Turned};
 pub use subject::Subject;
 pub use validate::{EffectFault, fits_nominal};
 pub use warming::{Moment, Softening, Warming};

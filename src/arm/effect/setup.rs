@@ -4,7 +4,7 @@
 
 use super::warming::Softening;
 use crate::arm::structure::{FrameCompliance, LinkPiece, Piece, Structure};
-use nalgebra::Vector3;
+use nalgebra::{Rotation3, Vector3};
 
 /// Something that happened once, between two rows of a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,22 +29,27 @@ impl Event {
     }
 }
 
-/// A base that turned, or an instrument that moved, once between two rows of a file.
+/// A base that turned, or an instrument that moved: once between two rows of a file, or more and more in the course of the
+/// tests.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turned {
     /// Rotation vector of the base about the origin of the chain \[rad\].
     pub turn_rad: Vector3<f64>,
     /// Displacement of every point as the instrument sees it \[m\].
     pub shift_m: Vector3<f64>,
-    /// When it happened.
+    /// When it happened, or began.
     pub event: Event,
+    /// Number of rows in which 63 % of it came; 0 if all of it came at once.
+    pub rows: f64,
 }
 
 impl Turned {
     /// Displacement \[m\] of the point `at_m` that the instrument sees. `row` is the row of the file, counted from 0; in
     /// the rows before the event the displacement is zero.
     pub fn moved_m(&self, at_m: &Vector3<f64>, row: usize) -> Vector3<f64> {
-        if row < self.event.from_row { Vector3::zeros() } else { self.turn_rad.cross(at_m) + self.shift_m }
+        let Some(since) = row.checked_sub(self.event.from_row) else { return Vector3::zeros() };
+        let part = if self.rows > 0.0 { -libm::expm1(-(since as f64) / self.rows) } else { 1.0 };
+        part * (self.turn_rad.cross(at_m) + self.shift_m)
     }
 }
 
@@ -80,6 +85,36 @@ impl LoadTwist {
     }
 }
 
+/// How loads act otherwise than stated, and what they move wherever the tip is.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Loading {
+    /// Part of a stated force on the tip by which the force is larger.
+    pub force_part: f64,
+    /// Horizontal pull of a payload at the tip along world x and y, as a part of its weight.
+    pub payload_pull: [f64; 2],
+    /// Displacement along each direction per force of the load along it \[m/N\].
+    pub sway_m_per_n: Vector3<f64>,
+    /// Force on the tip in every load case with a payload, in the last frame \[N\].
+    pub grip_n: Vector3<f64>,
+    /// Part of the displacement of the load before, in the same pose, that remains.
+    pub remaining: f64,
+}
+
+impl Loading {
+    /// The force on the tip under a load that states the force `stated_n` and has a payload of the weight `weight_n`, without
+    /// this weight itself \[N\]. `rotation` is that of the last frame.
+    pub fn force_n(&self, stated_n: &Vector3<f64>, weight_n: f64, rotation: &Rotation3<f64>) -> Vector3<f64> {
+        let [x, y] = self.payload_pull;
+        let grip_n = if weight_n > 0.0 { rotation * self.grip_n } else { Vector3::zeros() };
+        stated_n * (1.0 + self.force_part) + Vector3::new(x, y, 0.0) * weight_n + grip_n
+    }
+
+    /// What the force `load_n` of a load, weight included, moves wherever the tip is \[m\].
+    pub fn sway_m(&self, load_n: &Vector3<f64>) -> Vector3<f64> {
+        self.sway_m_per_n.component_mul(load_n)
+    }
+}
+
 /// The differences between the arm in the tests of one channel and the arm by itself.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Setup {
@@ -98,6 +133,8 @@ pub struct Setup {
     pub slipped: Vec<Slipped>,
     /// Joints that twist further under a load, by name.
     pub load_twists: Vec<(String, LoadTwist)>,
+    /// How loads act otherwise than stated.
+    pub loading: Loading,
 }
 
 impl Setup {

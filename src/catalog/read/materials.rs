@@ -15,6 +15,7 @@ pub(crate) fn material(row: &Row) -> Option<Material> {
         poisson: row.number("poisson"),
         strength_pa: row.number("yield_or_strength_pa"),
         compressive_strength_pa: row.number("compressive_strength_pa"),
+        shear_strength_pa: row.number("shear_strength_pa"),
         strength_kind: row.text("strength_kind").to_string(),
         cost_eur_per_kg: row.number("cost_eur_per_kg"),
         corrosion_note: row.text("corrosion_note").to_string(),
@@ -51,6 +52,7 @@ fn check(row: &Row) {
         ("density_kg_m3", [100.0, 25_000.0], densities, "write kg/m3 (1 g/cm3 = 1000 kg/m3)"),
         ("yield_or_strength_pa", [1e5, 2e10], [1e7, 6e9], "write Pa (1 MPa = 1e6 Pa)"),
         ("compressive_strength_pa", [1e5, 2e10], [1e7, 6e9], "write Pa (1 MPa = 1e6 Pa)"),
+        ("shear_strength_pa", [1e5, 1e10], [3e6, 2e9], "write Pa (1 MPa = 1e6 Pa)"),
         ("cte_1_per_k", [-1e-4, 1e-3], expansions, "write 1/K (1 um/(m K) = 1e-6)"),
     ];
     let mut moduli_are_possible = true;

@@ -7,7 +7,8 @@
 //! θ × (p - p_ref) + Σ q_k t_k(p)`. Here `u_ref` and `θ` are the displacements of the reference node and of the
 //! rotation node, `q_k` is the angle of hinge `k`, and `t_k(p)` is the displacement of `p` per unit of this angle. So
 //! neither rigid bodies of CalculiX nor constraints that depend on other constraints are needed. The tilts of bearings
-//! and frames are hinges too, and a passive joint is a hinge that follows others.
+//! and frames are hinges too, and a passive joint is a hinge that follows others,
+//! which may be inboard or outboard of it.
 
 use super::mesh::{Mesh, has_shape, mesh};
 use crate::arm::RigidBody;
@@ -18,6 +19,7 @@ use crate::mechanics::beam::section_frame;
 use crate::mechanics::chain::{Body, Compliance, ElasticElement, Item, OwnMass};
 use crate::mechanics::{Twist, angular, displacement_at};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+use std::collections::BTreeMap;
 
 /// Coefficients of an equation below this value are dropped as rounding errors.
 const ROUNDING: f64 = 1e-12;
@@ -108,8 +110,10 @@ pub(crate) fn model(snapshot: &Snapshot) -> Model {
         snapshot,
         model: Model::default(),
         region: Region { frame: None, hinges: Vec::new() },
+        joints: BTreeMap::new(),
         down: snapshot.structure.down,
     };
+    builder.joint_nodes();
     let mut workings = snapshot.working_points().into_iter();
     for item in &posed.items {
         match item {
@@ -139,6 +143,8 @@ struct Builder<'s> {
     snapshot: &'s Snapshot,
     model: Model,
     region: Region,
+    /// Index of the node of the hinge of every compliant revolute joint, by name of the joint.
+    joints: BTreeMap<String, usize>,
     down: Vector3<f64>,
 }
 
@@ -148,14 +154,30 @@ impl Builder<'_> {
         self.model.nodes_m.len() - 1
     }
 
+    /// Adds the node of the hinge of every compliant revolute joint. They are added before anything else, because a
+    /// passive joint may be inboard of the joint that drives it.
+    fn joint_nodes(&mut self) {
+        let (posed, workings) = (self.snapshot.posed(), self.snapshot.working_points());
+        for (element, workings) in posed.elements().zip(&workings) {
+            let is_joint = matches!(element.compliance, Compliance::Joint(_));
+            if is_joint && workings.first().is_some_and(|working| !working.is_rigid()) {
+                let node = self.node(element.at_m);
+                self.joints.insert(element.name.clone(), node);
+            }
+        }
+    }
+
     /// Adds a hinge for each compliant coordinate of an element. `workings` are the states of its springs at the load
     /// of the case. A passive joint also follows the hinges of its driving joints.
     fn springs(&mut self, element: &ElasticElement, workings: &[Working]) {
+        let is_joint = matches!(element.compliance, Compliance::Joint(_));
         for (i, (twist, working)) in element.twists.iter().zip(workings).enumerate() {
             if working.is_rigid() {
                 continue;
             }
-            let node = self.node(element.at_m);
+            // the element of a base may have the name of a joint
+            let own = self.joints.get(&element.name).filter(|_| is_joint).copied();
+            let node = own.unwrap_or_else(|| self.node(element.at_m));
             self.model.held.extend([(node, 1), (node, 2)]);
             if element.torque_nm != 0.0 {
                 self.model.loads.push((node, 0, element.torque_nm));
@@ -168,7 +190,7 @@ impl Builder<'_> {
             self.model.hinges.push(HingeNode { name, node, working: *working });
             self.region.hinges.push((node, *twist));
         }
-        if matches!(element.compliance, Compliance::Joint(_)) {
+        if is_joint {
             self.follow(element);
         }
     }
@@ -179,10 +201,10 @@ impl Builder<'_> {
         let posed = self.snapshot.posed();
         let linkages = posed.chain.linkages().iter().filter(|linkage| linkage.passive == passive.name);
         for linkage in linkages {
-            if let Some(driver) = self.model.hinges.iter().find(|hinge| hinge.name == linkage.driver) {
-                self.region.hinges.push((driver.node, passive.twists[0] * linkage.factor));
+            if let Some(driver) = self.joints.get(&linkage.driver).copied() {
+                self.region.hinges.push((driver, passive.twists[0] * linkage.factor));
                 if passive.torque_nm != 0.0 {
-                    self.model.loads.push((driver.node, 0, passive.torque_nm * linkage.factor));
+                    self.model.loads.push((driver, 0, passive.torque_nm * linkage.factor));
                 }
             }
         }

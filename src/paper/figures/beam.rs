@@ -77,6 +77,7 @@ pub fn library_deflection_m(material: &Material, section: Section, links: LinkMo
         shear_modulus_pa: material.shear_modulus_pa?,
         density_kg_m3: material.density_kg_m3,
         poisson: material.poisson.unwrap_or(0.3),
+        strength: None,
         class: Some(material.class),
     };
     let body = LinkBody::Tube { material_name: material.name.clone(), material: link, section };

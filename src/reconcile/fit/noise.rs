@@ -1,6 +1,7 @@
 //! Finds gross errors and wrongly declared standard deviations from the residuals of a model.
 
 use super::descent::{Fit, Weights};
+use super::held_out::rms;
 use super::stats::{MEDIAN_OF_NORMAL, median};
 use crate::arm::effect::channel::Channel;
 use crate::reconcile::forward::coefficients::Coefficients;
@@ -90,6 +91,19 @@ impl Noise {
             if gross { 0.0 } else { 1.0 / (d.sigma * self.scale[d.channel as usize]) }
         });
         Weights { inverse: inverse.collect(), smooth_only: false }
+    }
+
+    /// The weights `weights` with the standard deviations of each channel enlarged to the root mean square of the residuals
+    /// that a model leaves there, if they are smaller. `predicted` are the readings of this model.
+    pub(crate) fn enlarged(weights: &Weights, forward: &Forward, predicted: &[f64]) -> Weights {
+        let mut out = weights.clone();
+        for channel in CHANNELS {
+            let own = forward.range(channel);
+            let used = own.clone().filter(|i| weights.inverse[*i] > 0.0);
+            let left = rms(used.map(|i| (forward.data[i].value - predicted[i]) * weights.inverse[i]));
+            out.inverse[own].iter_mut().for_each(|inverse| *inverse /= left.max(1.0));
+        }
+        out
     }
 
     /// Whether the model of `fit` fits most readings of every channel, judged by the robust standard deviation of the

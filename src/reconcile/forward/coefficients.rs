@@ -3,7 +3,7 @@
 use crate::arm::LinkModel;
 use crate::arm::base_lift::BaseLift;
 use crate::arm::effect::channel::{Channel, Reading};
-use crate::arm::effect::setup::{LoadTwist, Setup, Slipped, Turned, slip_m};
+use crate::arm::effect::setup::{LoadTwist, Loading, Setup, Slipped, Turned, slip_m};
 use crate::arm::effect::subject::Subject;
 use crate::arm::effect::warming::{Softening, Warming};
 use crate::arm::joint_law::{Curve, JointLaw};
@@ -86,6 +86,8 @@ pub struct TestNumbers {
     pub slipped: Vec<Slipped>,
     /// Further twists of each joint under a load, base to tip; empty if there are none.
     pub load_twists: Vec<Vec<LoadTwist>>,
+    /// How loads act otherwise than stated.
+    pub loading: Loading,
 }
 
 impl TestNumbers {
@@ -110,6 +112,7 @@ impl TestNumbers {
             turned: setup.turned.clone(),
             slipped: setup.slipped.clone(),
             load_twists,
+            loading: setup.loading,
         }
     }
 
@@ -412,7 +415,8 @@ impl Coefficients {
         let payload = self.payload_delta_kg != other.payload_delta_kg
             || self.payload_offset_m != other.payload_offset_m
             || self.payload_weight != other.payload_weight
-            || own.slipped != others.slipped;
+            || own.slipped != others.slipped
+            || own.loading != others.loading;
         // readings are differences from the unloaded arm, so weights have no effect where twists are proportional to
         // torques
         let is_proportional = |law: &JointLaw| !law.has_play() && !matches!(law.curve, Curve::Windup(_));

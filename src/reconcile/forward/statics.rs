@@ -293,15 +293,16 @@ impl PoseGeometry {
         coefficients: &Coefficients,
         (channel, row): (Channel, usize),
     ) -> Wrench {
-        let mut wrench = force_wrench(force_n, &self.tip_m);
-        if payload.mass_kg != 0.0 {
-            let mass_kg = payload.mass_kg + coefficients.payload_delta_kg;
-            let offset_m = coefficients.payload_offset_in(channel, row);
-            let cg_m = self.tip_m + self.rotation * (payload.cg_m + offset_m);
-            let weight_n = mass_kg * gravity_m_s2 * coefficients.payload_weight;
-            wrench += force_wrench(&Vector3::new(0.0, 0.0, -weight_n), &cg_m);
+        let loading = &coefficients.tests[channel as usize].loading;
+        if payload.mass_kg == 0.0 {
+            return force_wrench(&loading.force_n(force_n, 0.0, &self.rotation), &self.tip_m);
         }
-        wrench
+        let mass_kg = payload.mass_kg + coefficients.payload_delta_kg;
+        let pulled_n = loading.force_n(force_n, mass_kg * gravity_m_s2, &self.rotation);
+        let offset_m = coefficients.payload_offset_in(channel, row);
+        let cg_m = self.tip_m + self.rotation * (payload.cg_m + offset_m);
+        let weight_n = mass_kg * gravity_m_s2 * coefficients.payload_weight;
+        force_wrench(&pulled_n, &self.tip_m) + force_wrench(&Vector3::new(0.0, 0.0, -weight_n), &cg_m)
     }
 }
 
@@ -512,8 +513,13 @@ impl StaticPose {
         coefficients: &Coefficients,
         load: usize,
     ) -> Vector3<f64> {
-        let mut moved_mm = self.displacement_mm(state, load);
-        for turned in &coefficients.tests[Channel::Static as usize].turned {
+        let test = &coefficients.tests[Channel::Static as usize];
+        let load_n = state.wrenches[load].fixed_rows::<3>(0).into_owned();
+        let mut moved_mm = self.displacement_mm(state, load) + 1e3 * test.loading.sway_m(&load_n);
+        if let Some(before) = load.checked_sub(1).filter(|_| test.loading.remaining != 0.0) {
+            moved_mm += test.loading.remaining * self.displacement_mm(state, before);
+        }
+        for turned in &test.turned {
             moved_mm += 1e3 * turned.moved_m(&self.geometry.tip_m, self.loads[load].when.row);
         }
         coefficients.channels[Channel::Static as usize].along_own_axes(&moved_mm)
@@ -559,6 +565,12 @@ impl StaticPose {
         let base = &self.geometry.base;
         let loaded = loads.map(|w| [0, 1].map(|i| (dead[i] + base[i].twist.dot(&w)).abs()));
         loaded.flatten().chain(dead.map(f64::abs)).fold(0.0, f64::max)
+    }
+
+    /// Largest force of a load of the pose along world x, y or z, weight of the payload included \[N\].
+    pub(crate) fn largest_force_n(&self, layout: &Layout, coefficients: &Coefficients) -> f64 {
+        let loads = self.loads.iter().map(|load| self.wrench(load, layout, coefficients));
+        loads.map(|wrench| wrench.fixed_rows::<3>(0).amax()).fold(0.0, f64::max)
     }
 
     /// Torque on each joint of an arm with these coefficients \[N m\]: the first list without load, then one list for

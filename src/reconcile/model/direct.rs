@@ -62,6 +62,7 @@ impl<'a> Direct<'a> {
         let mut out = Vec::with_capacity(rows.len());
         let mut pose: &[f64] = &[];
         let (mut play, mut lag) = (Vec::new(), Vector3::zeros());
+        let mut before_m = Vector3::zeros();
         for row in rows {
             let chain = self.chain_at(Channel::Static, &row.moment());
             // the links are taken to be as warm at the reference as at the reading
@@ -70,15 +71,22 @@ impl<'a> Direct<'a> {
             let unloaded_m = unloaded.statics().tip_displacement_m;
             if row.pose_deg != pose || out.is_empty() {
                 pose = &row.pose_deg;
+                before_m = Vector3::zeros();
                 play = rest(&unloaded);
                 lag = tip_m(&unloaded, &mut play) - unloaded_m;
             }
             let payload = self.payload_in(&setup, row.row, &row.payload);
-            let loaded = self.posed(&chain, pose, &payload, row.force_n);
+            let weight_n = payload.mass_kg * self.subject.structure.gravity_m_s2;
+            let force_n = setup.loading.force_n(&row.force_n, weight_n, &unloaded.tip_rotation);
+            let loaded = self.posed(&chain, pose, &payload, force_n);
+            let load_n = force_n - Vector3::z() * (weight_n * self.buoyed_part());
             let turned_m: Vector3<f64> =
                 setup.turned.iter().map(|t| t.moved_m(&unloaded.tip_m, row.row)).sum();
             let twisted_m = load_twists_m(&setup, &unloaded, &loaded);
-            let d = tip_m(&loaded, &mut play) - (unloaded_m + lag) + turned_m + twisted_m;
+            let deflected_m = tip_m(&loaded, &mut play) - (unloaded_m + lag) + twisted_m;
+            let seen_too_m = setup.loading.sway_m(&load_n) + setup.loading.remaining * before_m;
+            let d = deflected_m + turned_m + seen_too_m;
+            before_m = deflected_m;
             let seen_mm = reading.along_own_axes(&(1e3 * d));
             out.push(std::array::from_fn(|c| reading.of(seen_mm[c], c, row.row)));
         }
@@ -188,6 +196,12 @@ impl<'a> Direct<'a> {
         let slip_m = if stated.mass_kg == 0.0 { Vector3::zeros() } else { setup.slip_m(row) };
         let payload = self.subject.payload(stated);
         Payload { cg_m: payload.cg_m + slip_m, ..payload }
+    }
+
+    /// The part of a payload's weight that buoyancy leaves; 1 in air.
+    fn buoyed_part(&self) -> f64 {
+        let water = self.subject.structure.water;
+        water.map_or(1.0, |water| 1.0 - water.density_kg_m3 / water.payload_density_kg_m3)
     }
 
     fn posed<'c>(

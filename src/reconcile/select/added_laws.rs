@@ -5,16 +5,21 @@
 //! prepared again until the zero no longer changes.
 
 use super::search::{Scored, Search};
-use crate::reconcile::fit::descent::{Effort, Fit, fit};
+use super::unnamed::evidence_with;
+use crate::reconcile::fit::descent::{Effort, Fit, Weights, change, fit};
+use crate::reconcile::fit::noise::Noise;
 use crate::reconcile::forward::prepared::Forward;
 use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Largest number of laws without a name in one model.
-const MOST_LAWS: usize = 3;
+const MOST_LAWS: usize = 4;
 /// A law is accepted if the logarithm of the evidence, less the logarithm of the number of places where a law is
 /// tried, rises by more than this.
 const LEAST_GAIN: f64 = 2.0;
+/// Number of laws that are fitted by a few steps when one is to be added: those that are the best ones if readings are taken
+/// as linear.
+const ROUGH_FITS: usize = 12;
 /// When a law is to be added, this many laws are fitted in full. They are those with the best scores after a few steps
 /// of a fit.
 const FULL_FITS: usize = 5;
@@ -23,17 +28,35 @@ const MOST_TURNS: usize = 6;
 /// Poses need not be prepared again if the arm is turned by less than this from the prepared pose \[deg\]. The readings
 /// are linear in so small an angle.
 const LARGEST_TURN_DEG: f64 = 1e-3;
+/// The effort of a fit that only evaluates a model.
+const NO_STEPS: Effort = Effort { steps: 0, tolerance: 0.0 };
 
 /// A model with laws without a name.
 #[derive(Clone)]
 pub(crate) struct WithLaws {
-    /// The fitted model.
+    /// The fitted model. Its score belongs to the weights `weights`.
     pub scored: Scored,
     /// The campaign prepared in the poses about which the model was fitted; `None` for the stated poses.
     pub forward: Option<Arc<Forward>>,
+    /// The weights of the fit: those of the search, with the standard deviations of each channel enlarged to the root mean
+    /// square of the residuals that the model leaves there.
+    pub weights: Arc<Weights>,
 }
 
 impl WithLaws {
+    /// The model `scored`, which was fitted about the poses of `forward`, fitted with the weights that belong to it.
+    ///
+    /// Something is missing in the model, so it leaves more than noise. With the declared standard deviations, the readings
+    /// would push the calibration as far out of its tolerance as it takes to imitate what is missing, and the channel with
+    /// the smallest standard deviations would decide alone.
+    pub(crate) fn new(search: &Search, scored: &Scored, forward: Option<Arc<Forward>>) -> Self {
+        let about = Search { forward: forward.as_deref().unwrap_or(search.forward), ..*search };
+        let point = about.fit(&scored.effects, &scored.u, NO_STEPS).point;
+        let weights = Arc::new(Noise::enlarged(search.weights, about.forward, &point.predicted));
+        let weighed = Search { weights: &weights, ..*search };
+        Self { weights: Arc::clone(&weights), ..fitted(&weighed, &scored.effects, &scored.u, forward) }
+    }
+
     /// The search `search`, with the campaign prepared in the poses of this model.
     fn about<'s>(&'s self, search: &Search<'s>) -> Search<'s> {
         Search { forward: self.forward.as_deref().unwrap_or(search.forward), ..*search }
@@ -43,26 +66,29 @@ impl WithLaws {
     pub(crate) fn fit<'a>(&self, search: &Search<'a>) -> Fit<'a> {
         let forward = self.forward.as_deref().unwrap_or(search.forward);
         let model = search.model(&self.scored.effects);
-        fit(forward, &model, &self.scored.u, search.weights, Effort { steps: 0, tolerance: 0.0 })
+        fit(forward, &model, &self.scored.u, &self.weights, NO_STEPS)
     }
 }
 
 /// The model `from` with one law without a name, with two, and so on, as long as each raises the score by more than
 /// [`LEAST_GAIN`]; then the last of these models with a law left out or exchanged, if that raises the score. The laws
 /// are the candidates of `search` from the index `first` on. Empty if no law raises the score.
-pub(crate) fn with_laws(search: &Search, first: usize, from: &Scored) -> Vec<WithLaws> {
+pub(crate) fn with_laws(search: &Search, first: usize, from: &WithLaws) -> Vec<WithLaws> {
     let mut out: Vec<WithLaws> = Vec::new();
-    let mut here = WithLaws { scored: from.clone(), forward: None };
+    let mut here = from.clone();
     for _ in 0..MOST_LAWS {
+        let weighed = Search { weights: &here.weights, ..*search };
         let least = here.scored.score + LEAST_GAIN;
-        let Some(next) = next_law(search, first, &here).filter(|next| next.scored.score > least) else {
-            break;
-        };
+        let next = next_law(&weighed, first, &here, None).filter(|next| next.scored.score > least);
+        let Some(next) = next else { break };
+        let next = WithLaws::new(search, &next.scored, next.forward.clone());
         out.push(next.clone());
         here = next;
     }
     if out.len() > 1 {
-        out.extend(exchanged(search, first, &here));
+        let weighed = Search { weights: &here.weights, ..*search };
+        let better = exchanged(&weighed, first, &here);
+        out.extend(better.map(|model| WithLaws::new(search, &model.scored, model.forward.clone())));
     }
     out
 }
@@ -75,19 +101,19 @@ fn exchanged(search: &Search, first: usize, best: &WithLaws) -> Option<WithLaws>
     let tried = laws.flat_map(|law| {
         let (effects, u) = about.without(&best.scored, law);
         let without = fitted(search, &effects, &u, best.forward.clone());
-        let exchanged = next_law(search, first, &without);
+        let exchanged = next_law(search, first, &without, Some(best.scored.effects[law]));
         [Some(without), exchanged].into_iter().flatten()
     });
     let better = tried.max_by(|a, b| a.scored.score.total_cmp(&b.scored.score))?;
     (better.scored.score > best.scored.score + 1e-3).then_some(better)
 }
 
-/// The model `here` with that law added that gives the best score; `None` if no law is left.
-fn next_law(search: &Search, first: usize, here: &WithLaws) -> Option<WithLaws> {
+/// The model `here` with that law added that gives the best score; `None` if no law is left. The law `left_out` is not tried:
+/// with it the model is known.
+fn next_law(search: &Search, first: usize, here: &WithLaws, left_out: Option<usize>) -> Option<WithLaws> {
     let (about, from) = (here.about(search), &here.scored);
-    let laws = (first..search.candidates.len()).filter(|law| !from.effects.contains(law));
-    let starts: Vec<(usize, &Vec<f64>)> =
-        laws.flat_map(|law| search.candidates[law].starts.iter().map(move |start| (law, start))).collect();
+    let is_new = |law: &usize| Some(*law) != left_out && !from.effects.contains(law);
+    let starts = promising_starts(&about, from, (first..search.candidates.len()).filter(is_new));
     let mut tried: Vec<Scored> = starts
         .into_par_iter()
         .map(|(law, start)| {
@@ -108,6 +134,49 @@ fn next_law(search: &Search, first: usize, here: &WithLaws) -> Option<WithLaws> 
     fits.into_iter().max_by(|a, b| a.scored.score.total_cmp(&b.scored.score))
 }
 
+/// The laws that lower the objective of the model `from` most if its readings are taken as linear, each with the values from
+/// which its fits start. There are [`ROUGH_FITS`] laws at most.
+fn promising_starts<'s>(
+    about: &Search<'s>,
+    from: &Scored,
+    laws: impl Iterator<Item = usize>,
+) -> Vec<(usize, &'s Vec<f64>)> {
+    let fit = about.fit(&from.effects, &from.u, NO_STEPS);
+    let starts = laws.flat_map(|law| about.candidates[law].starts.iter().map(move |start| (law, start)));
+    let starts: Vec<(usize, &Vec<f64>)> = starts.collect();
+    let evidence = |(law, start): &(usize, &Vec<f64>)| {
+        let columns = columns(about, from, &fit, *law, start);
+        evidence_with(about.forward, &fit, &columns, about.weights)
+    };
+    let evidences: Vec<f64> = starts.par_iter().map(evidence).collect();
+    let mut order: Vec<usize> = (0..starts.len()).collect();
+    order.sort_by(|a, b| evidences[*b].total_cmp(&evidences[*a]));
+    let mut best: Vec<usize> = Vec::new();
+    for law in order.into_iter().map(|i| starts[i].0) {
+        if best.len() < ROUGH_FITS && !best.contains(&law) {
+            best.push(law);
+        }
+    }
+    starts.into_iter().filter(|(law, _)| best.contains(law)).collect()
+}
+
+/// For each number of the law `law` that says how large the law is, the change of every reading per unit of it about the
+/// model `from`, whose fit is `fit`. The other numbers of the law stay at `start`.
+fn columns(about: &Search, from: &Scored, fit: &Fit, law: usize, start: &[f64]) -> Vec<Vec<f64>> {
+    const DERIVATIVE_STEP: f64 = 1e-4;
+    let model = about.model(&[from.effects.as_slice(), &[law]].concat());
+    let u = [from.u.as_slice(), start].concat();
+    let changed = |u: &[f64]| change(about.forward, &model, &fit.point, u);
+    let at_start = changed(&u);
+    let free = about.candidates[law].free_parameters.iter().enumerate();
+    let column = |(k, _)| {
+        let mut moved = u.clone();
+        moved[from.u.len() + k] += DERIVATIVE_STEP;
+        changed(&moved).iter().zip(&at_start).map(|(to, from)| (to - from) / DERIVATIVE_STEP).collect()
+    };
+    free.filter(|(_, parameter)| parameter.is_size()).map(column).collect()
+}
+
 /// The model with the effects `effects`, fitted from the parameters `u` with the poses of `forward`. If the fitted
 /// zeros differ from those of these poses, the fit is repeated with poses that are prepared with the fitted zeros.
 fn fitted(search: &Search, effects: &[usize], u: &[f64], forward: Option<Arc<Forward>>) -> WithLaws {
@@ -126,5 +195,5 @@ fn fitted(search: &Search, effects: &[usize], u: &[f64], forward: Option<Arc<For
         forward = Some(Arc::new(search.forward.turned(search.campaign, &subject)));
         (scored, turned_deg) = fit_about(&scored.u, &forward);
     }
-    WithLaws { scored, forward }
+    WithLaws { scored, forward, weights: Arc::new(search.weights.clone()) }
 }

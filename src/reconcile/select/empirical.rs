@@ -10,19 +10,22 @@
 //! - a joint that stands at another angle than stated, or that twists under the torques of its neighbours;
 //! - readings that are a nonlinear function of the true value, or that have a gain of their own in each direction;
 //! - displacement readings in which each direction also shows a part of the other directions;
+//! - loads that act otherwise than stated, or that move the readings wherever the tip is;
 //! - a base that turned, an instrument that moved, or a payload that slipped, once in the course of the tests.
 
 use super::event_rows;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::empirical::{
-    BASE_TURN, BEND, EVEN_TWIST, GAIN, KIND, LEAN, LOAD_PLAY, LOAD_PLAY_TORQUE, MIX, NEIGHBOUR_TWIST,
-    ODD_TWIST, SHIFT, SLIP, SOFTENING, SOFTENING_REFERENCE, SOFTENING_ROWS, ZERO,
+    BASE_TURN, BASE_TURN_ROWS, BEND, EVEN_TWIST, FORCE_PART, GAIN, GRIP, KIND, LEAN, LOAD_PLAY,
+    LOAD_PLAY_TORQUE, MIX, NEIGHBOUR_TWIST, ODD_TWIST, PAYLOAD_PULL, REMAINING, SHIFT, SLIP, SOFTENING,
+    SOFTENING_REFERENCE, SOFTENING_ROWS, SWAY, ZERO,
 };
 use crate::arm::effect::kind::{Absent, Parameter, Scale};
 use crate::arm::structure::Piece;
 use crate::arm::{BASE, PAYLOAD};
 use crate::reconcile::fit::descent::{Fit, Weights};
 use crate::reconcile::forward::prepared::Forward;
+use crate::reconcile::forward::statics::LoadedBy;
 use crate::reconcile::model::candidates::largest_torque_nm;
 use crate::reconcile::model::parameters::Number::{Free, Stated};
 use crate::reconcile::model::parameters::{Candidate, FreeParameter, LARGEST_COMPLIANCE, Number};
@@ -61,9 +64,23 @@ const IN_JOINT: Joint = Joint {
 };
 /// Indices of the rows of the static and of the modal tests in the list of numbers of a slip of the payload.
 const ROWS_OF_SLIP: [usize; 2] = [3, 5];
-/// Indices of parameters in the list of numbers of a law of displacements.
-const IN_STATIC: Static =
-    Static { bend: 0..2, scale: 2, gain: 3..6, turn: 6..9, from_row: 9, mix: 10, shift: 16..19, file: 19 };
+/// Places of parameters among the numbers of a law of displacements.
+const IN_STATIC: Static = Static {
+    bend: 0..2,
+    scale: 2,
+    gain: 3..6,
+    turn: 6..9,
+    from_row: 9,
+    mix: 10,
+    shift: 16..19,
+    file: 19,
+    force: 20,
+    pull: 21,
+    sway: 23..26,
+    grip: 26,
+    remaining: 29,
+    rows: 30,
+};
 
 /// For a law of a joint: the index of each parameter in the list of the law's numbers.
 struct Joint {
@@ -92,6 +109,15 @@ struct Static {
     mix: usize,
     shift: Range<usize>,
     file: usize,
+    force: usize,
+    /// The first of two.
+    pull: usize,
+    sway: Range<usize>,
+    /// The first of three.
+    grip: usize,
+    remaining: usize,
+    /// In how many rows the base turns or the instrument moves.
+    rows: usize,
 }
 
 /// The numbers of a law of a joint. Those with the indices `free` are fitted; the others have values at which they have
@@ -109,7 +135,7 @@ fn of_joint(torque_nm: f64, free: impl IntoIterator<Item = usize>) -> Vec<Number
 /// The numbers of a law of a channel. Those with the indices `free` are fitted; the others have values at which they
 /// have no effect.
 fn of_channel(channel: Channel, free: impl IntoIterator<Item = usize>) -> Vec<Number> {
-    let mut out = vec![Stated(0.0); IN_STATIC.file + 1];
+    let mut out = vec![Stated(0.0); IN_STATIC.rows + 1];
     out[IN_STATIC.scale] = Stated(1.0);
     out[IN_STATIC.gain].fill(Stated(1.0));
     out[IN_STATIC.from_row] = Stated(1.0);
@@ -146,12 +172,14 @@ pub(crate) fn laws(forward: &Forward, baseline: &Fit, weights: &Weights) -> Vec<
         let sizes = forward.data[forward.range(channel)].iter().map(|d| d.value.abs());
         let largest = sizes.fold(0.0, f64::max);
         if largest > 0.0 {
-            out.extend(readings(channel, largest));
+            out.extend(readings(forward, channel, largest));
         }
     }
     out.extend(mixing(forward));
+    out.extend(loads(forward));
     out.extend(lean(forward));
     out.extend(events(forward, baseline, weights));
+    out.extend([BASE_TURN, SHIFT].into_iter().filter_map(|name| moving(forward, name)));
     out
 }
 
@@ -247,15 +275,64 @@ fn softening(forward: &Forward, joint: &str, torque_nm: f64, channel: usize) -> 
 /// there are no displacements.
 fn mixing(forward: &Forward) -> Option<Candidate> {
     let statics = &forward.data[forward.range(Channel::Static)];
-    let is_measured = |component: usize| statics.iter().any(|datum| datum.component == component);
+    let is_measured = measured(forward);
     let part = Parameter { count: 6, ..Parameter::number(MIX, -0.5, 0.5, 0.05, Scale::Linear) };
-    let of_component = [0, 0, 1, 1, 2, 2].map(is_measured);
-    let mut candidate = law(Channel::Static.word(), part, 0.0);
-    candidate.free_parameters.retain(|free| of_component[free.component]);
-    candidate.starts = vec![candidate.free_parameters.iter().map(|free| free.u(0.0)).collect()];
-    let free = candidate.free_parameters.iter().map(|free| IN_STATIC.mix + free.component);
-    candidate.numbers = of_channel(Channel::Static, free);
+    let of_component = [0, 0, 1, 1, 2, 2].map(|component| is_measured[component]);
+    let candidate = of_displacements(part, 0.0, IN_STATIC.mix, &of_component);
     (!statics.is_empty()).then_some(candidate)
+}
+
+/// The candidates for loads that act otherwise than stated, or that move the readings wherever the tip is: forces that are
+/// larger than stated, payloads that do not pull straight down, a base or an instrument that shifts under the load.
+fn loads(forward: &Forward) -> Vec<Candidate> {
+    let statics = &forward.data[forward.range(Channel::Static)];
+    let largest_mm = statics.iter().map(|datum| datum.value.abs()).fold(0.0, f64::max);
+    let nominal = forward.coefficients(&forward.nominal);
+    let forces = forward.statics.iter().map(|pose| pose.largest_force_n(&forward.layout, &nominal));
+    let largest_n = forces.fold(0.0, f64::max);
+    let loaded =
+        |by: fn(LoadedBy) -> bool| forward.statics.iter().flat_map(|p| p.loaded_by()).any(|(_, l)| by(l));
+    let [payload, force] = [loaded(|by| by.payload), loaded(|by| by.force)];
+    let mut out = Vec::new();
+    // forces alone that are all larger are a gain of the readings
+    if payload && force {
+        let part = Parameter::number(FORCE_PART, -0.5, 1.0, 0.05, Scale::Linear);
+        out.push(of_displacements(part, 0.0, IN_STATIC.force, &[true]));
+    }
+    if payload {
+        let pull = Parameter { count: 2, ..Parameter::number(PAYLOAD_PULL, -0.3, 0.3, 0.02, Scale::Linear) };
+        out.push(of_displacements(pull, 0.0, IN_STATIC.pull, &[true; 2]));
+        let (usual, most) = (0.05 * largest_n, 2.0 * largest_n);
+        let grip = Parameter { count: 3, ..Parameter::number(GRIP, -most, most, usual, Scale::Linear) };
+        out.push(of_displacements(grip, 0.0, IN_STATIC.grip, &[true; 3]));
+    }
+    if forward.statics.iter().any(|pose| pose.count() > 1) {
+        let part = Parameter::number(REMAINING, -0.9, 0.9, 0.1, Scale::Linear);
+        out.push(of_displacements(part, 0.0, IN_STATIC.remaining, &[true]));
+    }
+    if largest_n > 0.0 {
+        let (usual, most) = (0.1 * largest_mm / largest_n, 10.0 * largest_mm / largest_n);
+        let sway = Parameter { count: 3, ..Parameter::number(SWAY, -most, most, usual, Scale::Linear) };
+        out.push(of_displacements(sway, 0.0, IN_STATIC.sway.start, &measured(forward)));
+    }
+    out
+}
+
+/// For each direction of the displacements, whether it was measured.
+fn measured(forward: &Forward) -> [bool; 3] {
+    let statics = &forward.data[forward.range(Channel::Static)];
+    [0, 1, 2].map(|component| statics.iter().any(|datum| datum.component == component))
+}
+
+/// The candidate for a law of the displacements with those components of the vector `parameter` that `is_seen` tells. The
+/// others are `absent`, with which the law changes nothing. `first` is the place of the vector among the numbers of the law.
+fn of_displacements(parameter: Parameter, absent: f64, first: usize, is_seen: &[bool]) -> Candidate {
+    let mut candidate = law(Channel::Static.word(), parameter, absent);
+    candidate.free_parameters.retain(|free| is_seen[free.component]);
+    candidate.starts = vec![candidate.free_parameters.iter().map(|free| free.u(absent)).collect()];
+    let free = candidate.free_parameters.iter().map(|free| first + free.component);
+    candidate.numbers = of_channel(Channel::Static, free);
+    candidate
 }
 
 /// The candidate for a base that tilts about world x and about world y with a compliance of its own for each. `None` if
@@ -298,10 +375,34 @@ fn moved_once(forward: &Forward, from_row: usize, name: &'static str) -> Candida
         forward.data[forward.range(Channel::Static)].iter().map(|d| d.value.abs()).fold(0.0, f64::max);
     let (most, usual) = if is_turn { (0.1, 1e-4) } else { (10.0 * largest_mm, 0.1 * largest_mm) };
     let moved = Parameter { count: 3, ..Parameter::number(name, -most, most, usual, Scale::Linear) };
-    let mut numbers = of_channel(Channel::Static, if is_turn { IN_STATIC.turn } else { IN_STATIC.shift });
-    numbers[IN_STATIC.from_row] = Stated((from_row + 1) as f64);
-    numbers[IN_STATIC.file] = Stated(forward.files[0] as f64);
-    Candidate { numbers, ..law(Channel::Static.word(), moved, 0.0) }
+    let is_measured = measured(forward);
+    // a turn about an axis moves nothing along this axis
+    let is_seen = [0, 1, 2].map(|k| match is_turn {
+        true => is_measured[(k + 1) % 3] || is_measured[(k + 2) % 3],
+        false => is_measured[k],
+    });
+    let first = if is_turn { IN_STATIC.turn.start } else { IN_STATIC.shift.start };
+    let mut candidate = of_displacements(moved, 0.0, first, &is_seen);
+    candidate.numbers[IN_STATIC.from_row] = Stated((from_row + 1) as f64);
+    candidate.numbers[IN_STATIC.file] = Stated(forward.files[0] as f64);
+    candidate
+}
+
+/// The candidate for a base that turns ([`BASE_TURN`]) or an instrument that moves ([`SHIFT`]) more and more in the course of
+/// the static tests. As with a joint that softens, it begins anew in another file.
+fn moving(forward: &Forward, name: &'static str) -> Option<Candidate> {
+    let rows = forward.data[forward.range(Channel::Static)].iter().map(|datum| datum.row + 1).max()? as f64;
+    let mut candidate = moved_once(forward, 0, name);
+    let pace = Parameter::number(BASE_TURN_ROWS, 0.1, 1e6, rows, Scale::Log);
+    let sizes = candidate.free_parameters.len();
+    candidate
+        .free_parameters
+        .push(FreeParameter::new(&pace, 0, 1.0).within(libm::log(0.1), libm::log(3.0 * rows)));
+    candidate.numbers[IN_STATIC.file] = Stated(0.0);
+    candidate.numbers[IN_STATIC.rows] = Free;
+    let paces = [SOFTENED_AFTER[0], SOFTENED_AFTER[1], 2.0].map(|part| libm::log((part * rows).max(1.0)));
+    candidate.starts = paces.map(|pace| [vec![0.1; sizes], vec![pace]].concat()).to_vec();
+    (sizes > 0).then_some(candidate)
 }
 
 /// The candidate for a payload that slipped just before the `rows` of the static and of the modal tests, counted from
@@ -340,6 +441,9 @@ pub(crate) fn may_be(candidate: &Candidate) -> &'static str {
         Some(LEAN) => {
             "it may be a housing, a flange or a bearing that is more compliant one way than the other"
         }
+        Some(BASE_TURN | SHIFT) if is_gradual(candidate) => {
+            "it may be ground, a stand or a link that warms up or settles while the tests are made"
+        }
         Some(BASE_TURN) => "it may be a base that slipped on its bolts, or an instrument that was touched",
         Some(SHIFT) => "it may be an instrument or its stand that was touched",
         Some(SLIP) => "it may be a payload that slipped in its clamp, or that was mounted anew",
@@ -357,6 +461,13 @@ pub(crate) fn may_be(candidate: &Candidate) -> &'static str {
             "it may be an instrument that is not straight, or a displacement too large for a straight law"
         }
         Some(MIX) => "it may be an instrument that is turned, or whose axes are not square",
+        Some(FORCE_PART) => "it may be a force gauge that reads wrong, or the friction of a pulley",
+        Some(PAYLOAD_PULL) => "it may be an arm that is out of level",
+        Some(GRIP) => "it may be a hose or a cable that pulls wherever the gripper holds something",
+        Some(REMAINING) => {
+            "it may be friction, play or a gauge that sticks: a part of the deflection before remains"
+        }
+        Some(SWAY) => "it may be a base or a stand that shifts under the load, or a floor that both stand on",
         _ => "it may be an instrument whose axes have gains of their own, or are not square",
     }
 }
@@ -375,6 +486,12 @@ pub(crate) fn in_words(candidate: &Candidate) -> String {
         }
         Some(LEAN) if at == BASE => format!("a {at} that tilts about x and y unequally"),
         Some(LEAN) => format!("a housing of {at} that tilts about two axes unequally"),
+        Some(BASE_TURN) if is_gradual(candidate) => {
+            format!("a base that turns in the course of the {at} readings")
+        }
+        Some(SHIFT) if is_gradual(candidate) => {
+            format!("an instrument that moves in the course of the {at} readings")
+        }
         Some(BASE_TURN) => {
             format!(
                 "a base that turned before row {} of the {at} readings",
@@ -393,8 +510,18 @@ pub(crate) fn in_words(candidate: &Candidate) -> String {
         Some(NEIGHBOUR_TWIST) => format!("a twist of {at} under the torques of its neighbours"),
         Some(BEND) => format!("{at} readings that bend"),
         Some(MIX) => format!("{at} readings that mix the directions"),
+        Some(FORCE_PART) => "tip forces that are a factor of what is stated".into(),
+        Some(PAYLOAD_PULL) => "payloads that do not pull straight down".into(),
+        Some(GRIP) => "a force on the tip, in the last frame, wherever there is a payload".into(),
+        Some(REMAINING) => format!("{at} readings that keep a part of the deflection before"),
+        Some(SWAY) => format!("{at} readings that follow the load wherever the tip is"),
         _ => format!("{at} readings with a gain of their own in each direction"),
     }
+}
+
+/// Whether what moved came more and more and not at once.
+fn is_gradual(candidate: &Candidate) -> bool {
+    candidate.free_parameters.iter().any(|free| free.name == BASE_TURN_ROWS)
 }
 
 /// The number with the index `index` of a candidate; 0 if it is fitted.
@@ -431,7 +558,7 @@ fn twists(joint: &str, torque_nm: f64, twist_rad: f64) -> [Candidate; 2] {
 
 /// The laws of a channel's readings as candidates: a nonlinear characteristic, and a gain for each direction if the
 /// channel has three components. `largest` is the largest reading, in its unit.
-fn readings(channel: Channel, largest: f64) -> Vec<Candidate> {
+fn readings(forward: &Forward, channel: Channel, largest: f64) -> Vec<Candidate> {
     let bend = Parameter { count: 2, ..Parameter::number(BEND, -1.0, 1.0, 0.1, Scale::Linear) };
     let bent = law(channel.word(), bend, 0.0);
     let mut numbers = of_channel(channel, IN_STATIC.bend);
@@ -439,8 +566,7 @@ fn readings(channel: Channel, largest: f64) -> Vec<Candidate> {
     let mut out = vec![Candidate { numbers, ..bent }];
     if channel.components() == 3 {
         let gain = Parameter::vector(GAIN, 0.5, 2.0, 1.0).absent(Absent::AtOne);
-        let gains = law(channel.word(), gain, 1.0);
-        out.push(Candidate { numbers: of_channel(channel, IN_STATIC.gain), ..gains });
+        out.push(of_displacements(gain, 1.0, IN_STATIC.gain.start, &measured(forward)));
     }
     out
 }

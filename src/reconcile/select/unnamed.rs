@@ -118,10 +118,22 @@ fn competitors(search: &Search, fit: &Fit) -> Vec<Competitor> {
 
 /// Fits the model of `fit` together with the law `law`. The predictions are linearized about `fit`.
 fn competitor(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Competitor {
+    let (objective, evidence) = with_columns(forward, fit, &law.columns, weights);
+    Competitor { what: law.what.clone(), numbers: law.columns.len(), objective, evidence }
+}
+
+/// The logarithm of the evidence of the model of `fit` together with a law. `columns` has, for each parameter of the law, the
+/// change of every reading per unit of the parameter. The predictions are linearized about `fit`.
+pub(super) fn evidence_with(forward: &Forward, fit: &Fit, columns: &[Vec<f64>], weights: &Weights) -> f64 {
+    with_columns(forward, fit, columns, weights).1
+}
+
+/// The objective and the logarithm of the evidence of the model of `fit` together with a law that has these `columns`.
+fn with_columns(forward: &Forward, fit: &Fit, columns: &[Vec<f64>], weights: &Weights) -> (f64, f64) {
     let own = fit.point.u.len();
-    let n = own + law.columns.len();
-    let mut further = DMatrix::zeros(fit.jacobian.nrows(), law.columns.len());
-    further.column_iter_mut().zip(&law.columns).for_each(|(mut to, column)| to.copy_from_slice(column));
+    let n = own + columns.len();
+    let mut further = DMatrix::zeros(fit.jacobian.nrows(), columns.len());
+    further.column_iter_mut().zip(columns).for_each(|(mut to, column)| to.copy_from_slice(column));
     let columns = [&fit.jacobian, &further];
     let columns = Slopes(&columns);
     let mut origin = fit.point.u.clone();
@@ -161,7 +173,7 @@ fn competitor(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Com
     let determinant = Cholesky::new(curvature)
         .map_or(f64::INFINITY, |c| 2.0 * c.l().diagonal().iter().map(|d| libm::log(*d)).sum::<f64>());
     evidence -= 0.5 * determinant;
-    Competitor { what: law.what.clone(), numbers: law.columns.len(), objective, evidence }
+    (objective, evidence)
 }
 
 /// Width of the prior of the parameter with index `p` at the value `u`. The first `own` parameters belong to the

@@ -15,6 +15,8 @@ pub struct LinkOption {
     pub section: Value,
     pub profile: String,
     pub strength_pa: Option<f64>,
+    /// Only where the catalog states it.
+    pub shear_strength_pa: Option<f64>,
     pub cost_eur_per_kg: Option<f64>,
     pub density_kg_m3: f64,
     pub tube: Tube,
@@ -93,6 +95,7 @@ impl LinkOption {
                 .iter()
                 .filter_map(|column| material.number(column))
                 .reduce(f64::min),
+            shear_strength_pa: material.number("shear_strength_pa"),
             cost_eur_per_kg: material.number("cost_eur_per_kg"),
             density_kg_m3: figure("density_kg_m3"),
         }

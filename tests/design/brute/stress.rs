@@ -3,8 +3,9 @@
 //! Peak load is gravity, payload and tip force times 1 + a / g in the sizing poses, the paper's reading of Eq 8, and
 //! times 1 in the others. At
 //! either end of a link, bending in both planes and the axial force add up at the worst corner (round: on the rim);
-//! with the shear stress of torsion they make von Mises' stress. Transverse shear is left out. It is compared with the
-//! lower of the strengths in tension and in compression.
+//! with the shear stress of torsion they make an equivalent stress. Transverse shear is left out. The normal stress is
+//! compared with the lower of the strengths in tension and in compression, the shear stress with the strength in shear,
+//! and the squares of both ratios add (Tsai and Hill); without a strength in shear this is von Mises' stress.
 
 use nalgebra::Vector3;
 
@@ -25,8 +26,11 @@ pub fn stress_safety_factor(study: &Study, poses: &[(&Pose, Posed)], chain: &[Ch
                 let (force_n, moment_nm) = wrench(study, pose, index, chain, is_root);
                 let axes = pose.1.places[index].frame * section_axes(vector_m);
                 let (force_n, moment_nm) = (axes.transpose() * force_n, axes.transpose() * moment_nm);
-                let stress_pa = load * von_mises_pa(&option.tube, &force_n, &moment_nm);
-                let factor = option.strength_pa? / stress_pa;
+                let [normal_pa, shear_pa] = stresses_pa(&option.tube, &force_n, &moment_nm);
+                let strength_pa = option.strength_pa?;
+                let shear_strength_pa = option.shear_strength_pa.unwrap_or(strength_pa / 3f64.sqrt());
+                let used = (normal_pa / strength_pa).hypot(shear_pa / shear_strength_pa);
+                let factor = 1.0 / (load * used);
                 least = Some(least.map_or(factor, |other| other.min(factor)));
             }
         }
@@ -61,7 +65,8 @@ fn wrench(
     total
 }
 
-fn von_mises_pa(tube: &Tube, force_n: &Vector3<f64>, moment_nm: &Vector3<f64>) -> f64 {
+/// The largest normal stress and the largest shear stress.
+fn stresses_pa(tube: &Tube, force_n: &Vector3<f64>, moment_nm: &Vector3<f64>) -> [f64; 2] {
     let bending_pa = if tube.is_round {
         moment_nm.y.hypot(moment_nm.z) * tube.width_m / 2.0 / tube.over_z2_m4
     } else {
@@ -70,7 +75,7 @@ fn von_mises_pa(tube: &Tube, force_n: &Vector3<f64>, moment_nm: &Vector3<f64>) -
     };
     let normal_pa = bending_pa + force_n.x.abs() / tube.area_m2;
     let shear_pa = moment_nm.x.abs() * shear_per_torque_1_m3(tube);
-    (normal_pa.powi(2) + 3.0 * shear_pa.powi(2)).sqrt()
+    [normal_pa, shear_pa]
 }
 
 /// A rectangle as in the finite elements; a round section exactly, on its outside.
