@@ -51,19 +51,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         candidates: &candidates,
         weights: &weights,
     };
-    let hopeless = found.selection.given_up || !search.may_explain(chosen);
-    let mut best = match hopeless {
-        true => search.fit(&chosen.effects, &chosen.u, Effort::default()),
-        false => search.polish(&chosen.effects, &chosen.u),
-    };
-    let in_series = match few || hopeless {
-        true => None,
-        false => InSeries::of_rare_factors(&search, &search.scored(&chosen.effects, &best)),
-    };
-    if let Some(found_in_series) = &in_series {
-        found.selection.best = found_in_series.model.clone();
-        best = search.polish(&found_in_series.model.effects, &found_in_series.model.u);
-    }
+    let (best, in_series) = best_model(&search, &mut found.selection, few);
     let chosen = &found.selection.best;
     let baseline = search.fit(&[], &found.selection.baseline.u, Effort::default());
     let with_laws = [candidates.as_slice(), &empirical::laws(&forward, &baseline, &weights)].concat();
@@ -101,6 +89,21 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         expected_rms,
     };
     analysis.conclude()
+}
+
+/// The best model of the search, fitted until it has converged. If a calibrated factor is rare in it, the model with an
+/// effect that takes the place of the factor becomes the best one, and is returned too.
+fn best_model<'s>(search: &Search<'s>, selection: &mut Selection, few: bool) -> (Fit<'s>, Option<InSeries>) {
+    let chosen = &selection.best;
+    if selection.given_up || !search.may_explain(chosen) {
+        return (search.fit(&chosen.effects, &chosen.u, Effort::default()), None);
+    }
+    let best = search.polish(&chosen.effects, &chosen.u);
+    let found = (!few).then(|| InSeries::of_rare_factors(search, &search.scored(&chosen.effects, &best)));
+    let Some(found) = found.flatten() else { return (best, None) };
+    let best = search.polish(&found.model.effects, &found.model.u);
+    selection.best = found.model.clone();
+    (best, Some(found))
 }
 
 /// The candidates (effects at places) that the search tries: every effect that the campaign admits and the readings

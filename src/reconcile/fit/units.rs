@@ -112,9 +112,11 @@ fn other_signs(forward: &Forward) -> Vec<String> {
 
 /// Displacements are taken for positions if they are this many times the largest displacement of the nominal arm.
 const LIKE_POSITIONS: f64 = 20.0;
+/// Positions of the tip in the rows of a file are nearly the same if the largest is at most this many times the smallest.
+const NEARLY_THE_SAME: f64 = 1.3;
 
 /// Sentence which asks whether the static readings are positions of the tip rather than its displacements: those of a
-/// component are all on one side of zero, and far larger than any displacement of the nominal arm. `None` if none is.
+/// component are nearly the same in all rows, and far larger than any displacement of the nominal arm. `None` if none is.
 pub(crate) fn like_positions(forward: &Forward) -> Option<String> {
     let nominal = forward.predict(&forward.coefficients(&forward.nominal));
     let range = forward.range(Channel::Static);
@@ -127,8 +129,11 @@ pub(crate) fn like_positions(forward: &Forward) -> Option<String> {
             .collect();
         let least = own.iter().fold(f64::INFINITY, |m, d| m.min(d.abs()));
         let one_sided = own.iter().all(|d| *d > 0.0) || own.iter().all(|d| *d < 0.0);
+        let greatest = own.iter().fold(0.0f64, |m, d| m.max(d.abs()));
+        // displacements in another unit follow the load, and are not nearly the same in every row
+        let is_same = greatest < NEARLY_THE_SAME * least;
         let is_far = own.len() >= FEWEST_ALIKE && one_sided && least > LIKE_POSITIONS * largest;
-        is_far.then_some((DISPLACEMENT.values[c], median(own)))
+        (is_far && is_same).then(|| (DISPLACEMENT.values[c], median(own)))
     };
     let (column, value) = (0..3).find_map(of_component)?;
     Some(format!(

@@ -130,6 +130,17 @@ pub(crate) fn read_statement(path: &Path) -> Result<Statement, InputError> {
     Ok(document.finish(statement)?)
 }
 
+/// Reads the arm file of a campaign; `None` if it has faults or is missing, which is added to `faults`.
+fn read_arm_of(path: &Path, catalogs: &Catalogs, faults: &mut Vec<Fault>) -> Result<Option<Arm>, InputError> {
+    if path.exists() {
+        return keep_faults(read_arm(path, catalogs), faults);
+    }
+    let hint = "the arm file of the campaign belongs here; `armwright new campaign ARM --out DIR` starts a folder with a copy \
+                of its arm";
+    faults.push(missing(path, hint));
+    Ok(None)
+}
+
 /// The fault that a file is missing.
 fn missing(path: &Path, hint: &str) -> Fault {
     let file = path.display().to_string();
@@ -260,18 +271,7 @@ impl Campaign {
         let mut faults = Vec::new();
         let statement = keep_faults(read_statement(&folder.join("campaign.json")), &mut faults)?;
         let arm_file = statement.as_ref().map_or("arm.json", |s| s.arm_file.as_str());
-        let arm_path = folder.join(arm_file);
-        let arm = match arm_path.exists() {
-            true => keep_faults(read_arm(&arm_path, catalogs), &mut faults)?,
-            false => {
-                faults.push(missing(
-                    &arm_path,
-                    "the arm file of the campaign belongs here; `armwright new campaign ARM --out DIR` starts a folder with \
-                     a copy of its arm",
-                ));
-                None
-            }
-        };
+        let arm = read_arm_of(&folder.join(arm_file), catalogs, &mut faults)?;
         let mut other_arms = Vec::new();
         for file in statement.iter().flat_map(|s| &s.other_arm_files) {
             other_arms.extend(keep_faults(read_arm(&folder.join(file), catalogs), &mut faults)?);
@@ -295,31 +295,7 @@ impl Campaign {
         let arms = std::iter::once(&campaign.arm).chain(&campaign.other_arms);
         faults.extend(arms.filter_map(|arm| arm.tilt_fault(&arm.name)));
         for channel in Channel::ALL {
-            if let Some(file) = campaign.file(channel) {
-                if !file.exists() {
-                    faults.push(missing(
-                        &file,
-                        &format!(
-                            "campaign.json names it for the {} readings; `armwright new campaign ARM --out DIR` writes such \
-                             a file with its columns",
-                            channel.word()
-                        ),
-                    ));
-                    continue;
-                }
-                let source = campaign.statement.source(channel);
-                let mut table = Table::read_from(&file, &source)?;
-                table.refuse_more_than(MOST_READINGS);
-                campaign.read_channel(channel, &table);
-                campaign.remarks.extend(table.unused());
-                campaign.remarks.extend(table.rows.is_empty().then(|| {
-                    format!(
-                        "{}: has the names of columns and no row of readings: it is not used",
-                        table.short_name()
-                    )
-                }));
-                faults.extend(table.into_faults());
-            }
+            campaign.read_file(channel, &mut faults)?;
         }
         if !campaign.positions.is_empty() {
             let arms = std::iter::once(&campaign.arm).chain(&campaign.other_arms);
@@ -336,6 +312,30 @@ impl Campaign {
         );
         campaign.hash = campaign.hash_files();
         if faults.is_empty() { Ok(campaign) } else { Err(Faults(faults).into()) }
+    }
+
+    /// Reads the file of a channel, if there is one. Its faults are added to `faults`.
+    fn read_file(&mut self, channel: Channel, faults: &mut Vec<Fault>) -> Result<(), InputError> {
+        let Some(file) = self.file(channel) else { return Ok(()) };
+        if !file.exists() {
+            let hint = format!(
+                "campaign.json names it for the {} readings; `armwright new campaign ARM --out DIR` writes such a file with \
+                 its columns",
+                channel.word()
+            );
+            faults.push(missing(&file, &hint));
+            return Ok(());
+        }
+        let source = self.statement.source(channel);
+        let mut table = Table::read_from(&file, &source)?;
+        table.refuse_more_than(MOST_READINGS);
+        self.read_channel(channel, &table);
+        self.remarks.extend(table.unused());
+        self.remarks.extend(table.rows.is_empty().then(|| {
+            format!("{}: has the names of columns and no row of readings: it is not used", table.short_name())
+        }));
+        faults.extend(table.into_faults());
+        Ok(())
     }
 
     /// Stores the rows of a table. Components that were not measured are left out with a remark (see
