@@ -336,11 +336,6 @@ fn tables_of_other_programs_are_refused_in_one_line() {
     assert!(Campaign::read(folder.path(), &Catalogs::default()).is_ok(), "a byte order mark is no fault");
 }
 
-/// The faults of a campaign that is refused, as text.
-fn faults(folder: &Path) -> String {
-    Campaign::read(folder, &Catalogs::builtin()).expect_err("refused").to_string()
-}
-
 /// A campaign in whose file the names of the columns are those that `rename` gives.
 fn with_columns(file: &str, rename: impl Fn(&str) -> String) -> tempfile::TempDir {
     edited(file, |line, text| {
