@@ -32,6 +32,7 @@ const STOREYS_OF_RECONCILE: &[&[&str]] = &[
     &["verdict"],
     &["positions", "records"],
     &["analysis", "predict", "starter"],
+    &["ruling"],
     &["together", "predict_files"],
 ];
 

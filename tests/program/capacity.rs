@@ -329,7 +329,7 @@ fn a_file_that_is_no_json_is_refused_with_its_line_whatever_the_flags() {
         let output = armwright(&[&["capacity", "arm.json"], flags].concat(), dir.path());
         let said = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(3), "{flags:?}: {said}");
-        assert!(said.contains("arm.json:2: column 57: not valid JSON"), "{flags:?}: {said}");
+        assert!(said.contains("arm.json:2: column 60: not valid JSON"), "{flags:?}: {said}");
     }
     // a study that can be read still says that these flags are not for it
     std::fs::write(dir.path().join("s.json"), studies()[0].to_string()).expect("written");

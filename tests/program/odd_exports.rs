@@ -102,7 +102,8 @@ fn a_base_that_lifts_off_about_one_axis_has_one_hinge() {
     let tip_m = -2.0 * (98.1 / 1e5 + 48.1 / 5e5);
     close(record["expected"]["tip_displacement_m"][2].as_f64().expect("m"), tip_m);
     let option = xml.lines().find(|line| line.contains("timestep")).expect("options");
-    assert!(of(option, "timestep") > 1e-6, "{option}");
+    // the spring of the base vibrates fast, because only the lever's inertia about its axis turns with it
+    assert!((1e-8..1e-3).contains(&of(option, "timestep")), "{option}");
 }
 
 #[test]
@@ -134,6 +135,9 @@ fn no_export_has_a_number_that_is_infinite_or_none() {
         let (_, out) = export(folder.path(), arm, format);
         for file in fs::read_dir(&out).expect("a folder") {
             let path = file.expect("a file").path();
+            if path.is_dir() {
+                continue;
+            }
             let content = fs::read_to_string(&path).expect("text").to_lowercase();
             let mut words = content.split(|c: char| !c.is_alphanumeric());
             let odd = words.find(|word| matches!(*word, "inf" | "infinity" | "nan"));

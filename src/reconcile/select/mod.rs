@@ -5,7 +5,6 @@ pub(crate) mod added_laws;
 pub(crate) mod empirical;
 mod event_rows;
 pub(crate) mod few_rows;
-pub(crate) mod in_series;
 pub(crate) mod lack_of_fit;
 pub(crate) mod laws;
 pub(crate) mod screening;

@@ -5,6 +5,7 @@ pub(crate) mod correct;
 pub(crate) mod corrected_model;
 pub(crate) mod files;
 pub(crate) mod fitted;
+pub(crate) mod in_series;
 pub mod joint_record;
 pub(crate) mod judgement;
 pub(crate) mod locate;

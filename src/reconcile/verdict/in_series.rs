@@ -4,16 +4,16 @@
 //! joint. The prior of the calibrated factor makes up for a part of the difference in the evidence only. So where a factor
 //! is rare, the effects at its place are fitted again from the nominal part.
 
-use super::screening::MOST_EFFECTS;
-use super::search::{Scored, Search};
+use super::caution;
+use super::fitted;
+use super::judgement::WEAK_EVIDENCE;
 use crate::arm::effect::kind::Place;
 use crate::arm::structure::Piece;
 use crate::reconcile::fit::descent::Effort;
 use crate::reconcile::model::calibration::Calibration;
 use crate::reconcile::model::parameters::Candidate;
-use crate::reconcile::verdict::caution;
-use crate::reconcile::verdict::fitted;
-use crate::reconcile::verdict::judgement::WEAK_EVIDENCE;
+use crate::reconcile::select::screening::MOST_EFFECTS;
+use crate::reconcile::select::search::{Scored, Search};
 use rayon::prelude::*;
 
 /// An effect is at the place of a part if it is at most this many elements of the chain away, such as the base below the
