@@ -70,11 +70,11 @@ pub(crate) struct Selection {
 }
 
 /// A candidate that was added to a model without a full fit.
-pub(super) struct Screened {
+pub(crate) struct Screened {
     /// Index of the candidate.
-    pub(super) candidate: usize,
+    pub(crate) candidate: usize,
     /// The parameters from which a full fit starts.
-    pub(super) u: Vec<f64>,
+    pub(crate) u: Vec<f64>,
     score: f64,
 }
 
@@ -362,7 +362,7 @@ impl<'a> Search<'a> {
     }
 
     /// The same as [`Self::screen`], but among the candidates for which `is_open` is true.
-    pub(super) fn screen_among(
+    pub(crate) fn screen_among(
         &self,
         base: &Scored,
         is_open: impl Fn(&Candidate) -> bool + Sync,
