@@ -49,7 +49,7 @@ use std::sync::Arc;
 ///     shear_modulus_pa: 8.1e10,
 ///     density_kg_m3: 7850.0,
 ///     poisson: 0.3,
-///     strength: Some(Strength { along_pa: 355e6, shear_pa: None }),
+///     strength: None,
 ///     class: None,
 /// };
 /// let tube = |wall_m: f64| LinkOption {
@@ -415,8 +415,8 @@ impl LinkOption {
         Beam { material: self.material, section: self.section, flexibility: 1.0 }
     }
 
-    /// A tube that the study gives, in the form of a link's only option. Strength and cost are unknown, so that no
-    /// limit on them applies.
+    /// A tube that the study gives, in the form of a link's only option. Its cost is unknown, so that no limit on
+    /// the cost applies.
     pub(crate) fn given(material: LinkMaterial, section: Section) -> Self {
         Self {
             material_index: 0,
