@@ -17,7 +17,7 @@ use super::load::vector;
 use super::pieces::{elements_of, read_links};
 use super::prismatic::Prismatic;
 use super::prismatic_keys::PRISMATIC;
-use super::section::LinkMaterial;
+use super::section::{LinkMaterial, Strength};
 use super::springs::Spring;
 use super::springs_file::{BodiesOf, Named, Values, hang, read_counterweights, read_springs};
 use super::transmission::{Seen, Transmission, gear_is_at_motor, read_turns_with};
@@ -140,14 +140,31 @@ fn read_material(node: &Node) -> Option<LinkMaterial> {
         nu => n.fault(format!("= {nu} is not a Poisson's ratio"), "give a number from -1 to 0.5"),
     });
     let class = object.optional("class").map(|n| read_class(&n));
-    Some(LinkMaterial {
+    let material = LinkMaterial {
         youngs_modulus_pa: youngs?,
         shear_modulus_pa: shear?,
         density_kg_m3: density?,
         poisson: poisson?,
         strength: None,
         class: class.map_or(Some(None), |read| read.map(Some))?,
-    })
+    };
+    read_strength(node, &object, &material).map(|strength| LinkMaterial { strength, ..material })
+}
+
+/// Reads the strength of a material, `Some(None)` if none is stated. Returns `None` after recording a fault.
+fn read_strength(node: &Node, object: &Object, material: &LinkMaterial) -> Option<Option<Strength>> {
+    let positive = |key| object.or(key, None, |n| n.positive().map(Some));
+    match (positive("strength_pa")?, positive("shear_strength_pa")?) {
+        (None, Some(_)) => node.fault(
+            "has shear_strength_pa without strength_pa",
+            "add strength_pa, the strength along the link in Pa: both stresses are judged together",
+        ),
+        (Some(_), None) if material.is_soft_in_shear() => node.fault(
+            "has strength_pa without shear_strength_pa, and its shear modulus is less than half of E/2(1+nu)",
+            "add shear_strength_pa, the strength in shear in Pa: of such a material it does not follow from strength_pa",
+        ),
+        (along_pa, shear_pa) => Some(along_pa.map(|along_pa| Strength { along_pa, shear_pa })),
+    }
 }
 
 /// Reads the class of a material. Returns `None` after recording a fault.

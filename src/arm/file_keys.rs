@@ -69,6 +69,20 @@ pub(crate) static MATERIAL: Shape = Shape::new(
             "Poisson's ratio, used in the shear factor only.",
         ),
         optional(
+            "strength_pa",
+            Kind::Positive,
+            "Pa",
+            "none",
+            "Strength along the link, the lower of tension and compression. Without it no stress is judged.",
+        ),
+        optional(
+            "shear_strength_pa",
+            Kind::Positive,
+            "Pa",
+            "strength_pa / √3",
+            "Strength in shear of a material whose fibres run along the link (Tsai and Hill).",
+        ),
+        optional(
             "class",
             Kind::Word(&MaterialClass::WORDS),
             "-",

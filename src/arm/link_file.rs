@@ -106,12 +106,17 @@ fn find_material(
 
 /// The elastic material of a row of the catalog; `None` if the row states no shear modulus.
 pub(crate) fn material_of(row: &Material) -> Option<LinkMaterial> {
+    elastic(row).map(|material| LinkMaterial { strength: strength_of(row), ..material })
+}
+
+/// The material of a row of the catalog without its strength; `None` if the row states no shear modulus.
+fn elastic(row: &Material) -> Option<LinkMaterial> {
     Some(LinkMaterial {
         youngs_modulus_pa: row.youngs_modulus_pa,
         shear_modulus_pa: row.shear_modulus_pa?,
         density_kg_m3: row.density_kg_m3,
         poisson: row.poisson.unwrap_or(DEFAULT_POISSON),
-        strength: strength_of(row),
+        strength: None,
         class: Some(row.class),
     })
 }
@@ -128,8 +133,7 @@ fn strength_of(row: &Material) -> Option<Strength> {
 /// from the strength along the link. It does not in wood, in layers whose fibres all run along the link, and in other
 /// materials whose shear modulus is less than half of `E/2(1+ν)`.
 pub(crate) fn lacks_shear_strength(row: &Material) -> bool {
-    let isotropic_pa = row.youngs_modulus_pa / (2.0 * (1.0 + row.poisson.unwrap_or(DEFAULT_POISSON)));
-    let is_soft = row.shear_modulus_pa.is_some_and(|shear_pa| shear_pa < 0.5 * isotropic_pa);
+    let is_soft = elastic(row).is_some_and(|material| material.is_soft_in_shear());
     row.shear_strength_pa.is_none() && (row.unidirectional || row.class == MaterialClass::Wood || is_soft)
 }
 

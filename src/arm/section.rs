@@ -53,6 +53,12 @@ impl LinkMaterial {
             ..*self
         }
     }
+
+    /// Whether the shear modulus is less than half of that of an isotropic material, `E/2(1+ν)`. The strength in shear
+    /// of such a material does not follow from its strength along the link.
+    pub(crate) fn is_soft_in_shear(&self) -> bool {
+        self.shear_modulus_pa < 0.5 * self.youngs_modulus_pa / (2.0 * (1.0 + self.poisson))
+    }
 }
 
 /// Strength of a material along a link.

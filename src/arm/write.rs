@@ -4,7 +4,7 @@ use super::bearing::Bearing;
 use super::effect::entry::{Effect, word_of};
 use super::extras::Extras;
 use super::joint_law::Curve;
-use super::section::Section;
+use super::section::{Section, Strength};
 use super::{Arm, Element, Joint, Link, LinkBody};
 use nalgebra::Vector3;
 use serde_json::{Map, Value, json};
@@ -47,6 +47,12 @@ impl Arm {
                 });
                 if let Some(class) = material.class {
                     keys["class"] = json!(class.to_string());
+                }
+                if let Some(Strength { along_pa, shear_pa }) = material.strength {
+                    keys["strength_pa"] = json!(along_pa);
+                    if let Some(shear_pa) = shear_pa {
+                        keys["shear_strength_pa"] = json!(shear_pa);
+                    }
                 }
                 map.insert(material_name.clone(), keys);
             }
