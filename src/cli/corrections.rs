@@ -17,7 +17,8 @@ use std::path::Path;
 /// A study with the corrections of the arm file at `path` applied. `text` is the text of the study's file.
 ///
 /// # Errors
-/// The file cannot be read, or no effect and no calibrated value of the arm file applies to the study.
+/// The arm file cannot be read or is faulty, its folder is being written, or the corrected study is faulty. It is also
+/// an error if no effect and no calibrated value of the arm file applies to the study.
 pub(super) fn from_arm_file(
     path: &Path,
     study: &Study,

@@ -33,9 +33,9 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// Joins the shards of a search into its front. They must be of one study, one version and the same catalogs, and cover
-/// every design; what is missing is listed with the command that makes it. The result is the same as that of a search
-/// on one machine.
+/// Joins the shards of a search into its front. All shards must have the same study, catalogs, flags and version of
+/// armwright. Together they must cover every design. If shards are missing, the commands that make them are listed. The
+/// result is the same as that of a search on one machine.
 #[derive(Debug, Args)]
 #[command(after_help = "Example: armwright run my-study.json --shard 1/2 --out parts/1-of-2\n         \
                   armwright run my-study.json --shard 2/2 --out parts/2-of-2\n         \

@@ -20,7 +20,7 @@ const KEEP_EVERY: Duration = Duration::from_secs(2);
 /// Running time divided by the time that may be spent on saving states. If saving takes more than this share (1/200),
 /// the time between two saves is made longer.
 const SAVING_SHARE_OF_TIME: u32 = 200;
-/// Ending of the name of a file with a state.
+/// Ending of the file name of a saved state.
 pub(super) const ENDING: &str = ".unfinished";
 /// Keys that must be equal in the saved state and in the search that is to be continued. Each comes with the word for
 /// it in messages.

@@ -9,8 +9,8 @@ use quick_xml::events::Event;
 /// Elements that do not matter for an arm.
 const IGNORED: [&str; 5] = ["visual", "collision", "material", "gazebo", "transmission"];
 
-/// The text of a URDF file with everything blanked out that says how the robot looks. A text that is no XML is returned
-/// as it is.
+/// The text of a URDF file in which the elements of [`IGNORED`] are overwritten with spaces. Line breaks stay. A text
+/// that is not XML is returned unchanged.
 pub(super) fn without_shapes(text: &str) -> String {
     let mut out = text.as_bytes().to_vec();
     let mut reader = Reader::from_str(text);

@@ -19,7 +19,8 @@ pub(crate) struct Outboard<const N: usize> {
     steps: Vec<Shared<N>>,
 }
 
-/// A step of the pass that all eight chains share.
+/// A step of the computation from the tip to the base: a body, a joint or a link of the outboard part. It is the same
+/// for all eight chains. A joint has the twist vector of its axis and its compliance \[rad/(N m)\].
 #[derive(Debug, Clone)]
 enum Shared<const N: usize> {
     Body(SMatrix<f64, N, N>),

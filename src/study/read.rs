@@ -289,7 +289,8 @@ struct Open<'a> {
     duty: Option<&'a StatedDuty>,
 }
 
-/// Refuses a chain that is too long, or has too many joints, for a search. Returns `None` after recording a fault.
+/// Refuses a chain that is empty, or that has too many elements or joints for a search. Returns `None` after recording
+/// a fault.
 fn fits_a_search(node: &Node, items: &[Node]) -> Option<()> {
     let elements: usize = items.iter().map(elements_of).sum();
     let joints = items.iter().filter(|n| n.value().get("type").is_some_and(|kind| kind != "link")).count();

@@ -13,7 +13,8 @@ use super::question::{
 };
 use std::f64::consts::PI;
 
-/// The motion of one joint, on the output side of its gear.
+/// What the study asks of the drive of one joint: the motion on the output side of the gear, the life, the emergency
+/// stops, the brake and the limits on sizes.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Duty {
     /// Largest speed of the joint \[rad/s\].

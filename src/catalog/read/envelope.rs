@@ -3,7 +3,7 @@
 use super::row::{Order, Row};
 use crate::catalog::envelope::Envelope;
 
-/// Checks and reads the outer size of a part.
+/// Reads the outer diameter, the length and the bore of a part, and checks them.
 pub(crate) fn envelope(row: &Row) -> Envelope {
     let [outer, length, bore] =
         ["outer_diameter_mm", "length_mm", "hollow_bore_mm"].map(|c| (c, row.number(c)));

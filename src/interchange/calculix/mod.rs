@@ -1,4 +1,5 @@
-//! Export to CalculiX: links become solids of quadratic bricks, joints become hinges with springs.
+//! Export to CalculiX: links become solids of quadratic bricks, joints become hinges with springs. Links without
+//! compliance, and links whose section cannot be meshed, become rigid bodies.
 //!
 //! - [`mesh`] divides a link into bricks.
 //! - [`model`] builds the whole arm in the pose of a case: rigid regions, hinges, point masses, loads.

@@ -38,9 +38,9 @@ pub(crate) fn fold_of(forward: &Forward, datum: usize) -> Option<usize> {
     Some(group % FOLDS)
 }
 
-/// Residual of every datum, predicted with its pose held out, measured minus predicted \[declared standard
-/// deviations\]. `u` are the parameters of the full fit, from which each refit starts. `None` for data that are never
-/// held out.
+/// Residual of every datum: the measured value minus the prediction by a fit without the fold of the datum \[declared
+/// standard deviations\]. Each of these fits starts from the parameters `u` of the full fit. Break points of gear
+/// curves keep their values. `None` for data that are in no fold, and for data that `weights` leaves out.
 pub(crate) fn residuals(forward: &Forward, model: &Model, u: &[f64], weights: &Weights) -> Vec<Option<f64>> {
     // A frequency jumps where a torque passes a break point. If the break points were free, a held-out test close to a
     // break point would be predicted from either side by chance.

@@ -179,7 +179,7 @@ pub struct Coefficients {
 pub(crate) struct StaticChanges {
     /// Whether the linear compliances differ.
     pub linear: bool,
-    /// Whether the weights of the arm's masses differ.
+    /// Whether the weights of the arm's masses differ so that readings can change.
     pub weights: bool,
     /// Whether the payload's mass, centre of gravity or buoyancy differ.
     pub payload: bool,
@@ -403,7 +403,8 @@ impl Coefficients {
         law
     }
 
-    /// Which of the numbers that static readings depend on differ between this subject and `other`.
+    /// Compares the numbers on which static readings depend with those of `other`, and says which of them differ. A
+    /// difference of the weights counts only if it can change the readings.
     pub(crate) fn static_changes(&self, other: &Self) -> StaticChanges {
         let in_test = |c: &Self, joint: usize| {
             let test = &c.tests[Channel::Static as usize];

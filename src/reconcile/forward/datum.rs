@@ -11,7 +11,7 @@ pub struct Datum {
     pub channel: Channel,
     /// Row in the file of the channel, from 0.
     pub row: usize,
-    /// Index of the row among the rows of its channel in the campaign, from 0.
+    /// Index of the row in the campaign's list of readings of this channel, such as `Campaign::statics`, from 0.
     pub index: usize,
     /// Index of the component, 0 to 2, if the reading is a vector; 0 for a single value.
     pub component: usize,

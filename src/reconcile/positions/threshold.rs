@@ -100,8 +100,9 @@ impl Positions {
         if is_better(&left.1, &right.1) { left.1 } else { right.1 }
     }
 
-    /// The model with the best threshold of effect number `position`, by parabolas through the likelihoods of three thresholds
-    /// about the logarithm `ln_nm` \[ln(N m)\]. No logarithm is above `high`.
+    /// The model with the best threshold of effect number `position`. The logarithm of the likelihood is computed at
+    /// three thresholds about `ln_nm` \[ln(N m)\], and then at the vertex of the parabola through these values. This is
+    /// done for each width of [`WIDTHS`]. `high` is the largest logarithm of a threshold that is tried.
     fn at_the_vertex(&self, position: usize, mut ln_nm: f64, high: f64) -> Self {
         let at = |ln: f64| self.with_threshold(position, libm::exp(ln));
         let mut best = at(ln_nm);

@@ -197,7 +197,8 @@ pub(crate) struct TwistModel<'a> {
 /// of its angle, and a transmission error once a turn has the same form.
 ///
 /// A fit with the transmission error can therefore give a compliance near zero, and still predict as well as a fit with
-/// the true compliance. Such a fit is recognised by its negative rotor inertia.
+/// the true compliance. The twist under the torque that accelerates the link is then left. The fit assigns it to the
+/// acceleration of the motor, which gives a negative rotor inertia. Such a fit is recognised by this sign.
 pub(crate) struct ErrorOrGravity {
     /// Fit without the transmission error of the output.
     pub without: Fitted,
@@ -459,8 +460,8 @@ impl<'a> TwistModel<'a> {
         fitted.held_out_rms() < times * libm::hypot(self.rows.averaged_noise_rad(), by_torque_rad)
     }
 
-    /// Whether the fit `fitted` by the groups `groups` predicts held-out blocks clearly better than a fit without the
-    /// compliance. Always `false` if the rotor's inertia is stated.
+    /// Whether the fit `fitted` with the column groups `groups` predicts held-out blocks clearly better than a fit
+    /// without the compliance. Always `false` if the rotor's inertia is stated or `groups` has no compliance.
     fn shows_compliance(&self, groups: &[Group], fitted: &Fitted) -> bool {
         let others: Vec<Group> = groups.iter().copied().filter(|g| *g != Group::Compliance).collect();
         self.rows.rotor_inertia_kgm2.is_none()

@@ -74,8 +74,9 @@ fn sentence(outcome: &Outcome) -> String {
     }
 }
 
-/// Section on the corrected arm for the verdict `unexplained`: the models that the arm could have, and the laws
-/// without a name in the chosen one. `None` for other verdicts.
+/// Section on the corrected arm for the verdict `unexplained`. It has the models from which the model of
+/// `arm.corrected.json` was chosen, and the laws without a name in the chosen model. `None` if the outcome lists no
+/// models.
 fn corrected_models(outcome: &Outcome) -> Option<PageSection> {
     if outcome.models.is_empty() {
         return None;

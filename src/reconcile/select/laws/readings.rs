@@ -1,5 +1,6 @@
-//! Laws of readings: an instrument that is not linear, that has a gain of its own for one direction or one kind of
-//! load, or whose frame is rotated.
+//! Laws of readings: an instrument that is not linear, that has an offset, that has a gain of its own for one direction
+//! or one kind of load, or whose frame is rotated. Further laws here are payloads heavier than stated, a support that
+//! deflects in the direction of the load, and readings that grow while a pose is kept.
 
 use super::{Builder, Law, one_or_both};
 use crate::arm::effect::channel::Channel;
