@@ -61,7 +61,7 @@ pub use linkage::Linkage;
 pub use load::{LoadCase, Payload, Water, read_load_cases};
 pub use pose::{DrivenJoint, Motion, any_slides, pose_json, pose_si};
 pub use prismatic::{Guide, GuideLimits, Moves, NamedPart, Prismatic, PrismaticPiece};
-pub use section::{LinkMaterial, Section, SectionProperties, StatedSection};
+pub use section::{LinkMaterial, Section, SectionProperties, StatedSection, Strength};
 pub use springs::{Drawn, Spring, SpringEnd, SpringKind, SpringLaw, SpringPlace};
 pub use structure::{Beam, FrameCompliance, JointAngle, JointPiece, LinkPiece, Piece, Structure};
 pub use transmission::{Stage, Stages};

@@ -313,6 +313,20 @@ fn refuses_an_unknown_material_in_an_arm_and_suggests_one() {
     assert_says(&Bench::with_study(&arm).refuses_arm(FAULTY_INPUT), &["\"stel\"", "steel"]);
 }
 
+/// The strength in shear of a material that is soft in shear does not follow from its strength along the link.
+#[test]
+fn refuses_a_strength_of_fibres_without_the_strength_in_shear() {
+    let mut arm = small_arm();
+    arm["materials"]["steel"]["shear_modulus_pa"] = json!(5e9);
+    arm["materials"]["steel"]["strength_pa"] = json!(1.5e9);
+    assert_says(&Bench::with_study(&arm).refuses_arm(FAULTY_INPUT), &["steel", "add shear_strength_pa"]);
+    arm["materials"]["steel"]["shear_strength_pa"] = json!(6.8e7);
+    let bench = Bench::with_study(&arm);
+    assert!(armwright(&["analyze", word(&bench.input())]).status.success());
+    arm["materials"]["steel"].as_object_mut().expect("a material").remove("strength_pa");
+    assert_says(&Bench::with_study(&arm).refuses_arm(FAULTY_INPUT), &["steel", "add strength_pa"]);
+}
+
 #[test]
 fn refuses_a_study_in_which_no_pose_sizes_the_drives() {
     let mut study = small_study();
