@@ -73,7 +73,7 @@ pub(crate) static MATERIAL: Shape = Shape::new(
             Kind::Positive,
             "Pa",
             "none",
-            "Strength along the link, the lower of tension and compression. Without it no stress is judged.",
+            "Strength along the link, the lower of tension and compression. Kept with the arm: no stress of an arm file is judged yet.",
         ),
         optional(
             "shear_strength_pa",

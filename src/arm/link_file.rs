@@ -8,7 +8,7 @@ use super::section::{LinkMaterial, Section, Strength};
 use super::section_file::{read_i_beam, read_stated_section};
 use super::{Link, LinkBody};
 use crate::catalog::Catalogs;
-use crate::catalog::material::{Material, MaterialClass};
+use crate::catalog::material::{Material, MaterialClass, isotropic_shear_modulus_pa};
 use crate::input::json::{Node, Object};
 use nalgebra::Vector3;
 
@@ -145,7 +145,7 @@ pub(crate) fn shear_modulus_hint(row: &Material) -> String {
         (file, line) if !row.provenance.is_built_in() => format!(" ({file}:{line})"),
         _ => String::new(),
     };
-    let isotropic_pa = row.poisson.map(|nu| row.youngs_modulus_pa / (2.0 * (1.0 + nu)));
+    let isotropic_pa = row.poisson.map(|nu| isotropic_shear_modulus_pa(row.youngs_modulus_pa, nu));
     let number = match (row.class, isotropic_pa) {
         (MaterialClass::Metal | MaterialClass::MetalMatrix, Some(g_pa)) => {
             format!(": for this isotropic material G = E/2(1+nu) = {g_pa:.3e} Pa")

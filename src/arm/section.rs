@@ -16,7 +16,7 @@
 //! A solid bar is treated as a tube whose wall is half its smaller side: the same formulas of `A` and `I` apply.
 
 use super::torsion;
-use crate::catalog::material::MaterialClass;
+use crate::catalog::material::{MaterialClass, isotropic_shear_modulus_pa};
 use std::f64::consts::PI;
 
 /// A size of a section in millimetres, rounded to a nanometre: 48.3 for a tube of 48.3 mm, whose metres times 1000 are
@@ -57,7 +57,7 @@ impl LinkMaterial {
     /// Whether the shear modulus is less than half of that of an isotropic material, `E/2(1+ν)`. The strength in shear
     /// of such a material does not follow from its strength along the link.
     pub(crate) fn is_soft_in_shear(&self) -> bool {
-        self.shear_modulus_pa < 0.5 * self.youngs_modulus_pa / (2.0 * (1.0 + self.poisson))
+        self.shear_modulus_pa < 0.5 * isotropic_shear_modulus_pa(self.youngs_modulus_pa, self.poisson)
     }
 }
 

@@ -90,3 +90,8 @@ pub struct Material {
     /// Source of the row.
     pub provenance: Provenance,
 }
+
+/// Shear modulus G = E/2(1+ν) \[Pa\] of an isotropic material with this Young's modulus \[Pa\] and Poisson's ratio.
+pub(crate) fn isotropic_shear_modulus_pa(youngs_modulus_pa: f64, poisson: f64) -> f64 {
+    youngs_modulus_pa / (2.0 * (1.0 + poisson))
+}

@@ -1,7 +1,7 @@
 //! Rows of `materials.csv`, and the checks within one row.
 
 use super::row::Row;
-use crate::catalog::material::{Material, MaterialClass};
+use crate::catalog::material::{Material, MaterialClass, isotropic_shear_modulus_pa};
 
 /// The material that a row describes; `None` if its name, class, source or a required number is blank or not valid.
 pub(crate) fn material(row: &Row) -> Option<Material> {
@@ -96,7 +96,7 @@ fn shear_modulus(row: &Row) {
             // wood and printed polymers are orthotropic like a laminate, so their G does not follow from E and nu
             _ => f64::INFINITY,
         };
-        row.agrees("g_pa", g_pa, e_pa / (2.0 * (1.0 + nu)), "G = E/2(1+nu)", 0.06, refuse);
+        row.agrees("g_pa", g_pa, isotropic_shear_modulus_pa(e_pa, nu), "G = E/2(1+nu)", 0.06, refuse);
     }
 }
 
