@@ -1,10 +1,13 @@
-//! Structures whose links are divided at the bodies on them.
+//! Structures whose links are divided where bodies, or springs, load them.
 //!
 //! The strains of a link are smooth along its length (see [`crate::mechanics::beam`]). A body off the axis of a link
 //! twists the link inboard of it and not outboard of it, so the twist rate has a step at the body. Smooth strains
 //! reproduce only a part of such a step. The deflection of the tip is exact all the same. But the frequency of a mode
 //! in which the body swings about the link comes out too high, by up to 6 %. Where the link is divided at the body, the
 //! step lies between two links, and the frequency is right.
+//!
+//! The stress in a link is largest at one of its ends, at a body or where a spring pulls. In a link that is divided at
+//! all of them, the stress has to be looked for only at the ends of the parts.
 
 use super::body::RigidBody;
 use super::springs::{SpringEnd, SpringKind, SpringPlace};
@@ -15,14 +18,50 @@ use nalgebra::Vector3;
 /// link.
 const LEAST_SPACING: f64 = 1e-3;
 
+/// A structure whose tubes are divided.
+pub(crate) struct Divided {
+    /// The divided structure.
+    pub structure: Structure,
+    /// For each piece of the divided structure, the index of the piece of the whole structure that it is a part of.
+    pub whole: Vec<usize>,
+}
+
 impl Structure {
     /// This structure with every tube divided where a body moves with it; `None` if no body is between the ends of a
     /// tube. Springs stay where they are.
     pub(crate) fn divided_at_bodies(&self) -> Option<Structure> {
-        let starts: Vec<Vec<f64>> = self.pieces.iter().map(starts).collect();
-        if starts.iter().all(|of_piece| of_piece.len() == 1) {
-            return None;
-        }
+        let between_ends = |xi: &f64| (LEAST_SPACING..1.0 - LEAST_SPACING).contains(xi);
+        let divided = self.divided(|_, link| bodies_along(link).filter(between_ends).collect());
+        (divided.structure.pieces.len() > self.pieces.len()).then_some(divided.structure)
+    }
+
+    /// This structure with every tube divided where a body moves with it and where a spring pulls at it. A load at an end
+    /// of a tube gets a short part of its own, so that both sides of the load are ends of parts.
+    pub(crate) fn divided_at_loads(&self) -> Divided {
+        self.divided(|piece, link| {
+            let pulls = self.pulls_on(piece).map(|point_m| along(link, &point_m));
+            let places = bodies_along(link).chain(pulls);
+            places.map(|xi| xi.clamp(LEAST_SPACING, 1.0 - LEAST_SPACING)).collect()
+        })
+    }
+
+    /// The points of a piece at which springs pull \[m\], from its root in the frame that it carries.
+    fn pulls_on(&self, piece: usize) -> impl Iterator<Item = Vector3<f64>> {
+        let ends = self.springs.iter().filter_map(|spring| match &spring.kind {
+            SpringKind::Line { ends, .. } => Some(ends),
+            SpringKind::Torsion { .. } => None,
+        });
+        ends.flatten().filter(move |end| end.on == SpringPlace::Element(piece)).map(|end| end.point_m)
+    }
+
+    /// This structure with every tube divided at `places`, positions along the tube (0 at its root, 1 at its end), which
+    /// are given for each tube and its index.
+    fn divided(&self, places: impl Fn(usize, &LinkPiece) -> Vec<f64>) -> Divided {
+        let starts_of = |(piece, what): (usize, &Piece)| match what {
+            Piece::Link(link) if link.beam.is_some() => starts(places(piece, link)),
+            Piece::Link(_) | Piece::Joint(_) | Piece::Prismatic(_) => vec![0.0],
+        };
+        let starts: Vec<Vec<f64>> = self.pieces.iter().enumerate().map(starts_of).collect();
         let parts = self.pieces.iter().zip(&starts).flat_map(|(piece, starts)| parts(piece, starts));
         let mut out = Structure { pieces: parts.collect(), ..self.clone() };
         // index of the first part of each piece in the divided structure
@@ -44,7 +83,8 @@ impl Structure {
                 SpringKind::Torsion { joint, .. } => *joint = first(*joint),
             }
         }
-        Some(out)
+        let whole = starts.iter().enumerate().flat_map(|(piece, starts)| vec![piece; starts.len()]).collect();
+        Divided { structure: out, whole }
     }
 }
 
@@ -55,18 +95,16 @@ fn along(link: &LinkPiece, point_m: &Vector3<f64>) -> f64 {
     if length2_m2 > 0.0 { link.vector_m.dot(point_m) / length2_m2 } else { 0.0 }
 }
 
-/// Positions at which the parts of a piece begin: 0 at its root, 1 at its end. There is one part, at 0, unless the
-/// piece is a tube with bodies between its ends.
-fn starts(piece: &Piece) -> Vec<f64> {
-    let mut out = vec![0.0];
-    if let Piece::Link(link) = piece
-        && link.beam.is_some()
-    {
-        let places = link.bodies.iter().map(|body| along(link, &body.cg_m));
-        out.extend(places.filter(|xi| (LEAST_SPACING..1.0 - LEAST_SPACING).contains(xi)));
-        out.sort_by(f64::total_cmp);
-        out.dedup_by(|next, before| *next - *before < LEAST_SPACING);
-    }
+/// Positions of the bodies of a link along it.
+fn bodies_along(link: &LinkPiece) -> impl Iterator<Item = f64> {
+    link.bodies.iter().map(|body| along(link, &body.cg_m))
+}
+
+/// Positions at which the parts of a tube begin that is divided at `places`: 0 at its root, 1 at its end.
+fn starts(places: Vec<f64>) -> Vec<f64> {
+    let mut out = [vec![0.0], places].concat();
+    out.sort_by(f64::total_cmp);
+    out.dedup_by(|next, before| *next - *before < LEAST_SPACING);
     out
 }
 

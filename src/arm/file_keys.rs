@@ -73,7 +73,7 @@ pub(crate) static MATERIAL: Shape = Shape::new(
             Kind::Positive,
             "Pa",
             "none",
-            "Strength along the link, the lower of tension and compression. Kept with the arm: no stress of an arm file is judged yet.",
+            "Strength along the link, the lower of tension and compression. `analyze` and `capacity` compare the stress at rest with it.",
         ),
         optional(
             "shear_strength_pa",

@@ -87,21 +87,24 @@ fn find_material(
     if let Some((_, material)) = materials.iter().find(|(n, _)| n == name) {
         return *material;
     }
-    let known: Vec<&str> = materials.iter().map(|(n, _)| n.as_str()).collect();
     let Some(row) = catalogs.materials.iter().find(|m| m.name == name) else {
-        return node.fault(
-            format!("material \"{name}\" is not known"),
-            &format!(
-                "the file's materials: {}; `armwright catalog show materials` lists the catalog's",
-                known.join(", ")
-            ),
-        );
+        return node.fault(format!("material \"{name}\" is not known"), &known_materials(materials));
     };
     let Some(material) = material_of(row) else {
         let hint = format!("{}; or add the material to the file", shear_modulus_hint(row));
         return node.fault(format!("material \"{name}\" has no shear modulus"), &hint);
     };
     Some(material)
+}
+
+/// Where the materials are listed that a link may name, in words.
+fn known_materials(materials: &[NamedMaterial]) -> String {
+    let of_file: Vec<&str> = materials.iter().map(|(name, _)| name.as_str()).collect();
+    let of_catalog = "`armwright catalog show materials` lists the catalog's";
+    match of_file.is_empty() {
+        true => of_catalog.to_string(),
+        false => format!("the file's materials: {}; {of_catalog}", of_file.join(", ")),
+    }
 }
 
 /// The elastic material of a row of the catalog; `None` if the row states no shear modulus.

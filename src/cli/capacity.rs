@@ -29,7 +29,7 @@ use std::path::{Path, PathBuf};
                         An arm with springs or counterweights may need a smallest payload, which is then named too.\n\n\
                         An arm file states no motion. Therefore only static torques are checked, and forces of prismatic joints. \
                         The limits come from --limits, else from import.json in its folder, else from the catalog's gears and motors. \
-                        Output bearings and guides are judged at rest by their ratings.\n\n\
+                        Output bearings and guides are judged at rest by their ratings, links by the strength of their material.\n\n\
                         The reach is the distance of the tip from the base: across gravity for an arm that stands or hangs (gravity along \
                         its z axis), the whole distance for any other, such as an arm on a wall."
 )]

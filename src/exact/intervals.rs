@@ -9,10 +9,10 @@ use super::interval::interval;
 use super::parts::{DriveBox, HEAT_ROUNDING, LeastDemand, LinkBox, Rays};
 use super::problem::{Ladder, Lever, Part, Problem, Room};
 use super::tree::{Bounds, Tree};
+use crate::mechanics::link_stress::von_mises;
 use crate::sizing::bearing::BearingDemand;
 use crate::sizing::demand::JointDemand;
 use crate::sizing::fit::LinkRoom;
-use crate::space::attributes::von_mises;
 use crate::space::slot::SizedJoint;
 
 /// Relative margin for rounding of a sum of a few dozen terms.

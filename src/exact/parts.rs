@@ -8,11 +8,11 @@ use super::tree::{Bounds, Key};
 use crate::arm::LinkModel;
 use crate::arm::structure::{Beam, LinkPiece};
 use crate::mechanics::beam::{line_stiffnesses, tube_inertia};
+use crate::mechanics::link_stress::StressCheck;
 use crate::sizing::bearing::BearingDemand;
 use crate::sizing::demand::{JointDemand, JointMotion};
 use crate::sizing::fit::LinkRoom;
 use crate::sizing::limits::DriveLimits;
-use crate::space::attributes::StressCheck;
 use crate::space::design_space::LinkOption;
 use std::sync::Arc;
 
@@ -105,7 +105,7 @@ impl LinkBox {
     ) -> Self {
         let nominal = Beam { material: option.material, section: option.section, flexibility: 1.0 };
         let line = Line::new(link.beam.as_ref().unwrap_or(&nominal), link.harness_kg_per_m, model);
-        let check = StressCheck::new(option);
+        let check = StressCheck::new(&option.material, &option.section);
         let stress = check.as_ref().map_or([0.0; 4], |s| {
             [s.per_axial_n, s.per_moment_y, s.per_moment_z, s.per_torsion].map(|x| x / s.strength_pa)
         });

@@ -30,6 +30,7 @@ pub(crate) mod deflections;
 pub(crate) mod hanging;
 pub(crate) mod krylov;
 pub(crate) mod lanes;
+pub(crate) mod link_stress;
 pub(crate) mod linkage;
 pub(crate) mod lowest;
 pub(crate) mod lowest_lanes;
@@ -45,7 +46,7 @@ pub use chain::{Chain, Posed};
 pub use modes::{Mode, Modes};
 pub use prismatic::GuideLoad;
 pub use response::{Response, frequency_response};
-pub use statics::{JointLoad, LinkRoot, Statics};
+pub use statics::{JointLoad, SectionLoad, Statics};
 
 use nalgebra::{Matrix6, Vector3, Vector6};
 

@@ -4,7 +4,7 @@
 //! laws. In a serial chain every internal force follows from the loads alone, so one pass from the tip to the base is
 //! enough.
 
-use super::chain::{Compliance, ElasticElement, Item, Posed};
+use super::chain::{Compliance, ElasticElement, Item, OwnMass, Posed};
 use super::linkage::Transferred;
 use super::prismatic::GuideLoad;
 use super::{Twist, Wrench, angular, displacement_at, force_wrench, linear, stack};
@@ -32,8 +32,10 @@ pub struct Statics {
     pub shares_m: Vec<(String, Vector3<f64>)>,
     /// Value of each strain coordinate (elastic degree of freedom), as one list for each element, base to tip.
     pub deformations: Vec<Vec<f64>>,
-    /// Force and moment at the root of each link.
-    pub link_roots: Vec<LinkRoot>,
+    /// Force and moment at the root of each link, base to tip.
+    pub link_roots: Vec<SectionLoad>,
+    /// Force and moment at the end of each link, in the order of `link_roots`.
+    pub link_ends: Vec<SectionLoad>,
     /// Tangent compliance of each strain coordinate, as one list for each element, base to tip.
     pub tangent_compliances: Vec<Vec<f64>>,
     /// Force and moment on the base, as a wrench about the world's origin.
@@ -63,15 +65,31 @@ impl JointLoad {
     }
 }
 
-/// Force and moment at the root of a link, in its section frame.
+/// Force and moment that a section of a link transmits, in its section frame.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LinkRoot {
+pub struct SectionLoad {
     /// Name of the link.
     pub name: String,
+    /// Index of the link among the pieces of the chain.
+    pub piece: usize,
     /// Force along the link, along y and along z of the section \[N\].
     pub force_n: Vector3<f64>,
     /// Moment about the link (torsion), about y and about z of the section \[N m\].
     pub moment_nm: Vector3<f64>,
+}
+
+impl SectionLoad {
+    /// What the section at the point `at_m` \[m\] of the link `name` transmits. `wrench` is the load of everything
+    /// outboard of the section, about the world's origin, and `own` has the attitude of the link.
+    fn of(name: &str, own: &OwnMass, wrench: &Wrench, at_m: &Vector3<f64>) -> Self {
+        let to_section = own.frame.transpose();
+        Self {
+            name: name.into(),
+            piece: own.piece,
+            force_n: to_section * linear(wrench),
+            moment_nm: to_section * (angular(wrench) - at_m.cross(&linear(wrench))),
+        }
+    }
 }
 
 impl Statics {
@@ -99,6 +117,7 @@ impl Posed<'_> {
             shares_m: Vec::new(),
             deformations: Vec::new(),
             link_roots: Vec::new(),
+            link_ends: Vec::new(),
             tangent_compliances: Vec::new(),
             base_wrench: Wrench::zeros(),
         };
@@ -116,6 +135,7 @@ impl Posed<'_> {
         out.shares_m.reverse();
         out.deformations.reverse();
         out.link_roots.reverse();
+        out.link_ends.reverse();
         out.tangent_compliances.reverse();
         out.tip_displacement_m = out.shares_m.iter().map(|(_, share)| share).sum();
         out.base_wrench = wrench;
@@ -183,14 +203,11 @@ impl Posed<'_> {
         out.tangent_compliances.push(tangents);
         // The work of a link's own weight is already counted above. From here on, this weight loads everything inboard.
         if let Some(own) = &element.own {
+            let length_m = self.chain.beam(own.piece).map_or(0.0, |beam| beam.length_m);
+            let end_m = own.root_m + own.frame.column(0) * length_m;
+            out.link_ends.push(SectionLoad::of(&element.name, own, wrench, &end_m));
             *wrench += own.weight;
-            let moment = angular(wrench) - own.root_m.cross(&linear(wrench));
-            let to_section = own.frame.transpose();
-            out.link_roots.push(LinkRoot {
-                name: element.name.clone(),
-                force_n: to_section * linear(wrench),
-                moment_nm: to_section * moment,
-            });
+            out.link_roots.push(SectionLoad::of(&element.name, own, wrench, &own.root_m));
         }
     }
 }

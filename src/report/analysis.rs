@@ -13,6 +13,7 @@ use crate::arm::springs::Drawn;
 use crate::arm::structure::{JointAngle, JointPiece};
 use crate::arm::{Arm, Bearing, Element, JointModel, LinkModel};
 use crate::mechanics::chain::Chain;
+use crate::mechanics::link_stress::LinkStresses;
 use crate::mechanics::modes::Mode;
 use crate::mechanics::prismatic::GuideLoad;
 use crate::mechanics::response::{Response, frequency_response};
@@ -84,6 +85,9 @@ pub struct Analysis {
     /// The lowest mode, computed with every tube cut into several tubes at the bodies on it \[Hz\]. `None` if no tube
     /// has a body between its ends, or no mode was asked for.
     divided_hz: Option<f64>,
+    /// Largest ratio of stress to strength in each link at rest, with the name of the link. Links whose material has no
+    /// known strength are left out.
+    stress: Vec<(String, f64)>,
 }
 
 impl Analysis {
@@ -101,7 +105,9 @@ impl Analysis {
         let unbent = arm.effects.iter().filter(|e| rigid && e.is_of_bending()).map(Effect::label).collect();
         let springs = springs_in(&chain, &case);
         let divided_hz = if modes.is_empty() { None } else { divided_lowest_hz(arm, &case) };
-        Self { case, statics, modes, response, unbent, springs, divided_hz }
+        let links = LinkStresses::new(arm, &case);
+        let stress = links.in_case(&case).into_iter().map(|(link, part)| (link.to_string(), part)).collect();
+        Self { case, statics, modes, response, unbent, springs, divided_hz, stress }
     }
 
     /// The results as `armwright analyze --json` prints them; `docs/arm-format.md` describes the keys.
@@ -134,6 +140,10 @@ impl Analysis {
             out["springs_stiffen_modes"] = json!(false);
         }
         self.guides_json(arm, &mut out);
+        if !self.stress.is_empty() {
+            let of_links = self.stress.iter().map(|(link, part)| (link.clone(), json!(part)));
+            out["link_stress_over_strength"] = Value::Object(of_links.collect());
+        }
         if let Some(divided_hz) = self.divided_hz {
             out["lowest_mode_divided_hz"] = json!(divided_hz);
         }
@@ -264,6 +274,7 @@ impl Analysis {
         if !self.unbent.is_empty() {
             let _ = writeln!(out, "  ignored, because links are held rigid: {}", self.unbent.join(", "));
         }
+        self.stress_text(&mut out);
         self.shares_text(&mut out);
         self.guides_text(arm, &mut out);
         self.bearings_text(arm, &mut out);
@@ -296,6 +307,17 @@ impl Analysis {
                 "  The tip {words}.\n  Is every number of the file in its unit (Pa, kg/m3, m, kg, N m/rad)?"
             );
         }
+    }
+
+    /// Adds the largest stress in a link, as a part of its strength.
+    fn stress_text(&self, out: &mut String) {
+        let Some((link, part)) = self.stress.iter().max_by(|a, b| a.1.total_cmp(&b.1)) else { return };
+        let too_much = if *part > 1.0 { "   too much" } else { "" };
+        let _ = writeln!(
+            out,
+            "  largest stress      {:>10} of the strength, at rest, in {link}{too_much}",
+            percent(100.0 * part, 1)
+        );
     }
 
     /// Adds a table of the elements: the torque or force of each joint, and the share of each element in the

@@ -5,8 +5,9 @@
 
 use super::row_case::{Entry, Hinge, RowCase};
 use crate::mechanics::lanes::{Eight, LANES};
+use crate::mechanics::link_stress::StressCheck;
 use crate::mechanics::lowest_lanes::LaneLink;
-use crate::space::attributes::{OptionAttributes, StressCheck};
+use crate::space::attributes::OptionAttributes;
 use crate::space::problem::ArmProblem;
 use crate::space::station::{Block, BlockSlot, Modal, Station, StationLink, StationSlot};
 use nalgebra::{Matrix3x6, Vector3};

@@ -187,6 +187,10 @@ impl CheckKind {
     }
 }
 
+/// Factor on a largest speed that allows for rounding. Studies and catalogs state speeds in different units. A joint that
+/// is exactly as fast as its part allows could else fail in the last digit of the conversion.
+pub(crate) const WITH_ROUNDING: f64 = 1.0 + 1e-12;
+
 /// Outcome of a check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CheckState {
@@ -337,4 +341,9 @@ pub(super) fn check(kind: CheckKind, needed: Rating, allowed: Rating, load: f64,
 /// A check whose printed values are also the numbers that are compared: it passes if `needed` is at most `allowed`.
 pub(super) fn plain(kind: CheckKind, needed: f64, allowed: Rating) -> Check {
     check(kind, Ok(needed), allowed, needed, allowed)
+}
+
+/// A check of a speed. It passes if `needed` is at most `allowed`, except for rounding.
+pub(super) fn of_speed(kind: CheckKind, needed: f64, allowed: Rating) -> Check {
+    check(kind, Ok(needed), allowed, needed, allowed.map(|most| most * WITH_ROUNDING))
 }

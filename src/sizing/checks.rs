@@ -1,7 +1,7 @@
 //! All checks of a drive, one by one: the checks of its gear, of its output bearing and of its motor.
 
 use super::bearing_checks::bearing_checks;
-use super::check::{Check, CheckKind, check, plain};
+use super::check::{Check, CheckKind, check, of_speed, plain};
 use super::demand::{JointDemand, JointMotion, input_speed_rpm, mean_input_speed_rpm};
 use super::drive::{Drive, MissingRating};
 use super::fit_checks::{gear_fits, motor_fits};
@@ -25,8 +25,8 @@ pub fn gear_checks(
         plain(CheckKind::GearStop, demand.stop_torque_nm, limit::gear_momentary_nm(gear)),
         plain(CheckKind::GearBuckling, demand.stop_torque_nm, limit::gear_buckling_nm(gear)),
         plain(CheckKind::GearRatcheting, demand.stop_torque_nm, limit::gear_ratcheting_nm(gear)),
-        plain(CheckKind::GearSpeed, input_speed_rpm(gear, motion), limit::gear_max_speed_rpm(gear)),
-        plain(
+        of_speed(CheckKind::GearSpeed, input_speed_rpm(gear, motion), limit::gear_max_speed_rpm(gear)),
+        of_speed(
             CheckKind::GearMeanSpeed,
             mean_input_speed_rpm(gear, motion),
             limit::gear_average_speed_rpm(gear),
@@ -92,7 +92,7 @@ pub fn motor_checks(drive: &Drive, motion: &JointMotion, demand: &JointDemand) -
     if motion.checks_motor_heat {
         checks.push(motor_rms(drive, motion, demand));
     }
-    checks.push(plain(
+    checks.push(of_speed(
         CheckKind::MotorSpeed,
         drive.motor_speed_rpm(motion),
         limit::motor_max_speed_rpm(drive.motor),

@@ -6,7 +6,7 @@
 //! compares these numbers and nothing else. The printed checks ([`checks`](mod@super::checks)) use the same thresholds.
 
 use super::bearing::BearingLimits;
-use super::check::CheckKind;
+use super::check::{CheckKind, WITH_ROUNDING};
 use super::demand::{JointDemand, JointMotion, input_speed_rpm, mean_input_speed_rpm};
 use super::drive::{Drive, MissingRating, Rating, if_any, known};
 use super::fit::DriveWidths;
@@ -178,10 +178,12 @@ impl DriveLimits {
 }
 
 fn speeds_hold(drive: &Drive, motion: &JointMotion) -> Result<bool, MissingRating> {
-    let input_rpm = input_speed_rpm(drive.gear, motion);
-    let gear_max = input_rpm <= gear_max_speed_rpm(drive.gear)?;
-    let gear_mean = mean_input_speed_rpm(drive.gear, motion) <= gear_average_speed_rpm(drive.gear)?;
-    Ok(gear_max && gear_mean && drive.motor_speed_rpm(motion) <= motor_max_speed_rpm(drive.motor)?)
+    let speeds_and_limits = [
+        (input_speed_rpm(drive.gear, motion), gear_max_speed_rpm(drive.gear)?),
+        (mean_input_speed_rpm(drive.gear, motion), gear_average_speed_rpm(drive.gear)?),
+        (drive.motor_speed_rpm(motion), motor_max_speed_rpm(drive.motor)?),
+    ];
+    Ok(speeds_and_limits.iter().all(|(rpm, most_rpm)| *rpm <= most_rpm * WITH_ROUNDING))
 }
 
 /// The limit `rating` of a gear. It is infinite if it is blank and gears of this kind have no such limit; otherwise a

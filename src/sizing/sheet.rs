@@ -32,7 +32,7 @@ pub struct JointSizingRow {
     /// Torque of the motor while the joint accelerates, with the losses of the gear \[N m\]; `None` if a rating that it
     /// needs is blank.
     pub motor_peak_torque_nm: Option<f64>,
-    /// Torque in an emergency stop \[N m\].
+    /// Torque in an emergency stop \[N m\]; of an actuator, with the torque that stops its own rotor.
     pub stop_torque_nm: f64,
     /// Cubic mean torque over the duty cycle \[N m\].
     pub mean_torque_nm: f64,
@@ -131,7 +131,9 @@ impl JointSizingRow {
             rotary_torque_output_nm: rotary_output.ok(),
             total_torque_nm: rotary_output.ok().map(|rotary| demand.peak_torque_nm() + rotary),
             motor_peak_torque_nm: drive.peak_motor_torque_nm(motion, demand.peak_torque_nm()).ok(),
-            stop_torque_nm: demand.stop_torque_nm,
+            stop_torque_nm: of_kind(CheckKind::GearStop)
+                .and_then(|c| c.needed)
+                .unwrap_or(demand.stop_torque_nm),
             mean_torque_nm: demand.mean_torque_nm(),
             motor_rms_torque_nm: rms.and_then(|c| c.needed),
             motor_continuous_torque_nm: rms.and_then(|c| c.allowed),

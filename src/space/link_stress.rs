@@ -1,11 +1,11 @@
 //! The largest stress in a link, for the links that the search chooses and for the tubes that the study gives.
 
-use super::attributes::StressCheck;
-use super::design_space::{LinkOption, SpacePiece};
+use super::design_space::SpacePiece;
 use super::problem::{ArmProblem, Partial};
 use super::station::{OnTube, Place, StationSlot};
 use crate::arm::LinkBody;
 use crate::mechanics::Wrench;
+use crate::mechanics::link_stress::StressCheck;
 
 impl StressCheck {
     /// Largest ratio of the equivalent stress to the strength in a link at rest. `outboard` is the load on the end of the
@@ -16,11 +16,12 @@ impl StressCheck {
     /// therefore checked at both ends and at the points where springs pull.
     pub(crate) fn largest(&self, place: &Place, carried: &OnTube, outboard: &Wrench, own: &Wrench) -> f64 {
         let at_root = outboard + own + carried.weight;
-        let of_ends =
-            self.ratio(outboard, &place.end_m, place).max(self.ratio(&at_root, &place.root_m, place));
+        let of_ends = self
+            .ratio(place.local(outboard, &place.end_m))
+            .max(self.ratio(place.local(&at_root, &place.root_m)));
         let of_pulls = carried
             .at_pulls(place, outboard, own)
-            .flat_map(|(at_m, loads)| loads.map(|wrench| self.ratio(&wrench, &at_m, place)));
+            .flat_map(|(at_m, loads)| loads.map(|wrench| self.ratio(place.local(&wrench, &at_m))));
         of_pulls.fold(of_ends, f64::max)
     }
 }
@@ -32,7 +33,7 @@ impl ArmProblem<'_> {
     pub(crate) fn given_tube_stress(&self, cases: &[usize], outboard: &Partial, slot: usize) -> Option<f64> {
         let SpacePiece::Link(link) = self.piece_in_slot(slot)? else { return None };
         let LinkBody::Tube { material, section, .. } = &link.body else { return None };
-        let check = StressCheck::new(&LinkOption::given(*material, *section))?;
+        let check = StressCheck::new(material, section)?;
         let ratio = |case: &usize| {
             let StationSlot::Link { options, place, carried } = &self.stations()[*case].slots[slot] else {
                 return 0.0;

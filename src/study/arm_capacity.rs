@@ -1,10 +1,11 @@
 //! The payloads that the arm of an arm file holds at rest, in each pose: with such a payload no joint exceeds its
-//! torque or force limit, and no output bearing or guide its load limits.
+//! torque or force limit, no output bearing or guide its load limits, and no link the strength of its material.
 //!
 //! An arm file says nothing of motion and duty, so only static loads are judged. The payload keeps the centre of
 //! gravity that the case states. Torques and forces are affine in the mass of the payload: |a + b m| <= limit is an
 //! interval of masses. An output bearing is limited by its permissible moment and by its static safety at rest, a guide
-//! by the force and the moments that it holds, as far as the file states them.
+//! by the force and the moments that it holds, as far as the file states them, a link by the stress in it at rest, as
+//! far as the strength of its material is known.
 
 use super::capacity::{AtPose, Capacity, reach_m};
 use super::import_ranges::beyond_ranges;
@@ -14,16 +15,17 @@ use super::refusal::Refusal;
 use super::window::{Limit, MOST_KG, Window, window_around};
 use crate::arm::load::{LoadCase, read_load_cases};
 use crate::arm::prismatic::GuideLimits;
-use crate::arm::{Arm, Bearing, Element};
+use crate::arm::{Arm, Bearing, Element, LinkBody};
 use crate::catalog::Catalogs;
 use crate::input::json::Document;
 use crate::mechanics::chain::Chain;
+use crate::mechanics::link_stress::LinkStresses;
 use crate::mechanics::statics::{JointLoad, Statics};
 use crate::sizing::bearing::BearingLimits;
 use crate::space::bearing_loads::{at_centre, bearings_of};
 
 /// The remark that says what is checked and what is not.
-const AT_REST: &str = "Torques, forces, output bearings and guides are judged at rest, as far as their limits are known. Motion, heat and strength are not checked.";
+const AT_REST: &str = "Torques, forces, output bearings, guides and the stress in links are judged at rest, as far as their limits are known. The stress may reach the strength: no safety factor is applied. Motion and heat are not checked.";
 
 /// The remark on an arm for which no cases are given.
 const ONE_POSE: &str = "Only one pose was judged: every joint at zero, the payload at the tip. Give your poses with --cases FILE.";
@@ -73,7 +75,7 @@ pub fn capacity_of_arm(
 }
 
 /// The payloads that an arm holds at rest, in each of its cases and in all of them, with which no joint exceeds its
-/// limit in `limits`, and no output bearing and no guide exceeds its ratings.
+/// limit in `limits`, no output bearing and no guide exceeds its ratings, and no link the strength of its material.
 fn arm_capacity(arm: &Arm, cases: &[LoadCase], limits: &[LoadLimit]) -> Capacity {
     let table: Vec<AtPose> = cases
         .iter()
@@ -99,10 +101,25 @@ fn arm_capacity(arm: &Arm, cases: &[LoadCase], limits: &[LoadLimit]) -> Capacity
             unjudged.join(", ")
         )
     });
-    Capacity::new(all, table, remark.into_iter().collect())
+    Capacity::new(all, table, remark.into_iter().chain(of_unknown_strength(arm)).collect())
 }
 
-/// The payloads that an arm holds at rest in one case, limited by its joints, its output bearings and its guides.
+/// The remark that names the tubes and bars whose material has no known strength; `None` if there are none.
+fn of_unknown_strength(arm: &Arm) -> Option<String> {
+    let unknown = arm
+        .links()
+        .filter(|link| matches!(&link.body, LinkBody::Tube { material, .. } if material.strength.is_none()));
+    let names: Vec<&str> = unknown.map(|link| link.name.as_str()).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "No strength is known of the material of these links, whose stress is not judged: {}. Give it with \
+             \"strength_pa\" in \"materials\".",
+            names.join(", ")
+        )
+    })
+}
+
+/// The payloads that an arm holds at rest in one case, limited by its joints, output bearings, guides and links.
 fn held_payloads(arm: &Arm, case: &LoadCase, limits: &[LoadLimit]) -> Window {
     let chain = Chain::new(&arm.structure_in(case), case.links);
     let loads = |payload_kg: f64| {
@@ -119,8 +136,8 @@ fn held_payloads(arm: &Arm, case: &LoadCase, limits: &[LoadLimit]) -> Window {
     if !of_joints.holds() {
         return of_joints;
     }
-    let of_supports = held_by_supports(arm, case, of_joints.least.payload_kg, of_joints.most.payload_kg);
-    of_joints.and(of_supports)
+    let of_parts = held_by_parts(arm, case, of_joints.least.payload_kg, of_joints.most.payload_kg);
+    of_joints.and(of_parts)
 }
 
 /// The payloads m \[kg\] with |`empty` + `per_kg` m| <= the limit of a joint. `empty` is the load on the joint without
@@ -194,20 +211,25 @@ fn most_used<'a>(arm: &'a Arm, statics: &Statics) -> Option<(f64, &'a str, &'sta
     of_bearings.chain(of_guides).max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// The payloads from `least_kg` to `most_kg` with which all output bearings and guides hold at rest in a case. The loads
-/// on bearings are norms of forces and moments, and those on guides are sums of magnitudes, of numbers that are affine in
-/// the payload's mass. So the loads are convex functions of this mass, and their smallest values are found by narrowing
-/// an interval.
-fn held_by_supports(arm: &Arm, case: &LoadCase, least_kg: f64, most_kg: f64) -> Window {
+/// The payloads from `least_kg` to `most_kg` with which all output bearings, guides and links hold at rest in a case. The
+/// loads on bearings are norms of forces and moments, those on guides sums of magnitudes, and stresses norms of such
+/// sums, of numbers that are affine in the payload's mass. So the loads are convex functions of this mass, and their
+/// smallest values are found by narrowing an interval.
+fn held_by_parts(arm: &Arm, case: &LoadCase, least_kg: f64, most_kg: f64) -> Window {
     let chain = Chain::new(&arm.structure_in(case), case.links);
+    let links = LinkStresses::new(arm, case);
     let worst = |payload_kg: f64| {
         let mut loaded = case.clone();
         loaded.payload.mass_kg = payload_kg;
-        most_used(arm, &chain.pose(&loaded).statics())
+        let of_links =
+            links.in_case(&loaded).into_iter().map(|(link, part)| (part, link.to_string(), "link stress"));
+        let of_supports = most_used(arm, &chain.pose(&loaded).statics());
+        let of_supports = of_supports.map(|(part, joint, check)| (part, joint.to_string(), check));
+        of_links.chain(of_supports).max_by(|a, b| a.0.total_cmp(&b.0))
     };
     let overload = |payload_kg: f64| {
         let failing = worst(payload_kg).filter(|(part, ..)| *part > 1.0);
-        failing.map(|(_, joint, check)| Overload { piece: joint.into(), check: check.into() })
+        failing.map(|(_, piece, check)| Overload { piece, check: check.into() })
     };
     let use_of = |payload_kg: f64| worst(payload_kg).map_or(0.0, |(part, ..)| part);
     let held_kg = least_loading(least_kg, most_kg, &use_of);
@@ -334,6 +356,54 @@ mod tests {
         assert!((least.payload_kg - (9.0 - 40.0 / 9.81)).abs() < 1e-9, "{found:?}");
         assert!((most.payload_kg - (9.0 + 40.0 / 9.81)).abs() < 1e-9, "{found:?}");
         assert_eq!(least.check, "bearing moment");
+    }
+
+    /// A solid bar of 20 mm holds the moment W σ with W = a³/6 at its root, and σ = 50 MPa here. Its own weight and the
+    /// bodies on it take a part of it: 1 kg at 0.3 m, with an offset, and a spring that lifts the bar at 0.25 m.
+    #[test]
+    fn the_stress_in_a_bar_ends_what_it_holds() {
+        let chain = |more: &str| {
+            format!(
+                r#"[{{"type": "joint", "name": "j", "axis": [0, 1, 0], "stiffness_nm_per_rad": null}},
+                {{"type": "link", "name": "bar", "vector_m": [0.5, 0, 0], "material": "soft",
+                  "section": {{"shape": "rectangular_bar", "width_m": 0.02, "height_m": 0.02}}{more}}}],
+                "materials": {{"soft": {{"youngs_modulus_pa": 7e10, "shear_modulus_pa": 2.7e10, "density_kg_m3": 2500,
+                  "strength_pa": 5e7}}}}"#
+            )
+        };
+        let cases = r#"[{"name": "out", "pose_deg": [0]}, {"name": "half", "pose_deg": [-60]}]"#;
+        let found_with = |more: &str, springs: &str| {
+            found(&format!("{}{springs}", chain(more)), cases, r#"{"joints": []}"#)
+        };
+        let (held_nm, bar_kg) = (0.02f64.powi(3) / 6.0 * 5e7, 0.5 * 4e-4 * 2500.0);
+        let plain = found_with("", "");
+        let most = &plain.window.most;
+        assert!((most.payload_kg - (held_nm / 9.81 - bar_kg * 0.25) / 0.5).abs() < 1e-9, "{plain:?}");
+        assert_eq!((most.piece.as_str(), most.check.as_str()), ("bar", "link stress"));
+        // a link at 60 degrees has half the lever, and its weight pushes or pulls along it
+        let half_kg = plain.table[0].window.most.payload_kg;
+        let weight_n = |kg: f64| 9.81 * (kg + bar_kg);
+        let bent_nm = 9.81 * (half_kg * 0.25 + bar_kg * 0.125);
+        let along_pa = weight_n(half_kg) * 0.75f64.sqrt() / 4e-4;
+        assert!((bent_nm / (0.02f64.powi(3) / 6.0) + along_pa - 5e7).abs() < 1.0, "{plain:?}");
+        // a body of 1 kg, 40 mm to the side: it bends the bar and twists it
+        let body = found_with(r#", "bodies": [{"mass_kg": 1, "cg_m": [0.3, 0.04, 0]}]"#, "");
+        let body_kg = body.window.most.payload_kg;
+        let normal_pa = 9.81 * (0.5 * body_kg + 0.25 * bar_kg + 0.3) / (0.02f64.powi(3) / 6.0);
+        // shear of a square bar under torsion: T / (0.208 a³) [Roark]
+        let shear_pa = 9.81 * 0.04 / (0.2082 * 0.02f64.powi(3));
+        let equivalent_pa = (normal_pa * normal_pa + 3.0 * shear_pa * shear_pa).sqrt();
+        assert!((equivalent_pa / 5e7 - 1.0).abs() < 1e-4, "{body:?}");
+        // a spring that lifts with 300 N at the middle unloads the root, so that the stress at its point limits the payload
+        let spring = r#", "springs": [{"name": "s", "from": {"at": "world", "point_m": [0.25, 0, 1000]},
+            "to": {"at": "bar", "point_m": [0.25, 0, 0]}, "force_n": 300, "stiffness_n_per_m": 0, "free_length_m": 1}]"#;
+        let lifted = found_with("", spring);
+        let lifted_kg = lifted.table[1].window.most.payload_kg;
+        let spring_kg = (held_nm / 9.81 - 0.5 * bar_kg * 0.125) / 0.25;
+        assert!((lifted_kg - spring_kg).abs() < 1e-6, "{lifted:?}");
+        // without a payload the spring bends the root too far upward
+        let least_kg = ((300.0 * 0.25 - held_nm) / 9.81 - bar_kg * 0.25) / 0.5;
+        assert!((lifted.table[1].window.least.payload_kg - least_kg).abs() < 1e-6, "{lifted:?}");
     }
 
     #[test]

@@ -5,6 +5,7 @@ use super::limit::{rounded_down, short};
 use crate::arm::joint_law::Curve;
 use crate::catalog::Catalogs;
 use crate::catalog::gear::{Gear, GearKind, GearMass};
+use crate::sizing::check::WITH_ROUNDING;
 use crate::sizing::demand::JointDemand;
 use crate::sizing::explain::Shortfall;
 use crate::sizing::rpm_from_rad_s;
@@ -20,17 +21,17 @@ const MOST_SECTIONS: u32 = 64;
 
 /// Messages for every joint at which no drive meets the demand, from the tip inward. Each joint is examined with the
 /// lightest links. Then links are given other sections one at a time, to find those with which the demand on the joint
-/// is least. A joint without a drive is then taken as rigid and without mass, while the joints inboard of it are
-/// examined.
+/// is least. While the joints inboard of it are examined, a joint without a drive is taken as rigid. Its mass is then that
+/// of the drive that is nearest to holding, because one that holds is hardly lighter.
 pub(super) fn joint_obstacles(space: &DesignSpace, catalogs: &Catalogs) -> Vec<String> {
     let mut space = few_sections(space);
     let mut found = Vec::new();
-    while let Some((piece, words)) = first_obstacle(&space, catalogs) {
+    while let Some(Obstacle { piece, words, nearest_kg }) = first_obstacle(&space, catalogs) {
         found.push(words);
         match &mut space.pieces[piece] {
             SpacePiece::Joint(joint) => {
                 joint.drive =
-                    DriveChoice::Given { curve: Curve::Rigid, mass_kg: 0.0, gear: None, motor: None };
+                    DriveChoice::Given { curve: Curve::Rigid, mass_kg: nearest_kg, gear: None, motor: None };
                 joint.motor_place = None;
             }
             SpacePiece::Prismatic(slide) => slide.drive = None,
@@ -59,9 +60,18 @@ fn few_sections(space: &DesignSpace) -> DesignSpace {
     out
 }
 
-/// The outermost joint at which no drive meets the demand: the index of its piece, and the reason; `None` if every
-/// joint gets a drive.
-fn first_obstacle(space: &DesignSpace, catalogs: &Catalogs) -> Option<(usize, String)> {
+/// A joint at which no drive meets the demand.
+struct Obstacle {
+    /// Index of the joint among the pieces of the arm.
+    piece: usize,
+    /// The reason, in words.
+    words: String,
+    /// Mass of the drive that is nearest to holding \[kg\]; 0 if no drive can be judged, or if its mass is unknown.
+    nearest_kg: f64,
+}
+
+/// The outermost joint at which no drive meets the demand; `None` if every joint gets a drive.
+fn first_obstacle(space: &DesignSpace, catalogs: &Catalogs) -> Option<Obstacle> {
     let problem = ArmProblem::new(space, catalogs);
     let mut sections = lightest_sections(space);
     loop {
@@ -69,7 +79,8 @@ fn first_obstacle(space: &DesignSpace, catalogs: &Catalogs) -> Option<(usize, St
         let table = &problem.sized_joint(stuck.piece)?.table;
         if table.is_empty() {
             let advice = passage_advice(table, catalogs);
-            return Some((stuck.piece, no_legal_drive(table, &stuck.demand) + &advice));
+            let words = no_legal_drive(table, &stuck.demand) + &advice;
+            return Some(Obstacle { piece: stuck.piece, words, nearest_kg: 0.0 });
         }
         match easier_sections(&problem, &sections, &stuck, table) {
             Ok(further) => sections = further,
@@ -81,7 +92,9 @@ fn first_obstacle(space: &DesignSpace, catalogs: &Catalogs) -> Option<(usize, St
                     "with the links that ask least of it"
                 };
                 let words = obstacle_at(table, &nearest).unwrap_or_default();
-                return Some((stuck.piece, format!("{links}, {words}")));
+                let words = format!("{links}, {words}");
+                let nearest_kg = table.nearest_mass_kg(&nearest).unwrap_or(0.0);
+                return Some(Obstacle { piece: stuck.piece, words, nearest_kg });
             }
         }
     }
@@ -190,7 +203,7 @@ fn no_legal_drive(table: &DriveTable, demand: &JointDemand) -> String {
         true => ("m/s", "tip_speed_m_s, max_speed_m_s"),
         false => ("rad/s", "tip_speed_m_s, min_lever_m, max_speed_rad_s"),
     };
-    match fastest(table).filter(|(speed, _)| *speed < needed) {
+    match fastest(table).filter(|(speed, _)| *speed * WITH_ROUNDING < needed) {
         Some((speed, drive)) => format!(
             "joint {joint}: {} {unit} needed, {} allowed by the fastest drive, {drive} (short by {} {unit}); slow \
              the joint to {} {unit} ({keys}) or widen \"drives\"{}",

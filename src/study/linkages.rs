@@ -15,7 +15,10 @@ pub(super) fn drivers_are_inboard(items: &[Node], pieces: &[SpacePiece]) -> Opti
         {
             sound = item.fault(
                 format!("is coupled to \"{name}\", which is no driven joint inboard of it"),
-                &format!("driven joints inboard of it: {}", inboard.join(", ")),
+                &match inboard.as_slice() {
+                    [] => "no driven joint stands inboard of it".to_string(),
+                    names => format!("driven joints inboard of it: {}", names.join(", ")),
+                },
             );
         }
         if joint.coupled.is_none() {

@@ -64,8 +64,8 @@ const RAIL_KEYS: [Key; 6] = [
         "none",
         "Size it: the lightest pair of a screw or rack and a motor that passes all checks.",
     ),
-    optional("screws", SCREWS, "-", "[]", "Ball screws to choose from."),
-    optional("racks", RACKS, "-", "[]", "Racks to choose from."),
+    optional("screws", SCREWS, "-", "none", "Ball screws to choose from."),
+    optional("racks", RACKS, "-", "none", "Racks to choose from."),
     optional(
         "drives",
         Kind::Object(&DRIVES),

@@ -139,10 +139,15 @@ fn turns_as_fast(gear: &Gear, motor: &Motor, duty: &Duty) -> Option<bool> {
     let fastest_rpm = input_rpm(gear, duty.speed_rad_s);
     let mean_rpm = input_rpm(gear, duty.mean_speed_rad_s);
     Some(
-        fastest_rpm <= limit(gear, gear.max_input_speed_rpm)?
-            && fastest_rpm * duty.stage.ratio <= motor_max_rpm
-            && mean_rpm <= limit(gear, gear.average_input_speed_limit_rpm)?,
+        is_within(fastest_rpm, limit(gear, gear.max_input_speed_rpm)?)
+            && is_within(fastest_rpm * duty.stage.ratio, motor_max_rpm)
+            && is_within(mean_rpm, limit(gear, gear.average_input_speed_limit_rpm)?),
     )
+}
+
+/// Whether a speed \[rpm\] is at most `most_rpm`. A difference of a trillionth is rounding of unit conversions.
+fn is_within(rpm: f64, most_rpm: f64) -> bool {
+    rpm - most_rpm <= 1e-12 * most_rpm
 }
 
 /// The limit that a rating of a gear sets. For a direct drive or an actuator, a rating that the catalog leaves blank
