@@ -70,8 +70,7 @@ pub(crate) struct LinkStresses {
 }
 
 impl LinkStresses {
-    /// Prepares the links of `arm`. The structure of the arm may depend on the case, because a case may state
-    /// temperatures.
+    /// Prepares the links of `arm` in the structure that it has in `case`.
     pub(crate) fn new(arm: &Arm, case: &LoadCase) -> Self {
         let whole = arm.structure_in(case);
         let divided = whole.divided_at_loads();
@@ -89,10 +88,9 @@ impl LinkStresses {
     pub(crate) fn in_case(&self, case: &LoadCase) -> Vec<(&str, f64)> {
         let statics = self.chain.pose(case).statics();
         let mut out: Vec<(&str, f64)> = Vec::new();
-        for loads in statics.link_roots.iter().zip(&statics.link_ends) {
-            let Some((name, check)) = &self.checks[loads.0.piece] else { continue };
-            let ratio = [loads.0, loads.1].map(|load| check.ratio(transmitted(load)));
-            let ratio = ratio[0].max(ratio[1]);
+        for (root, end) in statics.link_roots.iter().zip(&statics.link_ends) {
+            let Some((name, check)) = &self.checks[root.piece] else { continue };
+            let ratio = check.ratio(transmitted(root)).max(check.ratio(transmitted(end)));
             match out.last_mut() {
                 Some((last, largest)) if last == name => *largest = largest.max(ratio),
                 _ => out.push((name, ratio)),

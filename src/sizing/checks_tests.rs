@@ -242,6 +242,28 @@ fn a_rated_speed_stands_in_for_a_blank_largest_speed() {
     assert_eq!(failing(slow), [CheckKind::MotorSpeed]);
 }
 
+/// A screw with a lead of 10 mm turns at 1500 rpm where its carriage moves at 0.25 m/s, which is 1500.0000000000002 rpm in
+/// floating-point numbers. A speed that is a millionth higher is refused.
+#[test]
+fn a_speed_that_is_exactly_the_largest_one_holds() {
+    for part in [1.0, 1.000_001] {
+        let (mut gear, mut motor) = ample();
+        let mut motion = motion();
+        for _ in 0..20 {
+            motion.speed_rad_s *= 0.97;
+            let input_rpm = input_speed_rpm(&gear, &motion);
+            // the last digit above, as a conversion of units leaves it
+            let most_rpm = input_rpm / part * (1.0 - f64::EPSILON);
+            (gear.max_input_speed_rpm, motor.max_speed_rpm) = (Some(most_rpm), Some(most_rpm));
+            let drive = housed(&gear, &motor);
+            let is_speed = |c: &&Check| matches!(c.kind, CheckKind::GearSpeed | CheckKind::MotorSpeed);
+            let checks = checks(&drive, &motion, &demand());
+            assert!(checks.iter().filter(is_speed).all(|c| c.holds() == (part == 1.0)), "{checks:?}");
+            assert_eq!(DriveLimits::of(&drive, &motion).is_ok(), part == 1.0);
+        }
+    }
+}
+
 #[test]
 fn what_binds_is_the_smallest_margin() {
     let (gear, motor) = ample();

@@ -278,12 +278,6 @@ impl<'c> DriveTable<'c> {
         self.nearest(demand).and_then(|(_, checks)| binding(&checks)?.torque_margin()).unwrap_or(0.0)
     }
 
-    /// Mass of the nearest drive \[kg\], for a demand that no drive meets; `None` if no drive can be judged, or if the mass
-    /// is unknown.
-    pub(crate) fn nearest_mass_kg(&self, demand: &JointDemand) -> Option<f64> {
-        self.nearest(demand)?.0.mass_kg().ok()
-    }
-
     /// Every gear that passes its own checks, combined with every motor that goes with it.
     fn trials(&self, demand: &JointDemand) -> Vec<Trial<'c>> {
         let mut trials = Vec::new();

@@ -411,6 +411,7 @@ fn shortened(name: &str) -> String {
 mod tests {
     use super::super::testing::{char_lynn_j_8_2, component_set, f11_10, hfuc_40_100, hfuc_58_100};
     use super::*;
+    use crate::catalog::gear::GearKind;
     use crate::catalog::motor::Motor;
     use crate::sizing::demand::LinearReading;
     use crate::sizing::requirement::MotionRequirement;
@@ -421,6 +422,20 @@ mod tests {
         let gear = hfuc_58_100();
         let drive = component_set(&gear, motor);
         JointSizingRow::new("j2", &drive, &motion, &motion.demand(568.3, 0.0), 80.0)
+    }
+
+    /// The stop of an actuator includes its own rotor: twice 0.5 kg m² at the output times α, besides T + 2 T_lin.
+    #[test]
+    fn the_stop_of_an_actuator_is_the_one_that_is_checked() {
+        let (mut gear, mut motor) = (hfuc_58_100(), f11_10());
+        gear.kind = GearKind::Actuator;
+        (gear.inertia_input_kgm2, gear.efficiency) = (Some(0.0), Some(1.0));
+        motor.rotor_inertia_kgm2 = Some(0.5 / gear.ratio.powi(2));
+        let motion = MotionRequirement::default().joint_motion(1.35, None);
+        let demand = motion.demand_of_torques(300.0, 100.0);
+        let row = JointSizingRow::new("j2", &component_set(&gear, &motor), &motion, &demand, 80.0);
+        let right_nm = 300.0 + 2.0 * 100.0 + 2.0 * 0.5 * motion.acceleration_rad_s2;
+        assert!((row.stop_torque_nm - right_nm).abs() < 1e-9, "{}", row.stop_torque_nm);
     }
 
     #[test]

@@ -53,6 +53,12 @@ impl SizedJoint<'_> {
         self.all_fits
     }
 
+    /// Least mass that a drive has at the joint, without a motor that stands elsewhere \[kg\]; 0 if there is no drive.
+    pub(crate) fn least_kg_at_joint(&self) -> f64 {
+        let at_joint = self.away_kg.iter().enumerate().map(|(drive, away)| self.table.mass_kg(drive) - away);
+        at_joint.reduce(f64::min).unwrap_or(0.0)
+    }
+
     /// The drives of the joint, sorted into kinds. The drives of a kind have equal mass, an equal torsion curve and an
     /// equal bearing compliance, so no objective differs between them. Each drive has torque limits of its own. Kinds
     /// are in the order of their first drives. The drives of a kind are in ascending order.

@@ -21,17 +21,17 @@ const MOST_SECTIONS: u32 = 64;
 
 /// Messages for every joint at which no drive meets the demand, from the tip inward. Each joint is examined with the
 /// lightest links. Then links are given other sections one at a time, to find those with which the demand on the joint
-/// is least. While the joints inboard of it are examined, a joint without a drive is taken as rigid. Its mass is then that
-/// of the drive that is nearest to holding, because one that holds is hardly lighter.
+/// is least. While the joints inboard of it are examined, a joint without a drive is taken as rigid, with the least mass
+/// that a drive of the study has there. So every message is true of any drive.
 pub(super) fn joint_obstacles(space: &DesignSpace, catalogs: &Catalogs) -> Vec<String> {
     let mut space = few_sections(space);
     let mut found = Vec::new();
-    while let Some(Obstacle { piece, words, nearest_kg }) = first_obstacle(&space, catalogs) {
+    while let Some(Obstacle { piece, words, least_kg }) = first_obstacle(&space, catalogs) {
         found.push(words);
         match &mut space.pieces[piece] {
             SpacePiece::Joint(joint) => {
                 joint.drive =
-                    DriveChoice::Given { curve: Curve::Rigid, mass_kg: nearest_kg, gear: None, motor: None };
+                    DriveChoice::Given { curve: Curve::Rigid, mass_kg: least_kg, gear: None, motor: None };
                 joint.motor_place = None;
             }
             SpacePiece::Prismatic(slide) => slide.drive = None,
@@ -66,8 +66,8 @@ struct Obstacle {
     piece: usize,
     /// The reason, in words.
     words: String,
-    /// Mass of the drive that is nearest to holding \[kg\]; 0 if no drive can be judged, or if its mass is unknown.
-    nearest_kg: f64,
+    /// Least mass of a drive at the joint, without a motor that stands elsewhere \[kg\]; 0 if the joint has no legal drive.
+    least_kg: f64,
 }
 
 /// The outermost joint at which no drive meets the demand; `None` if every joint gets a drive.
@@ -76,11 +76,12 @@ fn first_obstacle(space: &DesignSpace, catalogs: &Catalogs) -> Option<Obstacle> 
     let mut sections = lightest_sections(space);
     loop {
         let stuck = stuck_at(&problem, &sections)?;
-        let table = &problem.sized_joint(stuck.piece)?.table;
+        let sized = problem.sized_joint(stuck.piece)?;
+        let table = &sized.table;
         if table.is_empty() {
             let advice = passage_advice(table, catalogs);
             let words = no_legal_drive(table, &stuck.demand) + &advice;
-            return Some(Obstacle { piece: stuck.piece, words, nearest_kg: 0.0 });
+            return Some(Obstacle { piece: stuck.piece, words, least_kg: 0.0 });
         }
         match easier_sections(&problem, &sections, &stuck, table) {
             Ok(further) => sections = further,
@@ -93,8 +94,7 @@ fn first_obstacle(space: &DesignSpace, catalogs: &Catalogs) -> Option<Obstacle> 
                 };
                 let words = obstacle_at(table, &nearest).unwrap_or_default();
                 let words = format!("{links}, {words}");
-                let nearest_kg = table.nearest_mass_kg(&nearest).unwrap_or(0.0);
-                return Some(Obstacle { piece: stuck.piece, words, nearest_kg });
+                return Some(Obstacle { piece: stuck.piece, words, least_kg: sized.least_kg_at_joint() });
             }
         }
     }
