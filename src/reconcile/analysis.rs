@@ -62,7 +62,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
         () if few => None,
         () if fit_test.fails => unnamed::better_than_calibration(&search, &baseline),
         () if best.model.effects.is_empty() => None,
-        () => unnamed::instead(&search, &search.scored(&chosen.effects, &best), &baseline),
+        () => unnamed::instead(&search, &search.scored(&chosen.effects, &best), &baseline, &found.noise),
     };
     let without = is_weak(&found.selection).then(|| lack_of_fit(campaign, &forward, &baseline, &weights));
     let left_out = [&baseline, &best].map(|f| held_out::residuals(&forward, &f.model, &f.point.u, &weights));

@@ -36,7 +36,8 @@ impl Analysis<'_> {
         if self.best.model.effects.is_empty() {
             return self.without_effect(Vec::new());
         }
-        if let Some(better) = &self.unnamed {
+        // an effect that is only suspected needs no law that is as good, and such a law is no gap
+        if let Some(better) = self.unnamed.as_ref().filter(|law| law.is_clear() || self.without.is_none()) {
             return (Verdict::Unexplained, vec![self.beaten(better)]);
         }
         if let Some(text) = caution::opposed(self.forward, &self.best) {
@@ -191,11 +192,18 @@ impl Analysis<'_> {
     }
 
     /// Sentence which says that `law`, a law without a name, explains the readings better than the effects of the
-    /// library.
+    /// library, or as well.
     fn beaten(&self, law: &Better) -> String {
+        let start = match law.is_clear() {
+            true => "the library lacks this law, and it explains the readings better than any effect of the library".into(),
+            false => format!(
+                "these readings cannot tell {} from a law that the library lacks, so that no effect is named",
+                self.best.model.label()
+            ),
+        };
         format!(
-            "the library lacks this law, and it explains the readings better than any effect of the library: {} \
-             (chi-squared {:.0} with its {} parameter(s), {:.0} with {} of the best effects; ln of the evidence rises by {:.1})",
+            "{start}: {} (chi-squared {:.0} with its {} parameter(s), {:.0} with {} of the best effects; ln of the evidence \
+             changes by {:+.1})",
             law.what,
             law.objective,
             law.numbers,

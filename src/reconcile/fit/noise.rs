@@ -38,6 +38,9 @@ impl Outlier {
     }
 }
 
+/// Charge for a gross error that is assumed instead of an effect \[ln of the evidence\]. About one row in a thousand
+/// is a gross error, and ln 1000 is about 7.
+pub(crate) const GROSS_ERROR_CHARGE: f64 = 7.0;
 /// A reading is a gross error if its residual exceeds this many standard deviations. If the model fits a channel badly,
 /// the standard deviation of the channel's residuals counts instead of the declared one, up to three times the latter.
 const GROSS_SIGMAS: f64 = 5.5;

@@ -29,3 +29,24 @@ pub(super) fn dead_torques(posed: &Posed) -> (Vec<f64>, [f64; 2]) {
     let moment = angular(&wrench);
     (torques, [moment.x, moment.y])
 }
+
+/// Generalized force of the dead weight on each strain coordinate, base to tip \[N m for a rotation\]. Of a link, the
+/// weight outboard of it counts, and not its own.
+pub(super) fn dead_forces(posed: &Posed) -> Vec<f64> {
+    let mut wrench = Wrench::zeros();
+    let mut forces = Vec::new();
+    for item in posed.items.iter().rev() {
+        match item {
+            Item::Body(body) => wrench += body.weight(),
+            Item::Load(load) => wrench += load,
+            Item::Elastic(element) => {
+                forces.extend(element.twists.iter().rev().map(|twist| twist.dot(&wrench)));
+                if let Some(own) = &element.own {
+                    wrench += own.weight;
+                }
+            }
+        }
+    }
+    forces.reverse();
+    forces
+}

@@ -42,7 +42,8 @@ const OUT_OF_ORDER_SIGMAS: f64 = 5.0;
 
 /// The modal test of one pose and payload: the list of its measured modes, and what their computation needs.
 pub struct ModalTest {
-    geometry: PoseGeometry,
+    /// Geometry of the pose.
+    pub(crate) geometry: PoseGeometry,
     payload: Payload,
     /// Time and temperature of the first mode of the list.
     when: Moment,
@@ -276,7 +277,7 @@ impl ModalTest {
     }
 
     /// Weight of the payload in this test, as a wrench about the world's origin.
-    fn wrench(&self, layout: &Layout, coefficients: &Coefficients) -> Wrench {
+    pub(crate) fn wrench(&self, layout: &Layout, coefficients: &Coefficients) -> Wrench {
         let at = (Channel::Modal, self.when.row);
         self.geometry.wrench(&self.payload, &Vector3::zeros(), layout.gravity_m_s2, coefficients, at)
     }

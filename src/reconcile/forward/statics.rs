@@ -7,7 +7,7 @@
 
 use super::coefficients::{Coefficients, Layout, StaticChanges};
 use super::datum::{Datum, Groups};
-use super::dead_weight::dead_torques;
+use super::dead_weight::{dead_forces, dead_torques};
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::subject::Subject;
 use crate::arm::effect::warming::Moment;
@@ -46,6 +46,8 @@ pub struct PoseGeometry {
     pub dead_nm: Vec<f64>,
     /// For each mass that a fit can change, the torques on the joints by one unit of this mass \[N m\].
     pub dead_per_mass_nm: Vec<Vec<f64>>,
+    /// Generalized force of the template's weight on each strain coordinate \[N m for a rotation\].
+    pub(crate) dead_forces: Vec<f64>,
     /// The two coordinates of the base's tilt, about world x and y.
     pub base: [Mover; 2],
     /// Moments of the template's weight about world x and y of the base \[N m\].
@@ -210,6 +212,7 @@ impl PoseGeometry {
             angles_rad: nominal.structure.joints().map(|joint| joint.angle.of(&pose_rad)).collect(),
             dead_nm,
             dead_per_mass_nm,
+            dead_forces: dead_forces(&posed),
             base: [0, 1].map(mover),
             dead_base_nm,
             dead_base_per_mass_nm,
@@ -555,6 +558,11 @@ impl StaticPose {
             let moved = 1e3 * compliance_of * wrench;
             self.measured(k).for_each(|(component, datum)| out[datum] += moved[component]);
         }
+    }
+
+    /// Weight of the payload and tip force together, under each load of the pose, as a wrench about the world's origin.
+    pub(crate) fn wrenches(&self, layout: &Layout, coefficients: &Coefficients) -> Vec<Wrench> {
+        self.loads.iter().map(|load| self.wrench(load, layout, coefficients)).collect()
     }
 
     /// Largest moment on the base of an arm with these coefficients, about world x or y, without load and under all

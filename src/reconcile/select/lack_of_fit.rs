@@ -123,6 +123,8 @@ struct Tester {
     jacobian: DMatrix<f64>,
     covariance: DMatrix<f64>,
     weight: Vec<f64>,
+    /// For each datum, the part of its variance that the fitted parameters absorb.
+    leverages: Vec<f64>,
 }
 
 impl Tester {
@@ -135,7 +137,8 @@ impl Tester {
         }
         let n = fit.curvature.nrows();
         let covariance = fit.curvature.clone().try_inverse().unwrap_or_else(|| DMatrix::zeros(n, n));
-        Self { residual, jacobian, covariance, weight: weights.inverse.clone() }
+        let leverages = fit.leverages(weights);
+        Self { residual, jacobian, covariance, weight: weights.inverse.clone(), leverages }
     }
 
     fn ask(&self, channel: Channel, follows: String, regressors: &[Vec<f64>]) -> Option<Structure> {
@@ -171,15 +174,17 @@ impl Tester {
         })
     }
 
+    /// Chi-squared of the readings per degree of freedom, in declared standard deviations. A parameter that its prior
+    /// determines takes no degree of freedom, and one that the readings determine takes one.
     fn chi2_per_dof(&self, forward: &Forward, fit: &Fit) -> f64 {
-        let (mut chi2, mut count) = (0.0, 0.0);
+        let (mut chi2, mut freedom) = (0.0, 0.0);
         for (i, datum) in forward.data.iter().enumerate() {
             if self.weight[i] > 0.0 {
                 chi2 += ((datum.value - fit.point.predicted[i]) / datum.sigma).powi(2);
-                count += 1.0;
+                freedom += 1.0 - self.leverages[i];
             }
         }
-        chi2 / (count - fit.model.effects.len() as f64 - 4.0).max(1.0)
+        chi2 / freedom.max(1.0)
     }
 }
 

@@ -7,17 +7,13 @@ use super::few_rows;
 use super::screening::Selection;
 use super::search::{Scored, Search};
 use crate::reconcile::fit::descent::{Effort, Fit, Weights};
-use crate::reconcile::fit::noise::{Noise, gross_lists};
+use crate::reconcile::fit::noise::{GROSS_ERROR_CHARGE, Noise, gross_lists};
 use crate::reconcile::fit::steps::best_fit;
 use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::calibration::Nuisance;
 use crate::reconcile::model::parameters::{Candidate, Model};
 use crate::reconcile::readings::campaign::Campaign;
-
-/// Charge for a gross error that is assumed instead of an effect \[ln of the evidence\]. About one row in a thousand
-/// is a gross error, and ln 1000 is about 7.
-const GROSS_ERROR_CHARGE: f64 = 7.0;
 
 /// Largest tolerable error of a frequency that comes from computing it with fixed trial shapes \[standard deviations
 /// of the reading\].

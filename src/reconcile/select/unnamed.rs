@@ -8,11 +8,14 @@
 use super::laws::{Law, of_every_law};
 use super::search::{Scored, Search};
 use super::structure::Structure;
+use crate::arm::effect::kind::Place;
 use crate::reconcile::fit::descent::{Effort, Fit, Slopes, Weights, normal, objective};
+use crate::reconcile::fit::noise::{GROSS_ERROR_CHARGE, Noise};
 use crate::reconcile::fit::stats::ln_chi_squared_tail;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::{Cholesky, DMatrix, DVector};
+use std::cmp::Ordering;
 use std::f64::consts::TAU;
 
 /// All sizes of a law below this fraction of its full size have equal prior probability. At full size a stiffness or
@@ -22,7 +25,7 @@ const SMALL_SIZE: f64 = 0.02;
 const STEPS: usize = 6;
 /// The linearized fit ends when a step changes the objective by less than this.
 const CONVERGED_WITHIN: f64 = 0.01;
-/// A law without a name is preferred to named effects if the logarithm of its evidence, less the charge for its
+/// A law without a name is clearly better than named effects if the logarithm of its evidence, less the charge for its
 /// place, is higher by more than this. If no effect is named, a law is mentioned if it is better than calibration by
 /// as much.
 const LEAST_GAIN: f64 = 2.0;
@@ -30,13 +33,18 @@ const LEAST_GAIN: f64 = 2.0;
 /// A competing model: a fitted model to which a law without a name was added.
 struct Competitor {
     what: String,
+    /// The place of the law, if it has one.
+    at: Option<String>,
+    /// The seldom effect that the law describes more closely.
+    refines: Option<&'static str>,
     numbers: usize,
     objective: f64,
     /// Natural logarithm of the evidence of the model with the law.
     evidence: f64,
 }
 
-/// A law without a name that explains the readings better than the model with which it competes.
+/// A law without a name that explains the readings better than the model with which it competes, or as well.
+#[derive(Debug)]
 pub(crate) struct Better {
     /// Description of the law in words.
     pub what: String,
@@ -47,6 +55,13 @@ pub(crate) struct Better {
     /// Rise of the logarithm of the evidence, less the charge for the place, over the model with which the law
     /// competes.
     pub gain: f64,
+}
+
+impl Better {
+    /// Whether the law is clearly better, and not only as good.
+    pub(crate) fn is_clear(&self) -> bool {
+        self.gain > LEAST_GAIN
+    }
 }
 
 /// For each law without a name, a test for lack of fit: the statistic is the fall of the objective of `fit` when the
@@ -74,34 +89,90 @@ pub(crate) fn law_questions(
 /// calibration does; `None` if there is none.
 pub(crate) fn better_than_calibration(search: &Search, baseline: &Fit) -> Option<Better> {
     let places = search.places();
-    best_of(competitors(search, baseline), baseline.evidence, places)
+    best_of(competitors(search, baseline), baseline.evidence, places, |_| LEAST_GAIN)
 }
 
-/// The law without a name that explains the readings better than the model `best` when it takes the place of one
-/// named effect, or of all of them; `None` if there is none.
-pub(crate) fn instead(search: &Search, best: &Scored, baseline: &Fit) -> Option<Better> {
+/// The law without a name that keeps the effects of the model `best` from being named; `None` if there is none. It takes
+/// the place of one named effect, or of all of them.
+///
+/// A usual effect is likelier than any law without a name before a reading is taken, so the law must be clearly better. An
+/// effect that is seldom met is not: a servo that is soft in one kind of tests, and a joint that creeps while a pose is kept,
+/// are equally strange. A law that explains the readings as well keeps it from being named. Only a law that describes
+/// the effect more closely at its place, such as a stiffness that varies five times a turn, must be clearly better too.
+///
+/// `noise` says which rows are gross errors with the named effects. A law may explain these rows. So the laws are also
+/// tried with all rows, and what the assumption of gross errors costs is then to their credit.
+pub(crate) fn instead(search: &Search, best: &Scored, baseline: &Fit, noise: &Noise) -> Option<Better> {
+    let mut found = instead_with(search, best, baseline, 0.0);
+    if !noise.outliers.is_empty() {
+        let all = Noise { outliers: Vec::new(), ..noise.clone() }.weights(search.forward);
+        let whole = Search { weights: &all, ..*search };
+        let baseline = whole.fit(&[], &baseline.point.u, Effort::default());
+        let credit = GROSS_ERROR_CHARGE * noise.outliers.len() as f64;
+        found = found.into_iter().chain(instead_with(&whole, best, &baseline, credit)).max_by(by_gain);
+    }
+    found
+}
+
+fn by_gain(a: &Better, b: &Better) -> Ordering {
+    a.gain.total_cmp(&b.gain)
+}
+
+/// The same as [`instead`], with the rows that `search` weighs. `credit` is added to the evidence of each law.
+fn instead_with(search: &Search, best: &Scored, baseline: &Fit, credit: f64) -> Option<Better> {
     let (named, places) = (best.effects.len(), search.places());
     // with one effect, the model without it is the baseline, which is tried anyway
     let single = (0..named).filter(|_| named > 1).map(|i| {
         let (effects, u) = search.without(best, i);
-        (search.price(&effects), search.fit(&effects, &u, Effort::default()))
+        (vec![best.effects[i]], search.price(&effects), search.fit(&effects, &u, Effort::default()))
     });
-    let fits: Vec<(f64, Fit)> = single.collect();
-    let better = |(price, fit): (f64, &Fit)| best_of(competitors(search, fit), best.score + price, places);
-    let fits = fits.iter().map(|(price, fit)| (*price, fit));
-    fits.chain([(0.0, baseline)]).filter_map(better).max_by(|a, b| a.gain.total_cmp(&b.gain))
+    let fits: Vec<(Vec<usize>, f64, Fit)> = single.collect();
+    let keeping = |(replaced, price, fit): (&[usize], f64, &Fit)| {
+        let least = |law: &Competitor| {
+            let asked = replaced.iter().map(|effect| asked(search, *effect, law));
+            asked.fold(f64::NEG_INFINITY, f64::max)
+        };
+        best_of(competitors(search, fit), best.score + price - credit, places, least)
+    };
+    let fits = fits.iter().map(|(replaced, price, fit)| (replaced.as_slice(), *price, fit));
+    fits.chain([(best.effects.as_slice(), 0.0, baseline)]).filter_map(keeping).max_by(by_gain)
 }
 
-/// The best of the `competitors` by evidence, if its evidence, less a charge for having tried `places` places, is
-/// higher than `evidence` by more than [`LEAST_GAIN`]; otherwise `None`. `evidence` is the logarithm of the evidence of
-/// the model with which they compete, less the charges for effects that only this model has. Effects that are in both
-/// models are not charged for their places.
-fn best_of(competitors: Vec<Competitor>, evidence: f64, places: f64) -> Option<Better> {
-    let gain = |r: &Competitor| r.evidence - libm::log(places) - evidence;
-    let best = competitors.into_iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
-    let better =
-        Better { gain: gain(&best), what: best.what, numbers: best.numbers, objective: best.objective };
-    (better.gain > LEAST_GAIN).then_some(better)
+/// By how much the logarithm of the evidence of a law must exceed that of the candidate with the index `effect`, if the
+/// law is to keep this effect from being named.
+fn asked(search: &Search, effect: usize, law: &Competitor) -> f64 {
+    let candidate = &search.candidates[effect];
+    let is_at = |place: &str| match candidate.kind.places.contains(&Place::Arm) {
+        // what the whole arm has, each of its links has
+        true => search.forward.layout.links.iter().any(|link| link.name == place),
+        false => candidate.at == place || candidate.twins.iter().any(|(_, twin)| twin == place),
+    };
+    let is_there = law.at.as_deref().is_some_and(is_at);
+    let is_close = law.refines == Some(candidate.kind.name) || candidate.kind.places.contains(&Place::Arm);
+    match candidate.kind.traits.odds < 1.0 {
+        true if is_there && is_close => LEAST_GAIN,
+        true => 0.0,
+        false => LEAST_GAIN,
+    }
+}
+
+/// The law of the `competitors` that exceeds by most what is asked of it. What is asked is that the logarithm of its
+/// evidence, less a charge for having tried `places` places, is higher than `evidence` by more than `least` says; `None`
+/// if no law does that. `evidence` is the logarithm of the evidence of the model with which they compete, less the charges
+/// for effects that only this model has. Effects that are in both models are not charged for their places.
+fn best_of(
+    competitors: Vec<Competitor>,
+    evidence: f64,
+    places: f64,
+    least: impl Fn(&Competitor) -> f64,
+) -> Option<Better> {
+    let gain = |law: &Competitor| law.evidence - libm::log(places) - evidence;
+    let excess = |law: &Competitor| gain(law) - least(law);
+    let best = competitors.into_iter().max_by(|a, b| excess(a).total_cmp(&excess(b)))?;
+    let gain = gain(&best);
+    let keeps = gain > least(&best);
+    let Competitor { what, numbers, objective, .. } = best;
+    keeps.then_some(Better { what, numbers, objective, gain })
 }
 
 /// Fits each law without a name together with the parameters of the model `fit`. Laws that are the same as an effect
@@ -119,7 +190,14 @@ fn competitors(search: &Search, fit: &Fit) -> Vec<Competitor> {
 /// Fits the model of `fit` together with the law `law`. The predictions are linearized about `fit`.
 fn competitor(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Competitor {
     let (objective, evidence) = with_columns(forward, fit, &law.columns, weights);
-    Competitor { what: law.what.clone(), numbers: law.columns.len(), objective, evidence }
+    Competitor {
+        what: law.what.clone(),
+        at: law.at.clone(),
+        refines: law.refines,
+        numbers: law.columns.len(),
+        objective,
+        evidence,
+    }
 }
 
 /// The logarithm of the evidence of the model of `fit` together with a law. `columns` has, for each parameter of the law, the

@@ -17,6 +17,8 @@ impl Builder<'_> {
                     "a twist of {} under the torque of {}",
                     joints[twisted].name, joints[loaded].name
                 ),
+                at: None,
+                refines: None,
                 effect: None,
                 columns: vec![self.coupling_column(twisted, loaded, compliance)],
             }

@@ -21,6 +21,8 @@ impl Builder<'_> {
             let what = format!("a friction of {} in proportion to its torque", slot.name);
             let law = |part: f64| Law {
                 what: what.clone(),
+                at: Some(slot.name.clone()),
+                refines: None,
                 effect: None,
                 columns: vec![self.friction_column(joint, part)],
             };

@@ -1,6 +1,6 @@
 //! Laws of prismatic joints whose guide or drive is more compliant in one part of the travel than in another.
 
-use super::{Builder, Law, one_or_both};
+use super::{Builder, Law, one_or_both, placed};
 use crate::reconcile::forward::coefficients::GUIDE_ROTATIONS;
 
 impl Builder<'_> {
@@ -14,7 +14,7 @@ impl Builder<'_> {
             let of = |part: &str, own: std::ops::Range<usize>| {
                 let column = |power| self.travel_column(&joint.name, own.clone(), power);
                 let what = format!("a {part} of {} whose stiffness changes with its position", joint.name);
-                one_or_both(&what, [column(1), column(2)])
+                placed(&joint.name, one_or_both(&what, [column(1), column(2)]))
             };
             let travel = first + GUIDE_ROTATIONS;
             of("guide", *first..travel).into_iter().chain(of("drive", travel..travel + 1))

@@ -3,12 +3,12 @@
 use super::super::waves::waves;
 use super::{Builder, Law, one_or_both};
 use crate::arm::effect::channel::Channel;
-use crate::arm::effect::stiffness_waves;
+use crate::arm::effect::{servo_compliance, stiffness_waves};
 use crate::reconcile::forward::bench::ARCMIN_PER_RAD;
 
 /// Torque, angle and test of a joint at the time of a reading.
-struct State {
-    torque_nm: f64,
+pub(super) struct State {
+    pub(super) torque_nm: f64,
     angle_deg: f64,
     /// Fraction of the channel's rows that were taken before this reading.
     part: f64,
@@ -20,7 +20,7 @@ struct State {
 /// A function that gives two numbers for a state of the joint: an additional torque \[N m\], and its derivative with
 /// respect to the joint's torque. The additional twist of the joint is its compliance times the additional torque. The
 /// additional tangent compliance is the compliance times the derivative.
-type Shape<'a> = &'a dyn Fn(&State) -> (f64, f64);
+pub(super) type Shape<'a> = &'a dyn Fn(&State) -> (f64, f64);
 
 impl Builder<'_> {
     pub(super) fn joint_laws(&self, joint: usize) -> Vec<Law> {
@@ -64,8 +64,8 @@ impl Builder<'_> {
         if self.campaign.arm.driven_joint_names().contains(&name.as_str()) {
             let what = format!("a stiffness of {name} that changes with its angle");
             let effect = Some(stiffness_waves::KIND.name);
-            out.push(Law { what: what.clone(), effect, columns: vec![wave(0), wave(1)] });
-            out.push(Law { what, effect, columns: vec![wave(2), wave(3)] });
+            out.push(Law::without_place(what.clone(), effect, vec![wave(0), wave(1)]));
+            out.push(Law::without_place(what, effect, vec![wave(2), wave(3)]));
         }
         for channel in [Channel::Static, Channel::Modal] {
             let what =
@@ -75,7 +75,8 @@ impl Builder<'_> {
             // told from a different stiffness of the joint
             if self.kinds_of_readings() > 1 {
                 let what = format!("a stiffness of {name} that is another in the {} tests", channel.word());
-                out.push(Law { what, effect: None, columns: vec![order(channel, 0)] });
+                let effect = Some(servo_compliance::KIND.name);
+                out.push(Law::without_place(what, effect, vec![order(channel, 0)]));
             }
         }
         out.extend(self.warming_laws(joint, &column));
@@ -113,14 +114,14 @@ impl Builder<'_> {
     }
 
     /// Number of channels for which the campaign has readings.
-    fn kinds_of_readings(&self) -> usize {
+    pub(super) fn kinds_of_readings(&self) -> usize {
         let channels = [Channel::Static, Channel::Modal, Channel::Windup];
         channels.into_iter().filter(|channel| !self.forward.range(*channel).is_empty()).count()
     }
 
     /// The change of every reading, in its unit, by an additional twist of the joint with index `joint`. This twist
     /// is `compliance` \[rad/(N m)\] times `shape`, which depends on the torque, angle and row.
-    fn joint_column(&self, joint: usize, compliance: f64, shape: Shape) -> Vec<f64> {
+    pub(super) fn joint_column(&self, joint: usize, compliance: f64, shape: Shape) -> Vec<f64> {
         let forward = self.forward;
         let driven = self.campaign.arm.driven_joint_names();
         let own = driven.iter().position(|n| *n == forward.layout.joints[joint].name);

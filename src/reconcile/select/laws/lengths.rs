@@ -17,6 +17,8 @@ impl Builder<'_> {
         let columns = self.forward.length_columns.get_or_init(|| self.length_columns(&names));
         let law = |(name, column): (&&str, &Vec<f64>)| Law {
             what: format!("a length of {name} other than drawn"),
+            at: None,
+            refines: None,
             effect: None,
             columns: vec![column.clone()],
         };

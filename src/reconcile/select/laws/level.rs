@@ -14,6 +14,8 @@ impl Builder<'_> {
         let columns = self.forward.level_columns.get_or_init(|| self.level_columns());
         vec![Law {
             what: "a direction of gravity other than stated (an arm that is out of level)".into(),
+            at: None,
+            refines: None,
             effect: None,
             columns: columns.clone(),
         }]

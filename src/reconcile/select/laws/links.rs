@@ -2,6 +2,7 @@
 //! may have another mass or wall than drawn.
 
 use super::{Builder, Law};
+use crate::arm::BASE;
 use crate::mechanics::beam::Strain;
 use crate::reconcile::fit::descent::change_to;
 use crate::reconcile::forward::coefficients::Coefficients;
@@ -14,25 +15,27 @@ impl Builder<'_> {
         let own = &self.fit.point.coefficients;
         let joints: Vec<f64> = own.laws.iter().map(|law| law.tangent_compliance_rad_per_nm(0.0)).collect();
         let Some(common) = joints.iter().copied().find(|c| *c > 0.0) else { return Vec::new() };
-        let law = |what: String, further: &[(usize, f64)]| Law {
+        let law = |at: &str, what: String, further: &[(usize, f64)]| Law {
             what,
+            at: Some(at.to_string()),
+            refines: None,
             effect: None,
             columns: vec![self.compliance_column(further)],
         };
-        let tilts = |what: String, first: usize, compliance: f64| {
-            [first, first + 1].map(|i| law(what.clone(), &[(i, compliance)]))
+        let tilts = |at: &str, what: String, first: usize, compliance: f64| {
+            [first, first + 1].map(|i| law(at, what.clone(), &[(i, compliance)]))
         };
-        let mut out = Vec::from(tilts("a base that tilts about one axis only".into(), 0, common));
+        let mut out = Vec::from(tilts(BASE, "a base that tilts about one axis only".into(), 0, common));
         for (joint, compliance) in layout.joints.iter().zip(&joints) {
             let what = format!("a bearing of {} that tilts about one axis only", joint.name);
             let compliance = if *compliance > 0.0 { *compliance } else { common };
-            out.extend(tilts(what, joint.twist - 2, compliance));
+            out.extend(tilts(&joint.name, what, joint.twist - 2, compliance));
         }
         for link in &layout.links {
             let strained = |what: String, wanted: &dyn Fn(Strain, usize) -> bool| {
                 let strains = link.strains.iter().enumerate().filter(|(_, (s, degree))| wanted(*s, *degree));
                 let further = strains.map(|(i, _)| (link.first + i, own.linear[link.first + i]));
-                law(what, &further.collect::<Vec<_>>())
+                law(&link.name, what, &further.collect::<Vec<_>>())
             };
             out.push(strained(format!("a torsion of {} beyond its own", link.name), &|s, _| {
                 s == Strain::Twist
@@ -62,6 +65,8 @@ impl Builder<'_> {
             };
             let law = |what: &str, changed: &dyn Fn(&mut Coefficients, f64)| Law {
                 what: format!("a {what} of {} other than drawn", link.name),
+                at: Some(link.name.clone()),
+                refines: None,
                 effect: None,
                 columns: vec![self.changed_column(changed)],
             };
@@ -88,7 +93,7 @@ impl Builder<'_> {
 
     /// The change of every reading, in its unit, by additional compliances. Each entry of `further` is a pair: index of
     /// the strain coordinate, and its additional compliance.
-    fn compliance_column(&self, further: &[(usize, f64)]) -> Vec<f64> {
+    pub(super) fn compliance_column(&self, further: &[(usize, f64)]) -> Vec<f64> {
         let forward = self.forward;
         let mut truth = vec![0.0; forward.data.len()];
         for pose in &forward.statics {

@@ -25,9 +25,13 @@ mod joints;
 mod lengths;
 mod level;
 mod links;
+mod occasions;
+mod parts;
 mod readings;
+mod sizes;
 mod zeros;
 
+use self::occasions::{Occasion, occasions};
 use crate::reconcile::fit::descent::Fit;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::readings::campaign::Campaign;
@@ -40,14 +44,27 @@ use std::f64::consts::TAU;
 const FULL_ANGLE_DEG: f64 = 30.0;
 
 /// A law without a name: a way in which readings can differ from the model.
+#[derive(Clone)]
 pub(crate) struct Law {
     /// Description of the law in words.
     pub what: String,
+    /// Name of the part, or of the channel, that deviates: it says where an effect of the library with this law would be.
+    /// `None` if the law has no such place.
+    pub at: Option<String>,
+    /// Name of an effect that is seldom met, if the law at its place only describes it more closely.
+    pub refines: Option<&'static str>,
     /// Name of the effect of the library that is the same as this law; `None` if there is none.
     pub effect: Option<&'static str>,
     /// The law's columns: for each of its parameters, the change of each predicted reading per unit of the parameter,
     /// in the unit of the file.
     pub columns: Vec<Vec<f64>>,
+}
+
+impl Law {
+    /// A law that has no place yet, with its description `what`, the effect that is the same as the law, and its columns.
+    fn without_place(what: String, effect: Option<&'static str>, columns: Vec<Vec<f64>>) -> Self {
+        Self { what, at: None, refines: None, effect, columns }
+    }
 }
 
 /// Calls `each` for every law at every place, and returns the results. The columns of a law are linearized about
@@ -58,14 +75,16 @@ pub(crate) fn of_every_law<T: Send>(
     fit: &Fit,
     each: impl Fn(&Law) -> T + Sync,
 ) -> Vec<T> {
-    let builder = Builder { campaign, forward, fit, torques_nm: forward.torques_nm(&fit.point.coefficients) };
+    let builder = Builder::new(campaign, forward, fit);
     let mut out = Vec::new();
     let mut ask = |mut group: Vec<Law>| {
         // a law that changes no reading cannot be tested
         group.retain(|law| law.columns.iter().all(|c| c.iter().any(|x| *x != 0.0)));
         out.par_extend(group.par_iter().map(&each));
     };
-    (0..forward.layout.joints.len()).for_each(|joint| ask(builder.joint_laws(joint)));
+    for (joint, slot) in forward.layout.joints.iter().enumerate() {
+        ask(placed(&slot.name, builder.joint_laws(joint)));
+    }
     ask(builder.friction_laws());
     ask(builder.zero_laws());
     ask(builder.level_laws());
@@ -75,6 +94,10 @@ pub(crate) fn of_every_law<T: Send>(
     ask(builder.compliance_laws());
     ask(builder.link_laws());
     ask(builder.reading_laws());
+    for part in builder.parts() {
+        ask(placed(&part.at, [builder.occasion_laws(&part), builder.angle_laws(&part)].concat()));
+    }
+    ask(builder.size_laws());
     out
 }
 
@@ -83,9 +106,16 @@ struct Builder<'a> {
     forward: &'a Forward,
     fit: &'a Fit<'a>,
     torques_nm: Vec<Vec<f64>>,
+    /// The occasion of every reading, in the order of the data.
+    occasions: Vec<Occasion>,
 }
 
-impl Builder<'_> {
+impl<'a> Builder<'a> {
+    fn new(campaign: &'a Campaign, forward: &'a Forward, fit: &'a Fit<'a>) -> Self {
+        let torques_nm = forward.torques_nm(&fit.point.coefficients);
+        Self { campaign, forward, fit, torques_nm, occasions: occasions(campaign, forward) }
+    }
+
     /// Sets the entries of `truth` that belong to frequencies: the first-order change of each frequency \[Hz\] when
     /// the compliance matrix changes by `dC`. `energy` receives the index of a datum and the inertia forces `y` of its
     /// mode, and returns `yᵀ dC y`.
@@ -107,10 +137,16 @@ impl Builder<'_> {
     }
 }
 
+/// The laws `laws`, all of them at the place `at`.
+fn placed(at: &str, mut laws: Vec<Law>) -> Vec<Law> {
+    laws.iter_mut().for_each(|law| law.at = Some(at.to_string()));
+    laws
+}
+
 /// Three laws with the description `what`: one with the first column, one with the second, and one with both.
 fn one_or_both(what: &str, columns: [Vec<f64>; 2]) -> Vec<Law> {
     let [a, b] = columns;
-    let law = |columns| Law { what: what.to_string(), effect: None, columns };
+    let law = |columns| Law { what: what.to_string(), at: None, refines: None, effect: None, columns };
     vec![law(vec![a.clone()]), law(vec![b.clone()]), law(vec![a, b])]
 }
 
@@ -135,7 +171,6 @@ mod testing {
         let weights = Noise::default().weights(&forward);
         let effort = Effort { steps: 0, tolerance: 0.0 };
         let fit = fit(&forward, &baseline, &vec![0.0; baseline.len()], &weights, effort);
-        let torques_nm = forward.torques_nm(&fit.point.coefficients);
-        check(&Builder { campaign: &campaign, forward: &forward, fit: &fit, torques_nm }, &nuisance);
+        check(&Builder::new(&campaign, &forward, &fit), &nuisance);
     }
 }

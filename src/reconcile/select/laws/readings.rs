@@ -1,8 +1,8 @@
 //! Laws of readings: an instrument that is not linear, that has an offset, that has a gain of its own for one direction
-//! or one kind of load, or whose frame is rotated. Further laws here are payloads heavier than stated, a support that
-//! deflects in the direction of the load, and readings that grow while a pose is kept.
+//! or one kind of load, or whose frame is rotated. Further laws here are payloads heavier than stated, and a support that
+//! deflects in the direction of the load.
 
-use super::{Builder, Law, one_or_both};
+use super::{Builder, Law, one_or_both, placed};
 use crate::arm::effect::channel::Channel;
 use std::ops::Range;
 
@@ -26,27 +26,28 @@ impl Builder<'_> {
                 (0..self.forward.data.len()).map(inside).collect()
             };
             let bent = [column(&|_, d| d * d.abs() / largest), column(&|_, d| d * (d / largest).powi(2))];
-            out.extend(one_or_both(
-                &format!("{} readings that are not straight in the true value", channel.word()),
-                bent,
-            ));
+            let what = format!("{} readings that are not straight in the true value", channel.word());
+            let mut own = one_or_both(&what, bent);
             if channel == Channel::Modal {
-                out.push(Law {
+                own.push(Law {
                     what: "modal readings that are all off by the same frequency".into(),
+                    at: None,
+                    refines: None,
                     effect: None,
                     columns: vec![column(&|_, _| largest)],
                 });
             }
             if channel == Channel::Static {
-                out.extend(self.direction_laws(&column));
-                out.extend(self.load_laws(&column));
+                own.extend(self.direction_laws(&column));
+                own.extend(self.load_laws(&column));
             }
+            out.extend(placed(channel.word(), own));
         }
         out
     }
 
     /// Laws of static readings that depend on the load in a way that the model lacks: loads other than stated, a
-    /// support that deflects in the direction of the load, and readings that grow while the arm stays in one pose.
+    /// support that deflects in the direction of the load.
     /// `column` builds a column.
     fn load_laws(&self, column: ColumnOf) -> Vec<Law> {
         let rows = &self.campaign.statics;
@@ -70,12 +71,11 @@ impl Builder<'_> {
                 }
             })
         };
-        let kept = rows_in_pose(rows.iter().map(|r| r.pose_deg.as_slice()));
-        let longest = kept.iter().copied().max().unwrap_or(0).max(1) as f64;
         let is_carrying = |r: usize| rows[r].payload.mass_kg > 0.0;
         let gain_where = |holds: &dyn Fn(usize) -> bool| column(&|i, d| if holds(row(i)) { d } else { 0.0 });
         let gain_of_payloads = || gain_where(&is_carrying);
-        let law = |what: &str, columns| Law { what: what.into(), effect: None, columns };
+        let law =
+            |what: &str, columns| Law { what: what.into(), at: None, refines: None, effect: None, columns };
         let mut out = vec![
             law("static readings under payloads with a gain of their own", vec![gain_of_payloads()]),
             law(
@@ -85,10 +85,6 @@ impl Builder<'_> {
             law(
                 "static readings under tip forces alone with a gain of their own",
                 vec![gain_where(&|r| !is_carrying(r))],
-            ),
-            law(
-                "static readings that grow while a pose is kept",
-                vec![column(&|i, d| d * kept[row(i)] as f64 / longest)],
             ),
         ];
         out.extend(one_or_both(
@@ -141,7 +137,13 @@ impl Builder<'_> {
         if !(0..3).all(|c| data[range.clone()].iter().any(|d| d.component == c)) {
             turns.retain(|column| column.iter().any(|x| *x != 0.0));
         }
-        let law = |what: &str, columns: Vec<Vec<f64>>| Law { what: what.into(), effect: None, columns };
+        let law = |what: &str, columns: Vec<Vec<f64>>| Law {
+            what: what.into(),
+            at: None,
+            refines: None,
+            effect: None,
+            columns,
+        };
         let mut out = vec![law(
             "static readings with a gain of their own in each direction",
             (0..3).map(gain).collect(),
@@ -151,16 +153,4 @@ impl Builder<'_> {
         }
         out
     }
-}
-
-/// For each row, how many rows with the same pose stand directly before it.
-fn rows_in_pose<'a>(poses: impl Iterator<Item = &'a [f64]>) -> Vec<usize> {
-    let mut last: Option<(&[f64], usize)> = None;
-    poses
-        .map(|pose| {
-            let count = last.filter(|(before, _)| *before == pose).map_or(0, |(_, count)| count + 1);
-            last = Some((pose, count));
-            count
-        })
-        .collect()
 }

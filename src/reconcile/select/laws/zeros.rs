@@ -9,6 +9,8 @@ impl Builder<'_> {
         let slopes = self.forward.turn_slopes(self.campaign);
         let law = |(name, slope): (&&str, &Vec<f64>)| Law {
             what: format!("an angle of {name} whose zero is off"),
+            at: None,
+            refines: None,
             effect: None,
             columns: vec![slope.iter().map(|slope| FULL_ANGLE_DEG * slope).collect()],
         };
