@@ -362,8 +362,8 @@ impl Walk {
         self.point_mass(joint.mass_kg, self.at_m);
         self.bodies(&joint.bodies.fixed);
         self.load(Side::Fixed(index));
-        let axis = self.rotation * joint.axis;
         self.bearing(index, joint);
+        let axis = self.rotation * joint.axis; // the bearing turns it as it deflects
         self.elastic(ElasticElement {
             name: joint.name.clone(),
             owner: Owner::Piece(index),

@@ -32,20 +32,30 @@ impl Deflections {
     }
 }
 
-/// Moves a frame at `at_m` with the attitude `rotation` by the screw motion of the twist `motion` (Murray, Li and
-/// Sastry, A Mathematical Introduction to Robotic Manipulation, eq. 2.36).
+/// Moves a frame at `at_m` with the attitude `rotation` by the screw motion of the twist `motion`.
 pub(super) fn screw(motion: &Twist, at_m: &mut Vector3<f64>, rotation: &mut Rotation3<f64>) {
-    let turn = angular(motion);
-    let angle_rad = turn.norm();
     let by_m = displacement_at(motion, at_m);
+    deflect(&by_m, &angular(motion), at_m, rotation);
+}
+
+/// Moves a frame at `at_m` with the attitude `rotation` by a screw motion (Murray, Li and Sastry, A Mathematical
+/// Introduction to Robotic Manipulation, eq. 2.36). Its twist turns the frame by `turn_rad`, and displaces its origin by
+/// `by_m`, to first order.
+pub(super) fn deflect(
+    by_m: &Vector3<f64>,
+    turn_rad: &Vector3<f64>,
+    at_m: &mut Vector3<f64>,
+    rotation: &mut Rotation3<f64>,
+) {
+    let angle_rad = turn_rad.norm();
     *at_m += match angle_rad > 0.0 {
         true => {
             // The velocity of the frame's origin turns during the motion, so it is integrated over the motion.
-            let cross = turn.cross_matrix() / angle_rad;
+            let cross = turn_rad.cross_matrix() / angle_rad;
             let (sin, cos) = (libm::sin(angle_rad), libm::cos(angle_rad));
             by_m + cross * by_m * ((1.0 - cos) / angle_rad) + cross * cross * by_m * (1.0 - sin / angle_rad)
         }
-        false => by_m,
+        false => *by_m,
     };
-    *rotation = Rotation3::from_scaled_axis(turn) * *rotation;
+    *rotation = Rotation3::from_scaled_axis(*turn_rad) * *rotation;
 }

@@ -31,17 +31,29 @@ impl Chain {
     }
 }
 
+/// An arm in a pose and out of it by the deflections of its elements, under load.
+pub(crate) trait Deflected {
+    /// The deflections of all elements.
+    type Deflections: Default;
+
+    /// Position of the tip in the world \[m\].
+    fn tip_m(&self) -> Vector3<f64>;
+
+    /// Displacement of the tip \[m\] by linear statics about this pose, and the deflections of all elements.
+    fn statics_of_tip(&self) -> (Vector3<f64>, Self::Deflections);
+}
+
 /// Position of the tip of an arm as it hangs, in the world \[m\]. `posed` puts the arm into its pose, with its loads
 /// and with the deflections that it is given. If the deflections do not settle, because the arm would buckle or turn
 /// over, the result is the position by linear statics.
-pub(crate) fn hanging_tip_m<'a>(posed: impl Fn(Deflections) -> Posed<'a>) -> Vector3<f64> {
+pub(crate) fn hanging_tip_m<P: Deflected>(posed: impl Fn(P::Deflections) -> P) -> Vector3<f64> {
     let Hanging { tip_m, .. } = Hanging::new(posed);
     tip_m
 }
 
 /// Error of the linear statics at the tip \[m\]: the position of the tip as the arm hangs, minus its position by linear
 /// statics. The vector is in world axes.
-pub(crate) fn beyond_linear_m<'a>(posed: impl Fn(Deflections) -> Posed<'a>) -> Vector3<f64> {
+pub(crate) fn beyond_linear_m<P: Deflected>(posed: impl Fn(P::Deflections) -> P) -> Vector3<f64> {
     let Hanging { tip_m, straight_tip_m, displacement_m } = Hanging::new(posed);
     tip_m - straight_tip_m - displacement_m
 }
@@ -57,13 +69,12 @@ struct Hanging {
 }
 
 impl Hanging {
-    fn new<'a>(posed: impl Fn(Deflections) -> Posed<'a>) -> Self {
-        let straight = posed(Deflections::default());
-        let straight_tip_m = straight.tip_m;
-        let (displacement_m, strains) = straight.displaced();
+    fn new<P: Deflected>(posed: impl Fn(P::Deflections) -> P) -> Self {
+        let straight = posed(P::Deflections::default());
+        let straight_tip_m = straight.tip_m();
+        let (displacement_m, deflections) = straight.statics_of_tip();
         let is_small = displacement_m.norm() < SMALL_M;
-        let at_rest_m =
-            if is_small { None } else { resting_tip_m(posed, straight_tip_m, straight.hung(strains)) };
+        let at_rest_m = if is_small { None } else { resting_tip_m(posed, straight_tip_m, deflections) };
         let tip_m = at_rest_m.unwrap_or(straight_tip_m + displacement_m);
         Self { tip_m, straight_tip_m, displacement_m }
     }
@@ -71,22 +82,35 @@ impl Hanging {
 
 /// Position of the tip at rest \[m\]. The first position of the tip is `tip_m`; the deflections `first` then move it.
 /// `None` if the tip does not come to rest.
-fn resting_tip_m<'a>(
-    posed: impl Fn(Deflections) -> Posed<'a>,
+fn resting_tip_m<P: Deflected>(
+    posed: impl Fn(P::Deflections) -> P,
     mut tip_m: Vector3<f64>,
-    first: Deflections,
+    first: P::Deflections,
 ) -> Option<Vector3<f64>> {
     let mut deflections = first;
     for _ in 0..MOST_ROUNDS {
         let next = posed(deflections);
-        let moved_m = (next.tip_m - tip_m).norm();
-        tip_m = next.tip_m;
+        let moved_m = (next.tip_m() - tip_m).norm();
+        tip_m = next.tip_m();
         if moved_m < RESTS_M {
             return Some(tip_m);
         }
-        deflections = next.hung(next.displaced().1);
+        deflections = next.statics_of_tip().1;
     }
     None
+}
+
+impl Deflected for Posed<'_> {
+    type Deflections = Deflections;
+
+    fn tip_m(&self) -> Vector3<f64> {
+        self.tip_m
+    }
+
+    fn statics_of_tip(&self) -> (Vector3<f64>, Deflections) {
+        let (displacement_m, strains) = self.displaced();
+        (displacement_m, self.hung(strains))
+    }
 }
 
 impl Posed<'_> {

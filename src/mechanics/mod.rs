@@ -15,7 +15,8 @@
 //!   over the chain.
 //! - Response (`response`; F(t) of Eq 16): the sum of the modes under a harmonic force at the tip.
 //!
-//! `hanging` repeats the statics in the deflected pose, for large displacements. `centre_line` turns strain coordinates
+//! `hanging` repeats the statics in the deflected pose, for large displacements. `tip` computes the displacement of the tip
+//! alone, for campaigns of many poses. `centre_line` turns strain coordinates
 //! into the displacement of points of the arm, for drawings. `condensed`, `lowest` and `lowest_lanes` are the fast
 //! computation of the lowest mode that the search uses.
 //!
@@ -40,6 +41,7 @@ pub(crate) mod prismatic;
 pub(crate) mod product;
 pub(crate) mod response;
 pub(crate) mod statics;
+pub(crate) mod tip;
 
 pub use centre_line::Station;
 pub use chain::{Chain, Posed};

@@ -29,6 +29,17 @@ fn a_list_of_effects_that_leaves_out_the_joints_is_no_trouble() {
     assert_eq!(outcome.verdict, Verdict::NoGap, "{}", outcome.to_text());
 }
 
+/// A joint has an uneven transmission, and the campaign's list leaves transmission errors out.
+#[test]
+fn an_effect_that_the_list_leaves_out_is_no_alternative_either() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/data/positions_other_simulator/uneven-and-nothing-else");
+    let mut campaign = Campaign::read(&folder, &Catalogs::builtin()).expect("sound");
+    campaign.statement.effects = Some(vec!["joint_compliance".into(), "stiffness_waves".into()]);
+    let outcome = reconcile(&campaign);
+    assert!(!outcome.to_text().contains("transmission_error"), "{}", outcome.to_text());
+}
+
 #[test]
 fn points_of_one_name_on_two_arms_are_two_points() {
     let names = ["joint_compliance@l2", "joint_compliance@r3"];

@@ -98,9 +98,9 @@ impl Positions {
     /// `None` if there are none.
     pub(super) fn still_joints(&self) -> Option<String> {
         let range_rad = |j: usize| {
-            let angles = self.samples.iter().filter_map(|s| s.pose.angles_rad.get(j));
+            let angles = self.samples.iter().filter_map(|s| Some(s.pose.turns().get(j)?.rad));
             let (low, high) =
-                angles.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(*a), h.max(*a)));
+                angles.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| (l.min(a), h.max(a)));
             high - low
         };
         let still = (0..self.tree.driven.len()).filter(|&j| range_rad(j) < STILL_RAD);

@@ -1,7 +1,7 @@
 //! Finds a first placement of the arm in the instrument's frame, and the attitude of the part outboard of each link of
 //! unknown mounting. No starting values are needed.
 
-use super::fit::fit;
+use super::fit::likeliest;
 use super::fitted::{Fitted, Sample};
 use super::kinematics::{Geometry, Number, mount_numbers};
 use super::tree::Tree;
@@ -73,7 +73,7 @@ fn settle_mount(
             if spec.base_placement && !placed {
                 nearest_motion(own, &mut start);
             }
-            fit(own, &numbers, &[], &Fitted::rigid(start, ROUGH_M))
+            likeliest(own, &numbers, &[], &Fitted::rigid(start, ROUGH_M))
         })
         .collect();
     let best = tried.into_iter().min_by(|a, b| a.scale_m.total_cmp(&b.scale_m));
@@ -88,7 +88,7 @@ fn nearest_attitude(samples: &[&Sample], geometry: &mut Geometry) {
     let from = |rotation| {
         let mut start = geometry.clone();
         (start.base, start.origin_m) = (rotation, Vector3::zeros());
-        fit(samples, &numbers, &[], &Fitted::rigid(start, ROUGH_M))
+        likeliest(samples, &numbers, &[], &Fitted::rigid(start, ROUGH_M))
     };
     let tried: Vec<Fitted> = cube().into_par_iter().map(from).collect();
     let best = tried.into_iter().min_by(|a, b| a.scale_m.total_cmp(&b.scale_m));

@@ -3,18 +3,20 @@
 
 use super::align;
 use super::dependence::Dependence;
-use super::fit::{STEPS_TO_FOLD, fit, fit_within};
-use super::fitted::{Fitted, Sample};
-use super::kinematics::{Geometry, Number, Pose, number_groups};
+use super::fit::{fit, fits_without, likeliest};
+use super::fitted::{Fitted, Sample, errors_m, predictions_m};
+use super::kinematics::{Geometry, Number, number_groups};
 use super::loads::{CompliantPlace, Loads, candidates};
 use super::moved::{Boundary, Kind};
 use super::points::{Point, points};
+use super::pose::Pose;
 use super::posterior::Posterior;
 use super::shaped::with_shapes;
 use super::tree::Tree;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::drift;
 use crate::arm::effect::kind::ElasticRotation;
+use crate::arm::effect::transmission_error;
 use crate::arm::{Arm, BASE};
 use crate::reconcile::fit::stats::median;
 use crate::reconcile::model::estimate::Finding;
@@ -51,6 +53,8 @@ pub(crate) struct Positions {
     pub candidates: Vec<CompliantPlace>,
     /// For each candidate, whether it may be named as an effect.
     pub(super) considered: Vec<bool>,
+    /// Whether a transmission error may be named as an effect.
+    pub(super) considers_transmissions: bool,
     /// The fit of the final model: geometry, compliances and sessions.
     pub fitted: Fitted,
     /// A fit with the same freed numbers of the geometry and no added compliance.
@@ -106,7 +110,7 @@ pub(crate) fn calibrated(campaign: &Campaign) -> Calibrated {
         arms,
         written,
         placements,
-        predicted_mm: found.samples.iter().map(|s| (1e3 * found.rigid.predicted_m(s)).into()).collect(),
+        predicted_mm: found.predictions_m(&found.rigid).iter().map(|at_m| (1e3 * at_m).into()).collect(),
         stages: found.stages,
     }
 }
@@ -145,7 +149,7 @@ pub(crate) fn analyze(campaign: &Campaign) -> Positions {
         found =
             again.into_iter().fold(found, |best, next| if next.score() > best.score() { next } else { best });
     }
-    let errors = found.samples.iter().map(|s| found.fitted.error(s).norm()).enumerate();
+    let errors = found.errors_m().into_iter().map(|error_m| error_m.norm()).enumerate();
     let gross = errors.filter(|(_, e)| *e > GROSS * found.fitted.scale_m).map(|(i, e)| (i, 1e3 * e));
     found.gross = gross.collect();
     found.widen(campaign);
@@ -158,15 +162,19 @@ impl Positions {
         let points = points(campaign);
         let geometry = Geometry::nominal(&tree, points.len());
         let springs = candidates(&tree);
-        let loaded = samples(campaign, &tree, &geometry, &springs, &points);
-        let candidates = with_shapes(springs, &loaded, &tree.driven);
+        let mut samples = samples(campaign, &tree, &geometry, &springs, &points);
+        let candidates = with_shapes(springs, &samples, &tree.driven);
         let considered = candidates.iter().map(|c| campaign.statement.considers(c.effect)).collect();
-        let samples = samples(campaign, &tree, &geometry, &candidates, &points);
+        let loads = Loads::new(campaign, &tree, &geometry, &candidates);
+        samples.iter_mut().zip(&campaign.positions).for_each(|(sample, row)| {
+            sample.deflection = Arc::new(loads.with_all_candidates(row, &sample.deflection));
+        });
         let fitted = Fitted::rigid(geometry, ROUGH_M);
         Self {
             stages: Vec::new(),
             candidates,
             considered,
+            considers_transmissions: campaign.statement.considers(transmission_error::KIND.name),
             rigid: fitted.clone(),
             fitted,
             gross: Vec::new(),
@@ -332,9 +340,10 @@ impl Positions {
             .collect();
         let samples = self.samples.par_iter_mut().zip(&campaign.positions);
         samples.for_each(|(sample, row)| {
-            let mut deflection = loads.deflection(row, sample.point);
+            let pose = loads.pose(row);
+            let mut deflection = loads.deflection(&pose, row, sample.point);
             for ((back, loads), slope) in leaning.iter().zip(&mut deflection.known_slopes_m) {
-                *slope = (back * loads.known_m(row, sample.point) - deflection.known_m) / LEAN;
+                *slope = (back * loads.known_in_m(&pose, row, sample.point) - deflection.known_m) / LEAN;
             }
             sample.deflection = Arc::new(deflection);
         });
@@ -346,7 +355,7 @@ impl Positions {
     pub(super) fn stage(&mut self, added: String, dropped: Vec<String>) {
         self.held_out = self.held_out_errors_m(&self.fitted);
         let mm: Vec<f64> = self.held_out.iter().map(|e| 1e3 * e.norm()).collect();
-        let fitted = self.samples.iter().map(|s| 1e3 * self.fitted.error(s).norm());
+        let fitted = self.errors_m().into_iter().map(|error_m| 1e3 * error_m.norm());
         self.stages.push(Stage {
             added,
             dropped,
@@ -357,24 +366,36 @@ impl Positions {
         });
     }
 
+    /// Predicted position of every sample by the model `fitted`, in the instrument's frame \[m\].
+    pub(super) fn predictions_m(&self, fitted: &Fitted) -> Vec<Vector3<f64>> {
+        predictions_m(&self.samples.iter().collect::<Vec<_>>(), fitted)
+    }
+
+    /// Error of every sample with the fitted model \[m\]; zero where a coordinate was not measured.
+    pub(super) fn errors_m(&self) -> Vec<Vector3<f64>> {
+        errors_m(&self.samples.iter().collect::<Vec<_>>(), &self.fitted)
+    }
+
     /// Error of every position \[m\], as predicted by a fit of the model `fitted` to all positions but those of its
     /// fold of poses.
     fn held_out_errors_m(&self, fitted: &Fitted) -> Vec<Vector3<f64>> {
-        let mut out = vec![Vector3::zeros(); self.samples.len()];
-        let folds: Vec<Vec<(usize, Vector3<f64>)>> = (0..FOLDS)
-            .into_par_iter()
-            .map(|fold| {
-                let (own, rest): (Vec<(usize, &Sample)>, Vec<_>) =
-                    self.samples.iter().enumerate().partition(|(_, s)| s.group % FOLDS == fold);
-                let rest: Vec<&Sample> = rest.into_iter().map(|(_, s)| s).collect();
-                let again = match self.is_long() {
-                    true => fit_within(STEPS_TO_FOLD, &rest, &self.numbers, &fitted.effects, fitted),
-                    false => fit(&rest, &self.numbers, &fitted.effects, fitted),
+        let of_fold = |fold: usize| self.samples.iter().filter(move |s| s.group % FOLDS == fold);
+        let folds: Vec<Vec<&Sample>> = (0..FOLDS).map(|fold| of_fold(fold).collect()).collect();
+        let fits = match self.is_long() {
+            true => fits_without(&folds, &self.numbers, fitted),
+            false => {
+                let without = |fold: usize| {
+                    let rest: Vec<&Sample> =
+                        self.samples.iter().filter(|s| s.group % FOLDS != fold).collect();
+                    likeliest(&rest, &self.numbers, &fitted.effects, fitted)
                 };
-                own.into_iter().map(|(i, s)| (i, again.error(s))).collect()
-            })
-            .collect();
-        folds.into_iter().flatten().for_each(|(i, error)| out[i] = error);
+                (0..FOLDS).into_par_iter().map(without).collect()
+            }
+        };
+        let mut out = vec![Vector3::zeros(); self.samples.len()];
+        for (own, fit) in folds.iter().zip(&fits) {
+            own.iter().zip(errors_m(own, fit)).for_each(|(sample, error_m)| out[sample.index] = error_m);
+        }
         out
     }
 }
@@ -409,10 +430,12 @@ pub(super) fn samples(
         .map(|row| points.iter().position(|p| *p == Point::of(row)).unwrap_or_default())
         .collect();
     let loads = Loads::new(campaign, tree, geometry, candidates);
-    let rows = campaign.positions.par_iter().zip(points).zip(groups(campaign));
+    let pose_rad = |row: &PositionRow| row.pose_deg.iter().map(|a| a.to_radians()).collect();
+    let poses = Pose::all(&campaign.positions.iter().map(pose_rad).collect::<Vec<_>>());
+    let rows = campaign.positions.par_iter().zip(points).zip(groups(campaign)).zip(poses);
     rows.enumerate()
-        .map(|(index, ((row, point), group))| Sample {
-            pose: Arc::new(Pose::new(row.pose_deg.iter().map(|a| a.to_radians()).collect())),
+        .map(|(index, (((row, point), group), pose))| Sample {
+            pose,
             arm: row.arm,
             point,
             station: 0,
@@ -421,7 +444,7 @@ pub(super) fn samples(
             group,
             measured_m: Vector3::from(row.measured.map(|read| read.map_or(0.0, |read| read.value_mm))) / 1e3,
             precision: precision(&row.measured),
-            deflection: Arc::new(loads.deflection(row, point)),
+            deflection: Arc::new(loads.deflection(&loads.pose(row), row, point)),
             nominal_m: Arc::default(),
             second_order_m: Vector3::zeros(),
         })

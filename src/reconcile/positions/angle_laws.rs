@@ -6,17 +6,17 @@
 //! fits as well with fewer numbers, the verdict says so.
 
 use super::analysis::Positions;
-use super::fit::fit;
+use super::fit::likeliest;
 use super::fitted::Sample;
-use super::kinematics::{Number, Placer, Pose};
+use super::kinematics::{Number, Placer};
 use super::normal::Factor;
+use super::pose::Pose;
 use super::rows::normal;
 use super::search::{FULL_FITS, TIE};
 use super::transmission::{EFFECT, numbers};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 /// Orders of the waves that are tried: the number of periods per turn.
 const ORDERS: std::ops::RangeInclusive<usize> = 3..=12;
@@ -143,7 +143,7 @@ impl Positions {
     ) {
         let mut slope = Vec::with_capacity(1);
         placer.slopes(sample.placing(), &[Number::Zero(joint)], &mut slope);
-        let read_rad = self.samples[sample.index].pose.angles_rad[joint];
+        let read_rad = self.samples[sample.index].pose.turns()[joint].rad;
         columns.extend(law.at(read_rad).into_iter().map(|size| slope[0] * size));
     }
 
@@ -163,14 +163,14 @@ impl Positions {
             let step = Factor::new(&normal.curvature, &own)?.solve(&normal.gradient);
             sizes.iter_mut().zip(step.iter().skip(normal.own)).for_each(|(size, step)| *size += step);
             for (sample, read) in samples.iter_mut().zip(&self.samples) {
-                let mut angles_rad = read.pose.angles_rad.clone();
+                let mut angles_rad = read.pose.angles_rad();
                 let off_rad: f64 =
                     law.at(angles_rad[joint]).iter().zip(&sizes).map(|(at, size)| at * size).sum();
                 angles_rad[joint] += off_rad;
-                sample.pose = Arc::new(Pose::new(angles_rad));
+                sample.pose = Pose::new(&angles_rad);
             }
             let all: Vec<&Sample> = samples.iter().collect();
-            fitted = fit(&all, &self.numbers, &self.fitted.effects, &fitted);
+            fitted = likeliest(&all, &self.numbers, &self.fitted.effects, &fitted);
         }
         Some(fitted.ln_likelihood)
     }

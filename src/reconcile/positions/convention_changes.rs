@@ -3,13 +3,12 @@
 //! and columns that have the sum or the difference of two joints' angles.
 
 use super::fitted::Sample;
-use super::kinematics::Pose;
+use super::pose::Pose;
 use super::tree::Tree;
 use crate::arm::structure::{JointAngle, Piece};
 use crate::reconcile::readings::campaign::PositionsSpec;
 use nalgebra::Vector3;
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::sync::Arc;
 
 /// Units other than the millimetre, each with its length \[mm\].
 pub(super) const UNITS: [(&str, f64); 4] =
@@ -61,9 +60,9 @@ impl Change {
             }
             Self::LeftHanded => sample.measured_m.z *= -1.0,
             Self::Sign(_) | Self::Zero(..) | Self::Swapped(..) | Self::Coupled(..) => {
-                let mut angles_rad = sample.pose.angles_rad.clone();
+                let mut angles_rad = sample.pose.angles_rad();
                 self.turn(&mut angles_rad);
-                sample.pose = Arc::new(Pose::new(angles_rad));
+                sample.pose = Pose::new(&angles_rad);
             }
         }
         sample

@@ -15,7 +15,7 @@
 use super::align::nearest_motion;
 use super::analysis::{Positions, samples};
 use super::convention_changes::{Change, UNITS, changes, pairs};
-use super::fit::fit;
+use super::fit::likeliest;
 use super::fitted::{Fitted, Sample, readings};
 use super::kinematics::{Geometry, Number, number_groups};
 use super::points::points;
@@ -97,7 +97,7 @@ impl Asked<'_> {
         let mut numbers = Vec::new();
         for group in &self.groups[..groups] {
             numbers.extend(group.iter().cloned());
-            fitted = fit(&own, &numbers, &[], &fitted);
+            fitted = likeliest(&own, &numbers, &[], &fitted);
         }
         (fitted, numbers)
     }

@@ -9,38 +9,50 @@
 
 use super::fitted::{Fitted, Miss, NU, Sample, misses, weight};
 use super::kinematics::Number;
-use super::rows::normal_of_fit;
-use super::springs::{ConstrainedStep, best_springs};
+use super::normal::Normal;
+use super::rows::{normal_of_fit, normals_without, with_part};
+use super::springs::best_springs;
 
 const MOST_STEPS: usize = 40;
-/// Number of Gauss-Newton steps of a fit without one fold of the rows of a long campaign. It starts from the fit to all
-/// rows. The two fits differ by less than the standard deviations, and each step leaves a small part of the difference.
-pub(super) const STEPS_TO_FOLD: usize = 3;
-/// Largest number of lengths that are tried for a step. Each is half of the length before it, at which the fit was
-/// worse.
+/// The fit ends after a step that lowers half of chi-squared by less than this. Before this step, no number was off by more
+/// than 0.0014 of its standard deviation, and each step leaves a small part of this.
+const SETTLED: f64 = 1e-6;
+/// Smallest part of the weighted curvature with which a Newton step is taken. Normal errors have 0.8 of it.
+const LEAST_PART: f64 = 0.5;
+/// Largest number of times that a step is halved because the fit is worse after it.
 const MOST_HALVINGS: i32 = 10;
 /// Largest rotation of a frame (base or mounting) in one step of a fit \[rad\].
 const MOST_TURN_RAD: f64 = 0.3;
 
 impl Fitted {
-    /// The model after the fraction `part` of a step from this model to `goal`: the geometry's `numbers` change by this
-    /// fraction of `step`, and the compliances go this fraction of the way to the compliances of `goal`. Also returns
-    /// the errors of the samples with the new model.
-    fn towards(
-        &self,
-        goal: &Self,
-        part: f64,
-        numbers: &[Number],
-        step: &[f64],
-        samples: &[&Sample],
-    ) -> (Self, Vec<Miss>) {
-        let mut out = goal.clone();
-        let step: Vec<f64> = step.iter().map(|s| part * s).collect();
-        out.geometry.step(numbers, &step);
-        out.moved.iter_mut().zip(&step).for_each(|(m, s)| *m += s);
-        let own = out.compliances.iter_mut().flatten();
-        own.zip(self.compliances.iter().flatten()).for_each(|(c, from)| *c = from + part * (*c - from));
+    /// This model with the effects `effects`; those that it does not have yet get compliances of zero.
+    fn with_effects(&self, numbers: &[Number], effects: &[usize], samples: &[&Sample]) -> Self {
+        let mut out = self.clone();
+        let compliances = effects.iter().map(|&e| {
+            let known = self.effects.iter().position(|s| *s == e);
+            let none = || vec![0.0; samples.first().map_or(1, |s| s.deflection.count(e))];
+            known.map_or_else(none, |i| self.compliances[i].clone())
+        });
+        out.compliances = compliances.collect();
+        out.deviations = out.compliances.iter().map(|own| vec![f64::INFINITY; own.len()]).collect();
+        out.effects = effects.to_vec();
+        out.moved.resize(numbers.len(), 0.0);
+        out
+    }
+
+    /// The model after the fraction `part` of a step, and the errors of the samples with it.
+    fn after(&self, step: &Step, part: f64, numbers: &[Number], samples: &[&Sample]) -> (Self, Vec<Miss>) {
+        let mut out = self.clone();
+        out.take(step, part, numbers);
         out.judged(samples)
+    }
+
+    /// Takes the fraction `part` of a step of the geometry's `numbers` and of the compliances.
+    fn take(&mut self, step: &Step, part: f64, numbers: &[Number]) {
+        let of_numbers: Vec<f64> = step.numbers.iter().map(|by| part * by).collect();
+        self.geometry.step(numbers, &of_numbers);
+        self.moved.iter_mut().zip(&of_numbers).for_each(|(moved, by)| *moved += by);
+        self.compliances.iter_mut().flatten().zip(&step.compliances).for_each(|(c, by)| *c += part * by);
     }
 
     /// This model with the scale of its position errors and its likelihood computed for the samples, and these errors.
@@ -72,63 +84,11 @@ impl Fitted {
 }
 
 /// Fits the geometry's `numbers` and the compliances of the candidates with the indices `effects` to the samples
-/// (measured positions). The fit starts from the model `start`.
+/// (measured positions), with standard deviations. The fit starts from the model `start`.
 pub(crate) fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], start: &Fitted) -> Fitted {
-    fit_within(MOST_STEPS, samples, numbers, effects, start)
-}
-
-/// Fits the model as [`fit`] does, with at most `steps` Gauss-Newton steps.
-pub(super) fn fit_within(
-    steps: usize,
-    samples: &[&Sample],
-    numbers: &[Number],
-    effects: &[usize],
-    start: &Fitted,
-) -> Fitted {
-    let mut here = start.clone();
-    here.compliances = effects
-        .iter()
-        .map(|&e| {
-            let known = start.effects.iter().position(|s| *s == e);
-            let none = || vec![0.0; samples.first().map_or(1, |s| s.deflection.count(e))];
-            known.map_or_else(none, |i| start.compliances[i].clone())
-        })
-        .collect();
-    here.deviations = here.compliances.iter().map(|own| vec![f64::INFINITY; own.len()]).collect();
-    here.effects = effects.to_vec();
-    here.moved.resize(numbers.len(), 0.0);
-    // kept for comparison: the start can be better than the model to which a bad first step leads
-    let (begin, first_misses) = here.clone().judged(samples);
-    // the errors of the samples with the present model
-    let mut misses = first_misses.clone();
-    // The first step is taken even if it makes the fit worse, because the quadratic approximation is poor far from the
-    // best fit.
-    let mut merit = f64::NEG_INFINITY;
-    let mut last: Option<ConstrainedStep> = None;
-    for _ in 0..steps {
-        let before = here.clone();
-        let best = step(samples, &misses, numbers, &mut here);
-        let step = best.as_ref().map_or(vec![0.0; numbers.len()], |b| b.step[..numbers.len()].to_vec());
-        last = best.or(last);
-        let step = shortened(numbers, step);
-        let goal = here;
-        let parts = (0..MOST_HALVINGS).map(|n| 0.5f64.powi(n));
-        let mut tried = parts.map(|part| before.towards(&goal, part, numbers, &step, samples));
-        let Some(better) = tried.find(|(t, _)| t.merit(numbers) >= merit - 1e-9 * merit.abs()) else {
-            here = before;
-            break;
-        };
-        (here, misses) = better;
-        merit = here.merit(numbers);
-        let largest = step.iter().map(|s| s.abs()).fold(0.0, f64::max);
-        if (here.scale_m / before.scale_m - 1.0).abs() < 1e-6 && largest < 1e-6 {
-            break;
-        }
-    }
-    if here.merit(numbers) < begin.merit(numbers) {
-        (here, misses) = (begin, first_misses);
-    }
-    if let Some(best) = last {
+    let (mut here, misses) = most_likely(samples, numbers, effects, start);
+    let normal = normal_of_fit(samples, &misses, numbers, &here);
+    if let Some(best) = best_springs(&normal, numbers.len(), &here.compliances) {
         here.set_deviations(numbers.len(), &best.deviations());
     }
     let free = numbers.len() + here.compliances.iter().map(Vec::len).sum::<usize>();
@@ -138,22 +98,128 @@ pub(super) fn fit_within(
     here
 }
 
+/// The model of [`fit`] without its standard deviations, which take about as long as the fit itself.
+pub(crate) fn likeliest(
+    samples: &[&Sample],
+    numbers: &[Number],
+    effects: &[usize],
+    start: &Fitted,
+) -> Fitted {
+    most_likely(samples, numbers, effects, start).0
+}
+
+/// The most likely values of the `numbers` and compliances, and the errors of the samples with them.
+fn most_likely(
+    samples: &[&Sample],
+    numbers: &[Number],
+    effects: &[usize],
+    start: &Fitted,
+) -> (Fitted, Vec<Miss>) {
+    let mut here = start.with_effects(numbers, effects, samples);
+    // kept for comparison: the start can be better than the model to which a bad first step leads
+    let begin = here.clone().judged(samples);
+    // the errors of the samples with the present model
+    let mut misses = begin.1.clone();
+    // The first step is taken even if it makes the fit worse, because the quadratic approximation is poor far from the
+    // best fit.
+    let mut merit = f64::NEG_INFINITY;
+    for _ in 0..MOST_STEPS {
+        let normal = normal_of_fit(samples, &misses, numbers, &here);
+        let Some(step) = Step::new(&normal, 1.0, numbers, &here) else { break };
+        // the last step is taken whole or not at all
+        let halvings = if step.fall < SETTLED { 1 } else { MOST_HALVINGS };
+        let mut tried =
+            (0..halvings).map(|halving| here.after(&step, 0.5f64.powi(halving), numbers, samples));
+        let Some(better) = tried.find(|(t, _)| t.merit(numbers) >= merit - 1e-9 * merit.abs()) else { break };
+        (here, misses) = better;
+        merit = here.merit(numbers);
+        if step.fall < SETTLED {
+            break;
+        }
+    }
+    if here.merit(numbers) < begin.0.merit(numbers) { begin } else { (here, misses) }
+}
+
+/// For each of the `folds` of all rows of a long campaign, the fit without this fold, by one Newton step from the fit `here` to
+/// all rows. The two fits differ by less than the standard deviations, and Newton's step leaves a part of the difference that
+/// falls with the number of rows.
+pub(super) fn fits_without(folds: &[Vec<&Sample>], numbers: &[Number], here: &Fitted) -> Vec<Fitted> {
+    let all: Vec<&Sample> = folds.iter().flatten().copied().collect();
+    let part = Means::new(&misses(&all, here), here.scale_m).newton_part();
+    let without = |normal: Normal| {
+        let mut out = here.clone();
+        let step = Step::new(&normal, part, numbers, here);
+        step.iter().for_each(|step| out.take(step, 1.0, numbers));
+        out
+    };
+    normals_without(folds, numbers, here).into_iter().map(without).collect()
+}
+
+/// A step of a fit.
+struct Step {
+    /// Change of each number of the geometry.
+    numbers: Vec<f64>,
+    /// Change of each compliance. It leads to a compliance that is physically possible.
+    compliances: Vec<f64>,
+    /// By how much half of chi-squared falls, as far as it is a quadratic function.
+    fall: f64,
+}
+
+impl Step {
+    /// The step from the model `here`, about which the samples have the equations `normal`. Newton's step has the part
+    /// `part` of their weighted curvature; that of Gauss and Newton has all of it. `None` if the equations are singular.
+    fn new(normal: &Normal, part: f64, numbers: &[Number], here: &Fitted) -> Option<Self> {
+        let newton = with_part(normal, part, numbers, here);
+        let best = best_springs(&newton, numbers.len(), &here.compliances)?;
+        let (of_numbers, compliances) = best.step.split_at(numbers.len());
+        Some(Self {
+            numbers: shortened(numbers, of_numbers.to_vec()),
+            compliances: compliances.to_vec(),
+            fall: best.fall,
+        })
+    }
+}
+
+/// Means over the readings of the errors of an M-estimator.
+struct Means {
+    /// The weight.
+    weight: f64,
+    /// The square of the weighted error, over the scale.
+    square: f64,
+    /// How fast the weighted error grows with the error.
+    slope: f64,
+}
+
+impl Means {
+    fn new(misses: &[Miss], scale_m: f64) -> Self {
+        let count: f64 = misses.iter().map(|miss| miss.readings).sum();
+        let mut out = Self { weight: 0.0, square: 0.0, slope: 0.0 };
+        for miss in misses {
+            let (w, size) = (weight(miss, scale_m), miss.scaled_m.norm_squared() / (scale_m * scale_m));
+            let part = miss.readings / count;
+            out.weight += w * part;
+            out.square += w * w * size / count;
+            out.slope += (w - 2.0 / miss.readings.max(1.0) * w * size / (NU + size)) * part;
+        }
+        out
+    }
+
+    /// The part of the weighted curvature that half of chi-squared has: the weights fall as the errors grow. A step with this
+    /// part of the curvature is Newton's.
+    fn newton_part(&self) -> f64 {
+        (self.slope / self.weight).clamp(LEAST_PART, 1.0)
+    }
+}
+
 /// Sandwich factor: square root of the variance factor of the M-estimator (Huber, Robust Statistics, ch. 7). Standard
 /// deviations from the weighted curvature take the weights as known and are too small by this factor. It is the root of
 /// the mean weight times the mean square of the weighted errors `misses`, divided by the mean slope of the weighted
 /// error. The mean square is corrected for `free`, the number of free parameters.
 fn sandwich_factor(misses: &[Miss], scale_m: f64, free: usize) -> f64 {
     let count: f64 = misses.iter().map(|miss| miss.readings).sum();
-    let (mut weights, mut squares, mut slopes) = (0.0, 0.0, 0.0);
-    for miss in misses {
-        let (w, size) = (weight(miss, scale_m), miss.scaled_m.norm_squared() / (scale_m * scale_m));
-        let part = miss.readings / count;
-        weights += w * part;
-        squares += w * w * size / count;
-        slopes += (w - 2.0 / miss.readings.max(1.0) * w * size / (NU + size)) * part;
-    }
+    let Means { weight, square, slope } = Means::new(misses, scale_m);
     let left = (count - free as f64).max(1.0);
-    (weights * squares * count / left).sqrt() / slopes
+    (weight * square * count / left).sqrt() / slope
 }
 
 /// Shortens the step of the geometry's `numbers` if it would turn a frame by more than [`MOST_TURN_RAD`]. The
@@ -185,20 +251,4 @@ pub(crate) fn ln_likelihood(misses: &[Miss], scale_m: f64) -> f64 {
         -0.5 * (NU + m.readings) * libm::log(1.0 + size) - m.readings * libm::log(scale_m)
     };
     misses.iter().map(one).sum()
-}
-
-/// Takes one weighted Gauss-Newton step from the model `here`, with which the samples have the errors `misses`. Sets its
-/// compliances to the best values that are physically possible, and returns the step of all numbers and compliances;
-/// `None` if the equations are singular.
-fn step(
-    samples: &[&Sample],
-    misses: &[Miss],
-    numbers: &[Number],
-    here: &mut Fitted,
-) -> Option<ConstrainedStep> {
-    let normal = normal_of_fit(samples, misses, numbers, here);
-    let best = best_springs(&normal, numbers.len(), &here.compliances)?;
-    let compliances = here.compliances.iter_mut().flatten();
-    compliances.zip(&best.step[numbers.len()..]).for_each(|(c, by)| *c += by);
-    Some(best)
 }

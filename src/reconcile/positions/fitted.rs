@@ -1,8 +1,9 @@
 //! A measured position with the effect of gravity on it, and a fitted model of geometry and compliances.
 
-use super::kinematics::{Geometry, Placer, Placing, Pose};
+use super::deflection::Deflection;
+use super::kinematics::{Geometry, Placer, Placing};
 use super::kinematics_lanes::EightPlacer;
-use super::loads::Deflection;
+use super::pose::Pose;
 use crate::mechanics::lanes::LANES;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -17,7 +18,7 @@ const PORTION: usize = 4096;
 #[derive(Debug, Clone)]
 pub(crate) struct Sample {
     /// Angles of the driven joints, with their sines and cosines.
-    pub pose: Arc<Pose>,
+    pub pose: Pose,
     /// Index of the arm to which the point belongs.
     pub arm: usize,
     /// Index of the measured point among all points on tools.
@@ -137,21 +138,22 @@ impl Fitted {
         self.geometry.drift_m * sample.part
     }
 
-    /// Error of a sample with this model, measured minus predicted position \[m\]; zero where a coordinate was not
-    /// measured.
-    pub(crate) fn error(&self, sample: &Sample) -> Vector3<f64> {
-        sample.error(self.predicted_m(sample))
-    }
-
     /// Displacement of the measured point of a sample by gravity, in the level frame \[m\]: the known deflection, plus
     /// the deflection by the effects of the model, plus the part that linear statics lack.
     pub(crate) fn displacement(&self, sample: &Sample) -> Vector3<f64> {
+        self.without_effects_m(sample) + self.displaced_m(sample, &self.geometry.gravity)
+    }
+
+    /// The displacement of the measured point of a sample by gravity, without the deflection by the effects of the model,
+    /// in the level frame \[m\].
+    pub(crate) fn without_effects_m(&self, sample: &Sample) -> Vector3<f64> {
         let gravity = &self.geometry.gravity;
         let [by_x, by_y] = &sample.deflection.known_slopes_m;
+        // most dependences are zero; reading them all from memory would take longer than the sum
         let dependent = self.geometry.dependences.iter().zip(sample.nominal_m.iter());
+        let dependent = dependent.filter(|(x, _)| **x != 0.0);
         let known_m = dependent.fold(sample.deflection.known_m, |sum, (x, by)| sum + by * *x);
-        let linear_m = known_m + by_x * gravity.x + by_y * gravity.y + self.displaced_m(sample, gravity);
-        linear_m + sample.second_order_m
+        known_m + by_x * gravity.x + by_y * gravity.y + sample.second_order_m
     }
 
     /// How far the effects of the model let the measured point of a sample move under gravity along the direction
@@ -163,15 +165,15 @@ impl Fitted {
         })
     }
 
-    /// Derivative of the elastic displacement by the effects of the model with respect to a tilt of gravity along the
-    /// axis with index `axis` \[m/rad\]. Play is left out: it is closed in most poses, and its displacement then does
-    /// not change with the tilt. A base that lifts off is left out too, because most of its moment does not change with
-    /// the tilt.
-    pub(crate) fn leaning(&self, sample: &Sample, axis: usize) -> Vector3<f64> {
+    /// Derivative of the displacement of a sample with respect to the component of gravity with the index `axis`, in the
+    /// level frame \[m\]. The unit vector of gravity keeps its length as the component changes.
+    pub(crate) fn leaning_m(&self, sample: &Sample, axis: usize) -> Vector3<f64> {
+        let gravity = &self.geometry.gravity;
+        let by = Vector3::ith(axis, 1.0) - gravity * gravity[axis];
+        let [by_x, by_y] = &sample.deflection.known_slopes_m;
         let effects = self.effects.iter().zip(&self.compliances);
-        let springs = effects.filter(|(effect, _)| sample.deflection.is_proportional(**effect));
-        springs.fold(Vector3::zeros(), |sum, (&effect, compliances)| {
-            sum + sample.deflection.displaced_m(effect, compliances, &Vector3::ith(axis, 1.0))
+        effects.fold(by_x * by.x + by_y * by.y, |sum, (&effect, compliances)| {
+            sum + sample.deflection.leaning_m(effect, compliances, gravity, &by)
         })
     }
 
@@ -183,25 +185,35 @@ impl Fitted {
 
 /// Errors of the samples with the model `fitted`, each coordinate multiplied by its weight for the fit.
 pub(crate) fn misses(samples: &[&Sample], fitted: &Fitted) -> Vec<Miss> {
+    samples.iter().zip(errors_m(samples, fitted)).map(|(sample, error_m)| sample.miss(&error_m)).collect()
+}
+
+/// Errors of the samples with the model `fitted`, measured minus predicted position \[m\]; zero where a coordinate was not
+/// measured.
+pub(super) fn errors_m(samples: &[&Sample], fitted: &Fitted) -> Vec<Vector3<f64>> {
+    samples.iter().zip(predictions_m(samples, fitted)).map(|(sample, at_m)| sample.error(at_m)).collect()
+}
+
+/// Predicted positions of the samples, in the instrument's frame \[m\].
+pub(super) fn predictions_m(samples: &[&Sample], fitted: &Fitted) -> Vec<Vector3<f64>> {
     let order = by_arm(samples);
-    let portions = order.par_chunks(PORTION).map(|portion| misses_of(portion, samples, fitted));
-    let portions: Vec<Vec<Miss>> = portions.collect();
-    let mut out = vec![Miss { scaled_m: Vector3::zeros(), readings: 0.0 }; samples.len()];
-    order.iter().zip(portions.into_iter().flatten()).for_each(|(&i, miss)| out[i] = miss);
+    let portions = order.par_chunks(PORTION).map(|portion| predictions_of(portion, samples, fitted));
+    let portions: Vec<Vec<Vector3<f64>>> = portions.collect();
+    let mut out = vec![Vector3::zeros(); samples.len()];
+    order.iter().zip(portions.into_iter().flatten()).for_each(|(&i, at_m)| out[i] = at_m);
     out
 }
 
-/// The errors of the samples with the indices `portion`, in this order. The indices are sorted by arm.
-fn misses_of(portion: &[usize], samples: &[&Sample], fitted: &Fitted) -> Vec<Miss> {
+/// Predicted positions of those samples that have the indices `portion`, arm by arm \[m\].
+fn predictions_of(portion: &[usize], samples: &[&Sample], fitted: &Fitted) -> Vec<Vector3<f64>> {
     let mut placer = EightPlacer::new(&fitted.geometry);
     let from_level = fitted.geometry.level_to_instrument();
     let mut out = Vec::with_capacity(portion.len());
     for eight in eights(portion, samples) {
         let asked: Vec<Placing> = eight.iter().map(|&i| samples[i].placing()).collect();
         for (&i, rigid_m) in eight.iter().zip(placer.place_m(&asked)) {
-            let sample = samples[i];
-            let displaced_m = from_level * fitted.displacement(sample);
-            out.push(sample.miss(&sample.error(rigid_m + displaced_m + fitted.drifted_m(sample))));
+            let displaced_m = from_level * fitted.displacement(samples[i]);
+            out.push(rigid_m + displaced_m + fitted.drifted_m(samples[i]));
         }
     }
     out

@@ -1,10 +1,10 @@
 //! Finds the placement of the calibrated arms: in each session, and one common placement that fits all sessions best.
 
 use super::analysis::Positions;
-use super::fit::fit;
+use super::deflection::Deflection;
+use super::fit::likeliest;
 use super::fitted::{Fitted, Sample};
 use super::kinematics::{Geometry, Number};
-use super::loads::Deflection;
 use super::points::{Point, points};
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::placement::{
@@ -138,6 +138,6 @@ impl Positions {
         let mut start = Fitted::rigid(shown.geometry.clone(), shown.scale_m);
         start.geometry.relevel();
         let all: Vec<&Sample> = together.iter().collect();
-        fit(&all, &numbers, &[], &start).geometry
+        likeliest(&all, &numbers, &[], &start).geometry
     }
 }

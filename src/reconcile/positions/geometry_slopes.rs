@@ -1,7 +1,9 @@
 //! Derivatives of the deflection of a point with respect to the calibrated geometry.
 //!
 //! A fit changes the geometry, while the deflection stays as it was computed for the geometry of the fit before. It is
-//! computed again after each stage. So the steps of a fit lack a part of the derivatives with respect to the geometry:
+//! computed again after each stage. Some changes leave the arm as it is, such as a rotation of the base about the first
+//! axis and a zero of this joint that makes up for it. A fit that knew how the deflection turns with the base, but not with the
+//! zero, would take them for a way to fit the noise. So the steps of a fit lack a part of the derivatives with respect to the geometry:
 //! longer links, for example, give the weights longer levers. This part is small, of the order of deflection over
 //! reach. But it is the only derivative of some combinations of numbers, such as the height of the base and the length
 //! of the first link along a vertical axis. Without it the readings would leave these combinations as uncertain as
@@ -128,12 +130,13 @@ impl GeometrySlopes<'_> {
     /// [`incomplete`](Self::incomplete) \[m per unit\].
     pub(super) fn push(&self, sample: &Sample, columns: &mut Vec<Vector3<f64>>) {
         let row = &self.rows[sample.index];
-        let here_m = self.here.known_m(row, sample.point);
+        let pose = self.here.pose(row);
+        let here_m = self.here.known_in_m(&pose, row, sample.point);
         columns.extend(self.moved.iter().map(|moved| match moved.number {
             // the offset of another point does not move this point
             Number::Tool(point, _) if *point != sample.point => Vector3::zeros(),
             _ if !moved.is_of_arm[sample.arm] => Vector3::zeros(),
-            _ => self.from_level * (moved.loads.known_m(row, sample.point) - here_m) / STEP,
+            _ => self.from_level * (moved.loads.known_in_m(&pose, row, sample.point) - here_m) / STEP,
         }));
         let displaced_m = self.from_level * self.fitted.displacement(sample);
         columns.extend(self.turned.iter().map(|(_, axis)| Vector3::ith(*axis, 1.0).cross(&displaced_m)));
@@ -168,8 +171,8 @@ mod tests {
     use crate::arm::load::Payload;
     use crate::catalog::Catalogs;
     use crate::input::json::Document;
-    use crate::reconcile::positions::kinematics::Pose;
-    use crate::reconcile::positions::loads::Deflection;
+    use crate::reconcile::positions::deflection::Deflection;
+    use crate::reconcile::positions::pose::Pose;
     use crate::reconcile::positions::tree::Tree;
     use crate::reconcile::readings::campaign::{Campaign, read_statement};
     use nalgebra::{DMatrix, DVector};
@@ -208,7 +211,7 @@ mod tests {
         let slopes = GeometrySlopes::new(&campaign.positions, &numbers, &fitted, arms);
         let down_m = 10.0 * 9.81 * 0.8 * 0.8 / 2e4;
         let sample = Sample {
-            pose: Arc::new(Pose::new(vec![0.0])),
+            pose: Pose::new(&[0.0]),
             arm: 0,
             point: 0,
             station: 0,

@@ -1,7 +1,7 @@
 //! Values of a model of positions with their 95 % intervals. An interval may reach further on one side of the value
 //! than on the other, because compliances outside the model cannot be negative.
 
-use super::loads::FRAME_ENTRIES;
+use super::deflection::FRAME_ENTRIES;
 use super::springs::frame_matrix;
 use crate::reconcile::model::estimate::{Estimate, Z_95};
 

@@ -1,6 +1,7 @@
 //! Computes the position of a point on the tool for any calibrated geometry, and its derivatives with respect to the
 //! numbers of the geometry.
 
+use super::pose::{Pose, Turn};
 use super::tree::Tree;
 use crate::arm::effect::waves::{transmission_rad, transmission_waves};
 use crate::arm::structure::{JointAngle, Piece};
@@ -187,23 +188,6 @@ pub(crate) struct Geometry {
     /// [`Dependence`](super::dependence::Dependence) of the nominal deflection. All are 0 for the nominal arm.
     pub dependences: Vec<f64>,
     pub(super) arms: Vec<Vec<usize>>,
-}
-
-/// Angles of the driven joints in a pose, with their sines and cosines. These are computed once, because the geometry
-/// changes during a fit and the poses do not.
-#[derive(Debug)]
-pub(crate) struct Pose {
-    /// Angles \[rad\].
-    pub angles_rad: Vec<f64>,
-    /// Sine and cosine of each angle.
-    pub(super) sin_cos: Vec<(f64, f64)>,
-}
-
-impl Pose {
-    pub(crate) fn new(angles_rad: Vec<f64>) -> Self {
-        let sin_cos = angles_rad.iter().map(|angle| libm::sincos(*angle)).collect();
-        Self { angles_rad, sin_cos }
-    }
 }
 
 /// States which point's position is asked for, and in which arm, pose and session.
@@ -408,10 +392,10 @@ impl Placer<'_> {
     pub(crate) fn place_m(&mut self, asked: Placing) -> Vector3<f64> {
         let own = self.geometry;
         self.turned_rad.clear();
-        let joints = asked.pose.angles_rad.iter().zip(&own.zeros_rad).zip(&own.transmissions_rad);
+        let joints = asked.pose.turns().iter().zip(&own.zeros_rad).zip(&own.transmissions_rad);
         self.turned_rad.extend(joints.map(|((q, zero), waves)| match *waves == EVEN {
-            true => q + zero,
-            false => q + zero + transmission_rad(waves, *q),
+            true => q.rad + zero,
+            false => q.rad + zero + transmission_rad(waves, q.rad),
         }));
         let mut last = Frame { rotation: own.base, at_m: own.origin_m };
         self.frames.clear();
@@ -440,7 +424,7 @@ impl Placer<'_> {
     fn sin_cos(&self, angle: &JointAngle, pose: &Pose) -> (f64, f64) {
         match angle {
             JointAngle::Driven(j) if self.geometry.transmissions_rad[*j] == EVEN => {
-                let ((sin, cos), (zero_sin, zero_cos)) = (pose.sin_cos[*j], self.zero_sin_cos[*j]);
+                let (Turn { sin, cos, .. }, (zero_sin, zero_cos)) = (pose.turns()[*j], self.zero_sin_cos[*j]);
                 (sin * zero_cos + cos * zero_sin, cos * zero_cos - sin * zero_sin)
             }
             _ => libm::sincos(angle.of(&self.turned_rad)),
@@ -471,7 +455,7 @@ impl Placer<'_> {
             Number::Tool(..) | Number::Gravity(_) | Number::Tolerance(_) | Number::Effect(_) => zero,
             Number::Zero(j) => self.turning(j, along),
             Number::Transmission(j, k) => {
-                self.turning(j, along) * transmission_waves(asked.pose.angles_rad[j])[k]
+                self.turning(j, along) * transmission_waves(asked.pose.turns()[j].rad)[k]
             }
             Number::Ratio(i, t) => match (along[i], &own.angles[i]) {
                 (Some(k), Some(JointAngle::Coupled(terms))) => self.lever(i, k) * self.turned_rad[terms[t].0],
@@ -582,7 +566,7 @@ mod tests {
         let mut numbers: Vec<Number> = groups.into_iter().flat_map(|(_, group)| group).collect();
         assert!(numbers.contains(&Number::Ratio(4, 1)));
         numbers.extend((0..4).map(|k| Number::Transmission(1, k)));
-        let asked = Placing { arm: 0, pose: &Pose::new(vec![0.4, -0.7]), point: 0, station: 0 };
+        let asked = Placing { arm: 0, pose: &Pose::new(&[0.4, -0.7]), point: 0, station: 0 };
         let mut placer = geometry.placer();
         placer.place_m(asked);
         let mut slopes = Vec::new();

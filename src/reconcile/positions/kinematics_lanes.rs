@@ -5,6 +5,7 @@
 //! order as the placer, so the results are the same to the last bit.
 
 use super::kinematics::{EVEN, Geometry, Number, Placer, Placing, rate};
+use super::pose::Turn;
 use crate::arm::effect::waves::{transmission_rad, transmission_waves};
 use crate::arm::structure::JointAngle;
 use crate::mechanics::lanes::{Eight, LANES, LaneWork, Lanes, in_lanes, load_all, splat_all, store_all};
@@ -72,7 +73,9 @@ pub(crate) struct EightPlacer<'a> {
     placer: Placer<'a>,
     /// The steps along the chain of each arm.
     chains: Vec<Vec<Step>>,
-    /// Angles of the driven joints with zeros and transmission errors \[rad\], lane by lane.
+    /// Whether a joint needs the angles of the driven joints, and not only their sines and cosines.
+    needs_angles: bool,
+    /// Angles of the driven joints with zeros and transmission errors \[rad\], lane by lane; empty if no joint needs them.
     turned_rad: Vec<f64>,
     /// Sine and cosine of each joint along the chain.
     sin_cos: Vec<[Eight; 2]>,
@@ -88,6 +91,8 @@ impl<'a> EightPlacer<'a> {
         Self {
             placer: geometry.placer(),
             chains: geometry.arms.iter().map(chain).collect(),
+            needs_angles: geometry.transmissions_rad.iter().any(|waves| *waves != EVEN)
+                || geometry.angles.iter().flatten().any(|angle| matches!(angle, JointAngle::Coupled(_))),
             turned_rad: Vec::new(),
             sin_cos: Vec::new(),
             frames: Vec::new(),
@@ -124,11 +129,11 @@ impl<'a> EightPlacer<'a> {
     fn turn(&mut self, lanes: &[&Placing; LANES]) {
         let own = self.placer.geometry;
         self.turned_rad.clear();
-        for asked in lanes {
-            let joints = asked.pose.angles_rad.iter().zip(&own.zeros_rad).zip(&own.transmissions_rad);
+        for asked in lanes.iter().filter(|_| self.needs_angles) {
+            let joints = asked.pose.turns().iter().zip(&own.zeros_rad).zip(&own.transmissions_rad);
             self.turned_rad.extend(joints.map(|((q, zero), waves)| match *waves == EVEN {
-                true => q + zero,
-                false => q + zero + transmission_rad(waves, *q),
+                true => q.rad + zero,
+                false => q.rad + zero + transmission_rad(waves, q.rad),
             }));
         }
         self.sin_cos.clear();
@@ -137,8 +142,8 @@ impl<'a> EightPlacer<'a> {
             for (lane, asked) in lanes.iter().enumerate() {
                 let (sin, cos) = match angle {
                     JointAngle::Driven(j) if own.transmissions_rad[*j] == EVEN => {
-                        let ((sin, cos), (zero_sin, zero_cos)) =
-                            (asked.pose.sin_cos[*j], self.placer.zero_sin_cos[*j]);
+                        let Turn { sin, cos, .. } = asked.pose.turns()[*j];
+                        let (zero_sin, zero_cos) = self.placer.zero_sin_cos[*j];
                         (sin * zero_cos + cos * zero_sin, cos * zero_cos - sin * zero_sin)
                     }
                     _ => {
@@ -230,7 +235,7 @@ impl<'a> EightPlacer<'a> {
         match *factor {
             Factor::OfPoint(p) => lanes.map(|asked| f64::from(u8::from(asked.point == p))),
             Factor::OfStation(s) => lanes.map(|asked| f64::from(u8::from(asked.station == s))),
-            Factor::Wave(j, k) => lanes.map(|asked| transmission_waves(asked.pose.angles_rad[j])[k]),
+            Factor::Wave(j, k) => lanes.map(|asked| transmission_waves(asked.pose.turns()[j].rad)[k]),
             Factor::Turned(j) => std::array::from_fn(|lane| self.turned_rad[lane * driven + j]),
         }
     }
@@ -437,7 +442,8 @@ mod tests {
     use crate::arm::file::read_arm_document;
     use crate::catalog::Catalogs;
     use crate::input::json::Document;
-    use crate::reconcile::positions::kinematics::{Pose, number_groups, testing::ARM};
+    use crate::reconcile::positions::kinematics::{number_groups, testing::ARM};
+    use crate::reconcile::positions::pose::Pose;
     use crate::reconcile::positions::tree::Tree;
     use crate::reconcile::readings::campaign::{Campaign, read_statement};
 
@@ -465,7 +471,7 @@ mod tests {
         let step: Vec<f64> = (0..numbers.len()).map(|k| 0.01 * ((k * k) % 7) as f64 - 0.025).collect();
         geometry.step(&numbers, &step);
         let poses: Vec<Pose> =
-            (0..8).map(|k| Pose::new(vec![0.4 * k as f64 - 1.0, 0.9 - 0.3 * k as f64])).collect();
+            (0..8).map(|k| Pose::new(&[0.4 * k as f64 - 1.0, 0.9 - 0.3 * k as f64])).collect();
         for count in [8, 5] {
             let of = |k: usize| Placing { arm: 0, pose: &poses[k], point: k % 2, station: k / 4 };
             let asked: Vec<Placing> = (0..count).map(of).collect();

@@ -8,7 +8,7 @@
 //! effects and sessions are not named, and the verdict says which law fits better.
 
 use super::analysis::Positions;
-use super::fit::fit;
+use super::fit::likeliest;
 use super::fitted::{Fitted, Sample};
 use super::kinematics::{Number, Placer};
 use super::law::{CompetingLaws, Law};
@@ -143,7 +143,7 @@ impl Positions {
         let rest: Vec<usize> =
             out.fitted.effects.iter().copied().filter(|e| !group.effects.contains(e)).collect();
         let all: Vec<&Sample> = out.samples.iter().collect();
-        let fitted = fit(&all, &out.numbers, &rest, &out.fitted);
+        let fitted = likeliest(&all, &out.numbers, &rest, &out.fitted);
         Self { fitted, ..out }
     }
 
@@ -200,7 +200,7 @@ impl Positions {
                 sample.measured_m = read.measured_m - moved_m;
             }
             let all: Vec<&Sample> = samples.iter().collect();
-            fitted = fit(&all, &self.numbers, &self.fitted.effects, &fitted);
+            fitted = likeliest(&all, &self.numbers, &self.fitted.effects, &fitted);
         }
         Some(fitted.ln_likelihood)
     }

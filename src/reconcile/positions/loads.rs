@@ -5,8 +5,9 @@
 //! Here `m` and `S` are mass and first moment of everything outboard, `g` the strength and `ĝ` the direction of
 //! gravity. The mass of other arms on the same trunk is included.
 
+use super::deflection::{Deflection, Slot};
 use super::kinematics::Geometry;
-use super::shape::{Shape, beyond_nm};
+use super::shape::Shape;
 use super::tree::Tree;
 use crate::arm::body::total_kg;
 use crate::arm::effect::kind::{ElasticRotation, Kind};
@@ -20,17 +21,15 @@ use crate::arm::load::Payload;
 use crate::arm::structure::{FrameCompliance, Piece, Structure};
 use crate::arm::{Arm, BASE, JointModel, LinkModel};
 use crate::mechanics::chain::{Chain, Item, Posed};
+use crate::mechanics::deflections::Deflections;
 use crate::mechanics::hanging::beyond_linear_m;
-use crate::mechanics::{Twist, angular, displacement_at, linear};
+use crate::mechanics::tip::{Loaded, Strain, Tip, UnitRotation, Weights};
+use crate::mechanics::{linear, stack};
 use crate::reconcile::model::direct::{seen_from_tool, with_tool};
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::rows::PositionRow;
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
-
-/// Row and column of each entry of the compliance matrix of a frame (a rotational spring about all three axes), in
-/// the order in which the entries are fitted.
-pub(crate) const FRAME_ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (0, 1), (0, 2), (1, 2), (2, 2)];
 
 /// A candidate: an effect at a place, which makes the arm compliant or gives it play there.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,138 +43,6 @@ pub(crate) struct CompliantPlace {
     pub at: String,
     /// How the displacement depends on the torque. The parameter of play is a half width \[rad\] and not a compliance.
     pub shape: Shape,
-}
-
-/// How one measured point deflects under gravity in its pose, in the level frame.
-#[derive(Debug, Clone)]
-pub(crate) struct Deflection {
-    /// Displacement of the point by the compliances that the arm file already has \[m\].
-    pub known_m: Vector3<f64>,
-    /// Derivatives of the known displacement with respect to the two horizontal components of the unit vector of
-    /// gravity \[m\].
-    pub known_slopes_m: [Vector3<f64>; 2],
-    /// The rotations of all candidates, in the order of the candidates.
-    rotations: Arc<[UnitRotation]>,
-    slots: Arc<[Slot]>,
-    /// For each driven joint, sine and cosine of its angle and of twice its angle; empty if no candidate needs them.
-    waves: Arc<[[f64; 4]]>,
-}
-
-/// One rotation by which a candidate can deflect: how the rotation moves the point, and the torque about its axis.
-#[derive(Debug, Clone, Copy, Default)]
-struct UnitRotation {
-    /// Displacement of the point per angle of the rotation \[m/rad\].
-    motion_m: Vector3<f64>,
-    /// Torque about the axis of rotation, one entry for gravity along each axis of the level frame \[N m\].
-    pull_nm: Vector3<f64>,
-}
-
-/// Where a candidate is among the rotations of all candidates: index of its first rotation, the number of its
-/// rotations, and the number of its compliances. A candidate that is no spring uses the rotations of the spring at the
-/// same place.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Slot {
-    first: usize,
-    rotations: usize,
-    compliances: usize,
-    shape: Shape,
-    /// Index of the driven joint at the candidate's place, on whose angle the compliance may depend; 0 if there is
-    /// none.
-    driven: usize,
-}
-
-impl Deflection {
-    /// A deflection with the known displacement `known_m` and without candidates.
-    pub(crate) fn known(known_m: Vector3<f64>) -> Self {
-        let (known_slopes_m, rotations, slots, waves) = Default::default();
-        Self { known_m, known_slopes_m, rotations, slots, waves }
-    }
-
-    /// Number of compliances of a candidate.
-    pub(crate) fn count(&self, candidate: usize) -> usize {
-        self.slots[candidate].compliances
-    }
-
-    /// Whether the displacement by a candidate is proportional to the weight.
-    pub(crate) fn is_proportional(&self, candidate: usize) -> bool {
-        self.slots[candidate].shape.is_proportional()
-    }
-
-    /// The candidates of this deflection, with the threshold (torque scale of play, or preload) of the candidate
-    /// `candidate` set to `nm` \[N m\].
-    pub(super) fn slots_with_threshold(&self, candidate: usize, nm: f64) -> Arc<[Slot]> {
-        let mut slots = self.slots.to_vec();
-        slots[candidate].shape = slots[candidate].shape.with_threshold(nm);
-        slots.into()
-    }
-
-    /// This deflection with the candidates `slots`, which differ in their thresholds only.
-    pub(super) fn with_slots(&self, slots: &Arc<[Slot]>) -> Self {
-        Self { slots: Arc::clone(slots), ..self.clone() }
-    }
-
-    /// The largest magnitude of the torques about the axes of a candidate, under gravity along -z \[N m\].
-    pub(crate) fn torque_nm(&self, candidate: usize) -> f64 {
-        self.rotations(candidate).iter().map(|rotation| rotation.pull_nm.z.abs()).fold(0.0, f64::max)
-    }
-
-    fn rotations(&self, candidate: usize) -> &[UnitRotation] {
-        let slot = &self.slots[candidate];
-        &self.rotations[slot.first..slot.first + slot.rotations]
-    }
-
-    /// Calls `each` once for each compliance of a candidate, with the displacement of the point per unit of this
-    /// compliance, under gravity along `gravity` \[m per rad/(N m)\]. For play the unit is the half width \[m/rad\].
-    pub(crate) fn per_compliance(
-        &self,
-        candidate: usize,
-        gravity: &Vector3<f64>,
-        mut each: impl FnMut(Vector3<f64>),
-    ) {
-        let own = self.rotations(candidate);
-        let mut torques_nm = [0.0; 3];
-        torques_nm.iter_mut().zip(own).for_each(|(nm, rotation)| *nm = rotation.pull_nm.dot(gravity));
-        let along = |i: usize, j: usize| own[i].motion_m * torques_nm[j];
-        let slot = &self.slots[candidate];
-        match (slot.shape, slot.compliances) {
-            (Shape::Play(scale_nm), _) => each(own[0].motion_m * libm::tanh(torques_nm[0] / scale_nm)),
-            (Shape::Lift(preload_nm), _) => {
-                let tilt = |i: usize| own[i].motion_m * beyond_nm(torques_nm[i], preload_nm);
-                each((0..own.len()).map(tilt).sum());
-            }
-            (Shape::Waves(waves), _) => {
-                let angle = &self.waves[slot.driven][waves.range()];
-                angle.iter().for_each(|wave| each(along(0, 0) * *wave));
-            }
-            (Shape::Spring, 1) => each((0..own.len()).fold(Vector3::zeros(), |sum, i| sum + along(i, i))),
-            (Shape::Spring, count) => FRAME_ENTRIES[..count].iter().for_each(|&(i, j)| {
-                each(if i == j { along(i, i) } else { along(i, j) + along(j, i) });
-            }),
-        }
-    }
-
-    /// Displacement of the point under gravity along `gravity` if the candidate has the compliances `compliances`
-    /// \[rad/(N m)\], in the level frame \[m\]. For play the entry is the half width \[rad\].
-    pub(crate) fn displaced_m(
-        &self,
-        candidate: usize,
-        compliances: &[f64],
-        gravity: &Vector3<f64>,
-    ) -> Vector3<f64> {
-        let mut out = Vector3::zeros();
-        let mut compliances = compliances.iter();
-        self.per_compliance(candidate, gravity, |by| {
-            out += by * compliances.next().copied().unwrap_or_default();
-        });
-        out
-    }
-
-    /// Displacement of the point per angle of rotation about the first axis of a candidate \[m/rad\], and the torque
-    /// about this axis under gravity along -z \[N m\]. For a joint's axis, an error of the joint angle moves the
-    /// point in the same direction.
-    pub(crate) fn lever(&self, candidate: usize) -> (Vector3<f64>, f64) {
-        self.rotations(candidate).first().map_or_else(Default::default, |s| (s.motion_m, -s.pull_nm.z))
-    }
 }
 
 /// All candidates that are springs: every joint about and across its axis, the base, and a frame behind every joint at
@@ -271,14 +138,15 @@ impl CompliantPlace {
 /// One arm in the level frame (z opposite to gravity), with calibrated geometry and its tip at one point on the tool,
 /// ready to be posed.
 struct Ready {
-    gravity_m_s2: f64,
-    known: Chain,
-    unit: Chain,
+    known: Tip,
+    unit: Tip,
     structure: Structure,
     unit_structure: Structure,
     point_m: Vector3<f64>,
     /// For each candidate, the places of its elements in this arm.
     places: Vec<Place>,
+    /// The arm as it is.
+    chain: Chain,
 }
 
 /// Places of a candidate's elements in an arm: indices among the elastic elements, counted from the tip to the base.
@@ -295,10 +163,18 @@ pub(crate) struct Loads<'a> {
     tree: &'a Tree,
     /// For each arm and each point on a tool, the arm that ends at this point.
     ready: Vec<Vec<Ready>>,
-    /// Number of items (bodies and elastic elements) of a posed arm that belong to the trunk: first in the arm with
-    /// unit compliances, then in the arm as it is.
-    trunk: [usize; 2],
+    trunk: Trunk,
     slots: Arc<[Slot]>,
+}
+
+/// How much of an arm belongs to the trunk.
+struct Trunk {
+    /// Number of steps of the arm with unit compliances.
+    unit: usize,
+    /// Number of steps of the arm as it is.
+    known: usize,
+    /// Number of items of the posed arm.
+    items: usize,
 }
 
 impl<'a> Loads<'a> {
@@ -332,87 +208,130 @@ impl<'a> Loads<'a> {
             })
             .collect();
         let slots = slots(tree, candidates);
-        Self { tree, trunk: trunk_items(campaign, tree, &ready), ready, slots }
+        Self { tree, trunk: Trunk::new(campaign, tree, &ready), ready, slots }
     }
 
     /// How the point with index `point` deflects in the pose and with the payload of `row`. The derivatives with
     /// respect to the direction of gravity are not computed and stay zero.
-    pub(crate) fn deflection(&self, row: &PositionRow, point: usize) -> Deflection {
-        let hung = self.hung(row, point);
-        let mut unit = hung.own.pose(&hung.own.unit, &hung.pose_rad, &row.payload);
-        hung.load_trunk(&mut unit, self.trunk[0]);
-        let varies = self.slots.iter().any(|slot| slot.shape.waves().is_some());
-        let angles = row.pose_deg.iter().filter(|_| varies);
+    pub(super) fn deflection(&self, pose: &ArmPoses, row: &PositionRow, point: usize) -> Deflection {
+        let hung = self.hung(pose, row, point);
         Deflection {
-            waves: angles.map(|angle| transmission_waves(angle.to_radians())).collect(),
-            known_m: self.known_of(&hung, row).displaced().0,
+            known_m: self.known_of(&hung),
             known_slopes_m: [Vector3::zeros(); 2],
-            rotations: hung.own.rotations(&unit, &self.slots).into(),
+            rotations: hung.own.rotations(&hung.load(self.trunk.unit), &self.slots).into(),
+            waves: self.waves(row),
             slots: Arc::clone(&self.slots),
         }
+    }
+
+    /// The deflection `found` of the point in `row`, which was computed with the springs among the candidates alone, with all
+    /// candidates.
+    pub(super) fn with_all_candidates(&self, row: &PositionRow, found: &Deflection) -> Deflection {
+        Deflection { waves: self.waves(row), slots: Arc::clone(&self.slots), ..found.clone() }
+    }
+
+    /// For each driven joint, the waves of its angle, if a candidate depends on them.
+    fn waves(&self, row: &PositionRow) -> Arc<[[f64; 4]]> {
+        let varies = self.slots.iter().any(|slot| slot.shape.waves().is_some());
+        let angles = row.pose_deg.iter().filter(|_| varies);
+        angles.map(|angle| transmission_waves(angle.to_radians())).collect()
     }
 
     /// Displacement of a point under gravity by the compliances that the arm file already has, in the level frame
     /// \[m\].
     pub(crate) fn known_m(&self, row: &PositionRow, point: usize) -> Vector3<f64> {
-        self.known_of(&self.hung(row, point), row).displaced().0
+        self.known_in_m(&self.pose(row), row, point)
+    }
+
+    /// The same, for a row whose [pose](Self::pose) is known.
+    pub(super) fn known_in_m(&self, pose: &ArmPoses, row: &PositionRow, point: usize) -> Vector3<f64> {
+        self.known_of(&self.hung(pose, row, point))
+    }
+
+    fn known_of(&self, hung: &Hung) -> Vector3<f64> {
+        match hung.only_weights() {
+            true => hung.own.known.displacement_m(&hung.load(self.trunk.known)),
+            false => hung.posed(self.trunk.items, Deflections::default()).displaced().0,
+        }
     }
 
     /// The error of the linear displacement of [`known_m`](Self::known_m): the displacement of the point with the
     /// levers of the deflected pose, less the linear displacement \[m\]. The bodies of other arms keep their places
     /// without deflection.
     pub(crate) fn second_order_m(&self, row: &PositionRow, point: usize) -> Vector3<f64> {
-        let hung = self.hung(row, point);
-        let payload = seen_from_tool(&row.payload, &hung.own.point_m);
-        beyond_linear_m(|deflections| {
-            let mut posed = hung.own.known.pose_with(&hung.pose_rad, &payload, Vector3::zeros(), deflections);
-            hung.load_trunk(&mut posed, self.trunk[1]);
-            posed
-        })
-    }
-
-    /// The arm with the compliances of its file, in the pose and with the payload of `row`. The pose is not deflected.
-    fn known_of<'b>(&self, hung: &Hung<'b>, row: &PositionRow) -> Posed<'b> {
-        let mut known = hung.own.pose(&hung.own.known, &hung.pose_rad, &row.payload);
-        hung.load_trunk(&mut known, self.trunk[1]);
-        known
-    }
-
-    /// The arm that ends at the point with the index `point`, its pose in `row`, and the bodies of the other arms.
-    fn hung(&self, row: &PositionRow, point: usize) -> Hung<'_> {
-        let pose_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
-        let others = (0..self.ready.len()).filter(|&other| other != row.arm);
-        let outboard = others.map(|other| {
-            let neighbour = &self.ready[other][0];
-            let pose = self.tree.pose_of(other, &pose_rad);
-            let hanging = neighbour.pose(&neighbour.unit, &pose, &Payload::default());
-            let outboard = hanging.items.into_iter().skip(self.trunk[0]);
-            outboard.filter(|item| matches!(item, Item::Body(_))).collect()
-        });
-        Hung {
-            neighbours: outboard.collect(),
-            own: &self.ready[row.arm][point],
-            pose_rad: self.tree.pose_of(row.arm, &pose_rad),
+        let pose = self.pose(row);
+        let hung = self.hung(&pose, row, point);
+        let load = hung.load(self.trunk.known);
+        match hung.only_weights() {
+            true => beyond_linear_m(|by: Vec<Strain>| hung.own.known.hung(&load, &by)),
+            false => beyond_linear_m(|by| hung.posed(self.trunk.items, by)),
         }
+    }
+
+    /// The angles of all arms in `row`.
+    pub(super) fn pose(&self, row: &PositionRow) -> ArmPoses {
+        let all_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
+        let own = |arm: usize| {
+            let pose_rad = self.tree.pose_of(arm, &all_rad);
+            let sin_cos = pose_rad.iter().map(|angle| libm::sincos(*angle)).collect();
+            ArmPose { pose_rad, sin_cos }
+        };
+        ArmPoses((0..self.ready.len()).map(own).collect())
+    }
+
+    /// The arm that ends at the point with the index `point`, its pose in `row`, and the weights of the other arms.
+    fn hung<'b>(&'b self, pose: &'b ArmPoses, row: &PositionRow, point: usize) -> Hung<'b> {
+        let mut neighbours = Weights::default();
+        for other in (0..self.ready.len()).filter(|&other| other != row.arm) {
+            let ArmPose { pose_rad, sin_cos } = &pose.0[other];
+            let trunk = (0, Weights::default());
+            let load = Loaded { pose_rad, sin_cos, payload: &Payload::default(), trunk };
+            neighbours.join(&self.ready[other][0].unit.weights_from(self.trunk.unit, &load));
+        }
+        let own = &self.ready[row.arm][point];
+        let payload = seen_from_tool(&row.payload, &own.point_m);
+        Hung { own, pose: &pose.0[row.arm], payload, neighbours }
     }
 }
 
-/// An arm in a pose, and the bodies of the other arms that hang on its trunk.
+/// The pose of each arm.
+pub(super) struct ArmPoses(Vec<ArmPose>);
+
+/// The angles of one arm's driven joints \[rad\], and sine and cosine of each.
+struct ArmPose {
+    pose_rad: Vec<f64>,
+    sin_cos: Vec<(f64, f64)>,
+}
+
+/// An arm in a pose, and the weights of the other arms that hang on its trunk.
 struct Hung<'a> {
     own: &'a Ready,
-    /// Angles of the arm's own joints \[rad\].
-    pose_rad: Vec<f64>,
-    /// For each other arm, its bodies outboard of the trunk.
-    neighbours: Vec<Vec<Item>>,
+    pose: &'a ArmPose,
+    /// The payload. Its centre of gravity is counted from the point.
+    payload: Payload,
+    neighbours: Weights,
 }
 
 impl Hung<'_> {
-    /// Adds the bodies of the other arms to the trunk of a posed arm. Their weight deflects the trunk and so moves
-    /// the point too. The trunk ends after `items` items of the posed arm.
-    fn load_trunk(&self, posed: &mut Posed, items: usize) {
-        for bodies in &self.neighbours {
-            posed.items.splice(items..items, bodies.iter().cloned());
-        }
+    /// Whether all loads are weights. The forces of springs between parts of the arm are more than that.
+    fn only_weights(&self) -> bool {
+        self.own.structure.springs.is_empty()
+    }
+
+    /// Pose and load of the arm, of whose steps the first `trunk` belong to the trunk. The weight of the other arms deflects
+    /// the trunk and so moves the point too.
+    fn load(&self, trunk: usize) -> Loaded<'_> {
+        let ArmPose { pose_rad, sin_cos } = self.pose;
+        Loaded { pose_rad, sin_cos, payload: &self.payload, trunk: (trunk, self.neighbours) }
+    }
+
+    /// The arm in this pose, with the deflections `by`. The first `trunk` of its items belong to the trunk.
+    fn posed(&self, trunk: usize, by: Deflections) -> Posed<'_> {
+        let mut posed = self.own.chain.pose_with(&self.pose.pose_rad, &self.payload, Vector3::zeros(), by);
+        let down = self.own.structure.down;
+        let load = stack(&(down * self.neighbours.weight_n), &self.neighbours.moment_nm.cross(&down));
+        posed.items.insert(trunk, Item::Load(load));
+        posed
     }
 }
 
@@ -436,22 +355,17 @@ impl Ready {
             }
         }
         let structure = with_tool(&structure, point_m);
-        let known = Chain::new(&structure, LinkModel::Full);
-        let unit_structure = compliant_everywhere(&structure, &known, arm.driven_joint_names().len());
-        let unit = Chain::new(&unit_structure, LinkModel::Full);
+        let chain = Chain::new(&structure, LinkModel::Full);
+        let unit_structure = compliant_everywhere(&structure, &chain, arm.driven_joint_names().len());
         Self {
-            gravity_m_s2: structure.gravity_m_s2,
-            known,
-            places: places(&unit, arm, candidates),
-            unit,
+            known: Tip::new(&structure, LinkModel::Full),
+            unit: Tip::new(&unit_structure, LinkModel::Full),
+            places: places(&Chain::new(&unit_structure, LinkModel::Full), arm, candidates),
+            chain,
             structure,
             unit_structure,
             point_m,
         }
-    }
-
-    fn pose<'a>(&self, chain: &'a Chain, pose_rad: &[f64], payload: &Payload) -> Posed<'a> {
-        chain.pose_rad(pose_rad, &seen_from_tool(payload, &self.point_m), Vector3::zeros())
     }
 }
 
@@ -512,20 +426,25 @@ fn slots(tree: &Tree, candidates: &[CompliantPlace]) -> Arc<[Slot]> {
     out.into()
 }
 
-/// Number of items (bodies and elastic elements) of a posed arm that belong to the trunk: first in the arm with unit
-/// compliances, then in the arm as it is.
-fn trunk_items(campaign: &Campaign, tree: &Tree, ready: &[Vec<Ready>]) -> [usize; 2] {
-    let rest = vec![0.0; tree.driven.len()];
-    let first = &ready[0][0];
-    let names: Vec<&str> = campaign.arm.chain[..tree.trunk].iter().map(|e| e.name()).collect();
-    let of = |structure: &Structure| {
-        let mut trunk = structure.clone();
-        trunk.pieces.retain(|piece| names.contains(&piece.name()));
-        // the payload is the last item
-        Chain::new(&trunk, LinkModel::Full).pose_rad(&rest, &Payload::default(), Vector3::zeros()).items.len()
-            - 1
-    };
-    [of(&first.unit_structure), of(&first.structure)]
+impl Trunk {
+    fn new(campaign: &Campaign, tree: &Tree, ready: &[Vec<Ready>]) -> Self {
+        let first = &ready[0][0];
+        let names: Vec<&str> = campaign.arm.chain[..tree.trunk].iter().map(|e| e.name()).collect();
+        let of = |structure: &Structure| {
+            let mut trunk = structure.clone();
+            trunk.pieces.retain(|piece| names.contains(&piece.name()));
+            trunk
+        };
+        let [unit, known] = [&first.unit_structure, &first.structure].map(of);
+        let chain = Chain::new(&known, LinkModel::Full);
+        let rest = chain.pose_rad(&vec![0.0; tree.driven.len()], &Payload::default(), Vector3::zeros());
+        Self {
+            unit: Tip::new(&unit, LinkModel::Full).steps(),
+            known: Tip::new(&known, LinkModel::Full).steps(),
+            // the payload is the last item
+            items: rest.items.len() - 1,
+        }
+    }
 }
 
 /// Places of each candidate's elements in an arm. An arm has the same elements in every pose, so they are looked up in
@@ -545,10 +464,9 @@ fn places(unit: &Chain, arm: &Arm, candidates: &[CompliantPlace]) -> Vec<Place> 
 }
 
 impl Ready {
-    /// The rotations of all candidates in a pose, in the order of `slots`. `unit` is the posed arm with unit
-    /// compliances.
-    fn rotations(&self, unit: &Posed, slots: &[Slot]) -> Vec<UnitRotation> {
-        let (elements, rotations) = self.rotations_of_elements(unit);
+    /// The rotations of all candidates in a pose, in the order of `slots`. `load` is that of the arm with unit compliances.
+    fn rotations(&self, load: &Loaded, slots: &[Slot]) -> Vec<UnitRotation> {
+        let (elements, rotations) = self.unit.rotations(load);
         let mut out: Vec<UnitRotation> = Vec::new();
         for (place, slot) in self.places.iter().zip(slots).filter(|(_, slot)| slot.shape == Shape::Spring) {
             // a candidate on another arm does not move this point
@@ -563,38 +481,4 @@ impl Ready {
         }
         out
     }
-
-    /// The rotations of every elastic element in a pose, from the tip to the base. The first result is, for each
-    /// element, the index of its first rotation.
-    fn rotations_of_elements(&self, unit: &Posed) -> (Vec<usize>, Vec<UnitRotation>) {
-        let (mut elements, mut rotations) = (Vec::new(), Vec::new());
-        // weight, and its first moment, of the bodies passed so far
-        let (mut weight_n, mut moment_nm) = (0.0, Vector3::zeros());
-        // from the tip to the base: all items that were passed are outboard
-        for item in unit.items.iter().rev() {
-            match item {
-                Item::Body(body) if self.gravity_m_s2 > 0.0 => {
-                    weight_n += body.weight_n;
-                    moment_nm += body.cg_m * body.weight_n;
-                }
-                // campaigns of positions refuse arms with springs
-                Item::Body(_) | Item::Load(_) => {}
-                Item::Elastic(element) => {
-                    elements.push(rotations.len());
-                    rotations.extend(element.twists.iter().map(|t| UnitRotation {
-                        motion_m: displacement_at(t, &unit.tip_m),
-                        pull_nm: pull(t, weight_n, &moment_nm),
-                    }));
-                }
-            }
-        }
-        (elements, rotations)
-    }
-}
-
-/// Generalized force of gravity on the motion `twist` (a kinematic vector) of everything outboard \[N m\], one entry
-/// for gravity along each axis. `weight_n` is the weight of everything outboard, and `moment_nm` this weight times
-/// its centre of gravity.
-fn pull(twist: &Twist, weight_n: f64, moment_nm: &Vector3<f64>) -> Vector3<f64> {
-    linear(twist) * weight_n + angular(twist).cross(moment_nm)
 }

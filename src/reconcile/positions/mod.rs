@@ -2,8 +2,8 @@
 //! Compliances are then found effect by effect. Each stage is judged on poses held out of the fit.
 //!
 //! - `tree` joins the arms that stand on one trunk; `points` lists the points on their tools.
-//! - [`kinematics`] computes the position of a point, `kinematics_lanes` the positions of eight points at once, and
-//!   [`loads`] how gravity moves a point.
+//! - [`kinematics`] computes the position of a point in a `pose`, `kinematics_lanes` the positions of eight points at once, and
+//!   [`loads`] how gravity moves a point (`deflection`).
 //! - `align` finds a first placement of the arm. [`fit`](mod@fit) fits a model (`fitted`). `rows` builds its normal
 //!   equations (`normal`), and `springs` solves them with compliances that are physically possible.
 //! - [`analysis`] is the whole analysis.
@@ -36,6 +36,7 @@ pub(crate) mod boundary;
 pub(crate) mod convention_changes;
 pub(crate) mod conventions;
 mod declared_sigma;
+pub(crate) mod deflection;
 pub(crate) mod dependence;
 mod drift;
 pub(crate) mod far_geometry;
@@ -57,6 +58,7 @@ mod non_negative;
 pub(crate) mod normal;
 pub(crate) mod outcome;
 pub(crate) mod points;
+pub(crate) mod pose;
 mod posterior;
 pub(crate) mod predict;
 pub(crate) mod rows;

@@ -108,7 +108,7 @@ impl Positions {
     /// best model has its largest error, gross errors excepted.
     fn after_unexplained(&self, campaign: &Campaign, left: &LackOfFit) -> Option<NextTest> {
         let gross: HashSet<usize> = self.gross.iter().map(|(row, _)| *row).collect();
-        let errors = self.samples.iter().map(|s| self.fitted.error(s).norm()).enumerate();
+        let errors = self.errors_m().into_iter().map(|error_m| error_m.norm()).enumerate();
         let worst = errors.filter(|(i, _)| !gross.contains(i)).max_by(|a, b| a.1.total_cmp(&b.1))?.0;
         let row = &campaign.positions[worst];
         let follows = left.structures.iter().find(|s| self.is_material(s)).map(|s| s.follows.as_str());

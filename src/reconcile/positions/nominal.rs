@@ -8,7 +8,7 @@
 
 use super::analysis::Positions;
 use super::dependence::{Dependence, dependences};
-use super::fit::fit;
+use super::fit::likeliest;
 use super::fitted::{Fitted, Sample};
 use super::kinematics::Number;
 use super::loads::{CompliantPlace, Loads};
@@ -93,7 +93,7 @@ impl Positions {
         order.truncate(FULL_FITS);
         let with = |(k, _): (usize, f64)| {
             let numbers: Vec<Number> = self.numbers.iter().cloned().chain([Number::Effect(k)]).collect();
-            (k, fit(&all, &numbers, &self.fitted.effects, &self.fitted))
+            (k, likeliest(&all, &numbers, &self.fitted.effects, &self.fitted))
         };
         let tried: Vec<(usize, Fitted)> = order.into_par_iter().map(with).collect();
         let is_possible =

@@ -485,10 +485,11 @@ impl Positions {
     }
 
     fn residuals(&self, campaign: &Campaign) -> Vec<ReadingResidual> {
-        let rows = campaign.positions.iter().zip(&self.samples).enumerate();
+        let [before, after] = [&self.rigid, &self.fitted].map(|fitted| self.predictions_m(fitted));
         let all_gross: HashSet<usize> = self.gross.iter().map(|(row, _)| *row).collect();
-        rows.flat_map(|(i, (row, sample))| {
-            let [before, after] = [&self.rigid, &self.fitted].map(|f| 1e3 * f.predicted_m(sample));
+        let rows = campaign.positions.iter().zip(before.into_iter().zip(after)).enumerate();
+        rows.flat_map(|(i, (row, at_m))| {
+            let (before, after) = (1e3 * at_m.0, 1e3 * at_m.1);
             let gross = all_gross.contains(&i);
             let left_out_mm = 1e3 * self.held_out[i];
             let measured = row.measured.iter().enumerate().filter_map(|(c, read)| Some((c, (*read)?)));

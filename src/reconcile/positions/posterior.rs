@@ -207,15 +207,16 @@ impl Everywhere {
 /// it. `None` if the equations are singular.
 fn exchangeable(precision: &DMatrix<f64>, pull: &DVector<f64>, first: f64) -> Option<NonNegative> {
     let mut usual = first;
-    for _ in 0..MOST_ROUNDS {
-        let next = exponential(precision, pull, usual)?.mean.mean();
-        let is_settled = (next / usual - 1.0).abs() < SETTLED;
-        usual = next;
-        if is_settled {
+    let mut found = exponential(precision, pull, usual)?;
+    for _ in 1..MOST_ROUNDS {
+        let next = found.mean.mean();
+        if (next / usual - 1.0).abs() < SETTLED {
             break;
         }
+        usual = next;
+        found = exponential(precision, pull, usual)?;
     }
-    exponential(precision, pull, usual)
+    Some(found)
 }
 
 /// Posterior distribution of positive numbers that have an exponential prior with the mean `usual`. The readings give

@@ -1,7 +1,8 @@
 //! Predicts positions of points on several arms of one trunk. The trunk is loaded by the weight of all arms.
 
-use super::kinematics::{Geometry, Placing, Pose};
+use super::kinematics::{Geometry, Placing};
 use super::loads::Loads;
+use super::pose::Pose;
 use super::tree::Tree;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::subject::Subject;
@@ -42,7 +43,7 @@ pub(crate) fn predicted_mm(mut campaign: Campaign, arms: &[Placed], subjects: &[
             let stand = stands[row.arm][i];
             let asked_rad: Vec<f64> = row.pose_deg.iter().map(|a| a.to_radians()).collect();
             let own_rad = subjects[row.arm].turned_rad(&tree.pose_of(row.arm, &asked_rad));
-            let pose = Pose::new(tree.with_pose_of(row.arm, &own_rad, &asked_rad));
+            let pose = Pose::new(&tree.with_pose_of(row.arm, &own_rad, &asked_rad));
             geometry.base = Rotation3::from_matrix_unchecked(stand.rotation);
             geometry.origin_m = stand.origin_m;
             let placing = Placing { arm: row.arm, pose: &pose, point, station: 0 };

@@ -1,14 +1,14 @@
 //! Linearizes the model of positions: computes, for each sample, its weighted error and the derivatives of its position
 //! with respect to every number, and sums these up to the normal equations.
 //!
-//! A fit asks for these equations in every step, without further columns. [`normal_of_fit`] computes them for eight
+//! A fit asks for these equations in every step, without further columns. The columns of the model are computed for eight
 //! samples at a time.
 //!
 //! The computing time grows in proportion to the number of samples. The memory is small: the rows of the equations are
 //! computed in blocks, and only their products are kept. Many samples are divided into portions of fixed size, which
 //! threads share; the sums of the portions are added in their order.
 
-use super::fitted::{Fitted, Miss, Sample, by_arm, eights};
+use super::fitted::{Fitted, Miss, Sample, by_arm, eights, misses};
 use super::kinematics::{Number, Placer, Placing};
 use super::kinematics_lanes::{EightPlacer, Slope};
 use super::normal::Normal;
@@ -34,52 +34,6 @@ const HEIGHT: usize = 3 * (BLOCK + LANES);
 /// that the caller tests \[m per unit\]. These columns belong to no number of the model.
 pub(crate) type Further<'a> = &'a (dyn Fn(&Sample, &Placer, &mut Vec<Vector3<f64>>) + Sync);
 
-/// A model of positions, linearized about the values of its numbers.
-pub(crate) struct Linearized<'a> {
-    here: &'a Fitted,
-    numbers: &'a [Number],
-    placer: Placer<'a>,
-    from_level: Rotation3<f64>,
-    /// Derivatives of the position of the sample that was computed last, scaled by the root of its weight: first with
-    /// respect to the numbers of the geometry, then to the compliances, then the columns that the caller adds.
-    pub columns: Vec<Vector3<f64>>,
-}
-
-impl<'a> Linearized<'a> {
-    pub(crate) fn new(here: &'a Fitted, numbers: &'a [Number]) -> Self {
-        let placer = here.geometry.placer();
-        let from_level = here.geometry.level_to_instrument();
-        Self { here, numbers, placer, from_level, columns: Vec::new() }
-    }
-
-    /// Computes the columns of a sample (the derivatives of its position), and returns its error. Both are multiplied
-    /// by the root of the sample's weight, so that their products contain the weight. `further` adds columns.
-    pub(crate) fn at(&mut self, sample: &Sample, further: Further) -> Vector3<f64> {
-        let here = self.here;
-        let at_m = self.placer.place_m(sample.placing());
-        let miss = sample
-            .miss(&sample.error(at_m + self.from_level * here.displacement(sample) + here.drifted_m(sample)));
-        self.columns.clear();
-        self.placer.slopes(sample.placing(), self.numbers, &mut self.columns);
-        for (column, number) in self.columns.iter_mut().zip(self.numbers) {
-            if let Some(by) = slope_beyond_geometry(here, &self.from_level, sample, number) {
-                *column = by;
-            }
-        }
-        for &effect in &here.effects {
-            sample.deflection.per_compliance(effect, &here.geometry.gravity, |by| {
-                self.columns.push(self.from_level * by);
-            });
-        }
-        further(sample, &self.placer, &mut self.columns);
-        // products of rows that are scaled by the root of the weight contain the weight
-        let root = here.weight(&miss).sqrt();
-        let scales = sample.precision * root;
-        self.columns.iter_mut().for_each(|column| column.component_mul_assign(&scales));
-        miss.scaled_m * root
-    }
-}
-
 /// Derivative of a sample's position with respect to a number that does not act through the geometry, such as the direction
 /// of gravity \[m per unit\]; `None` for all other numbers.
 fn slope_beyond_geometry(
@@ -89,9 +43,7 @@ fn slope_beyond_geometry(
     number: &Number,
 ) -> Option<Vector3<f64>> {
     let by = match *number {
-        Number::Gravity(c) => {
-            Some(from_level * (here.leaning(sample, c) + sample.deflection.known_slopes_m[c]))
-        }
+        Number::Gravity(c) => Some(from_level * here.leaning_m(sample, c)),
         Number::Tolerance(k) | Number::Effect(k) => Some(from_level * sample.nominal_m[k]),
         Number::Drift(c) => Some(Vector3::ith(c, sample.part)),
         _ => None,
@@ -103,43 +55,93 @@ fn slope_beyond_geometry(
 /// Builds the normal equations of all samples, linearized about the model `here`. `further` adds columns that belong
 /// to no number of the model.
 pub(crate) fn normal(samples: &[&Sample], numbers: &[Number], here: &Fitted, further: Further) -> Normal {
-    let portions = by_arm(samples);
-    let portions = portions.par_chunks(PORTION).map(|portion| {
-        let mut linearized = Linearized::new(here, numbers);
-        let mut products: Option<Products> = None;
-        for block in portion.chunks(BLOCK) {
-            for (k, &i) in block.iter().enumerate() {
-                let error = linearized.at(samples[i], further);
-                let columns = &linearized.columns;
-                products.get_or_insert_with(|| Products::new(columns.len())).put(k, columns, &error);
-            }
-            products.iter_mut().for_each(|p| p.add(block.len()));
-        }
-        products
-    });
-    let portions: Vec<Option<Products>> = portions.collect();
-    joined(portions.into_iter().flatten(), numbers, here)
+    sums(samples, &misses(samples, here), numbers, here, Some(further)).into_normal(numbers, here)
 }
 
 /// Builds the normal equations of a fit, without further columns. `misses` are the errors of the samples with the model
-/// `here`. The result has the same bits as that of [`normal`], but eight samples are computed at a time.
+/// `here`.
 pub(crate) fn normal_of_fit(
     samples: &[&Sample],
     misses: &[Miss],
     numbers: &[Number],
     here: &Fitted,
 ) -> Normal {
+    sums(samples, misses, numbers, here, None).into_normal(numbers, here)
+}
+
+/// Calls `each` for each block of the samples, in their order, with the rows of its equations and their right-hand sides:
+/// those of x, y and z of the first sample, then of the second, and so on. The columns are those of `numbers`, then those of
+/// the compliances of the model `here`.
+pub(super) fn in_blocks(
+    samples: &[&Sample],
+    numbers: &[Number],
+    here: &Fitted,
+    mut each: impl FnMut(&[&Sample], &DMatrix<f64>, &DMatrix<f64>),
+) {
+    let misses = misses(samples, here);
+    let order: Vec<usize> = (0..samples.len()).collect();
+    let mut products = Products::new(width(numbers, here));
+    let mut rows = EightRows::new(here, numbers);
+    for block in order.chunks(BLOCK) {
+        rows.put_block(block, samples, &misses, &mut products);
+        each(&samples[block[0]..][..block.len()], &products.rows, &products.right);
+    }
+}
+
+/// For each of the `folds` of all samples, the equations of [`normal_of_fit`] without this fold.
+pub(super) fn normals_without(folds: &[Vec<&Sample>], numbers: &[Number], here: &Fitted) -> Vec<Normal> {
+    let of_fold = |fold: &Vec<&Sample>| sums(fold, &misses(fold, here), numbers, here, None);
+    let of_folds: Vec<Products> = folds.iter().map(of_fold).collect();
+    let without = |gone: usize| {
+        let rest = of_folds.iter().enumerate().filter(|(fold, _)| *fold != gone);
+        let mut all = Products::new(width(numbers, here));
+        rest.for_each(|(_, own)| all.join(own));
+        all.into_normal(numbers, here)
+    };
+    (0..folds.len()).map(without).collect()
+}
+
+/// The equations `normal` of a fit with the part `part` of the curvature that the readings give it. The priors stay.
+pub(super) fn with_part(normal: &Normal, part: f64, numbers: &[Number], here: &Fitted) -> Normal {
+    let mut curvature = &normal.curvature * part;
+    for (i, (precision, _)) in precisions(numbers, here).enumerate() {
+        curvature[(i, i)] += (1.0 - part) * precision;
+    }
+    Normal { curvature, gradient: normal.gradient.clone(), own: normal.own }
+}
+
+/// The precision of the prior of each number and compliance of the model `here`, with how far it is from the prior's mean.
+fn precisions<'a>(numbers: &'a [Number], here: &'a Fitted) -> impl Iterator<Item = (f64, f64)> + 'a {
+    let priors = numbers.iter().map(Number::prior).zip(here.moved.iter().copied());
+    // a weak prior keeps the equations regular for a compliance that no weight loads
+    let compliances = here.compliances.iter().flatten().map(|c| (PRIOR_RAD_PER_NM, *c));
+    priors.chain(compliances).map(|(prior, moved)| (prior.powi(-2), moved))
+}
+
+/// The sums of the products of the equations of a fit, with `further` columns.
+fn sums(
+    samples: &[&Sample],
+    misses: &[Miss],
+    numbers: &[Number],
+    here: &Fitted,
+    further: Option<Further>,
+) -> Products {
+    let count = further.zip(samples.first()).map_or(0, |(further, sample)| {
+        let mut placer = here.geometry.placer();
+        placer.place_m(sample.placing());
+        let mut columns = Vec::new();
+        further(sample, &placer, &mut columns);
+        columns.len()
+    });
     let portions = by_arm(samples);
     let portions = portions.par_chunks(PORTION).map(|portion| {
-        let mut products = Products::new(width(numbers, here));
+        let mut products = Products::new(width(numbers, here) + count);
         let mut rows = EightRows::new(here, numbers);
         for block in portion.chunks(BLOCK) {
-            let mut first = 0;
-            for eight in eights(block, samples) {
-                let own: Vec<(&Sample, &Miss)> = eight.iter().map(|&i| (samples[i], &misses[i])).collect();
-                rows.put(&own, first, &mut products);
-                first += eight.len();
-            }
+            rows.put_block(block, samples, misses, &mut products);
+            further
+                .iter()
+                .for_each(|further| rows.put_further(block, samples, misses, further, &mut products));
             products.add(block.len());
         }
         products
@@ -153,14 +155,13 @@ fn width(numbers: &[Number], here: &Fitted) -> usize {
     numbers.len() + here.compliances.iter().map(Vec::len).sum::<usize>()
 }
 
-/// The normal equations with the sums of all portions, added in their order.
-fn joined(portions: impl Iterator<Item = Products>, numbers: &[Number], here: &Fitted) -> Normal {
+/// The sums of all portions, added in their order.
+fn joined(portions: impl Iterator<Item = Products>, numbers: &[Number], here: &Fitted) -> Products {
     let sums = portions.reduce(|mut sums, portion| {
-        sums.curvature += portion.curvature;
-        sums.gradient += portion.gradient;
+        sums.join(&portion);
         sums
     });
-    sums.unwrap_or_else(|| Products::new(width(numbers, here))).into_normal(numbers, here)
+    sums.unwrap_or_else(|| Products::new(width(numbers, here)))
 }
 
 /// Computes the rows of the equations for up to eight samples of one arm at a time.
@@ -168,6 +169,9 @@ struct EightRows<'a> {
     here: &'a Fitted,
     numbers: &'a [Number],
     placer: EightPlacer<'a>,
+    /// Places one sample at a time, for further columns, which are stored here.
+    single: Placer<'a>,
+    columns: Vec<Vector3<f64>>,
     from_level: Rotation3<f64>,
     /// For each arm, its derivatives with respect to the numbers, prepared for eight points at a time.
     slopes: Vec<Vec<Slope>>,
@@ -184,7 +188,41 @@ impl<'a> EightRows<'a> {
             from_level: here.geometry.level_to_instrument(),
             slopes: (0..here.geometry.arms()).map(|arm| placer.prepare(arm, numbers)).collect(),
             placer,
+            single: here.geometry.placer(),
+            columns: Vec::new(),
             beyond_geometry: (0..numbers.len()).filter(|&j| numbers[j].acts_beyond_geometry()).collect(),
+        }
+    }
+
+    /// Stores the rows of those samples that have the indices `block` in the present block of `products`.
+    fn put_block(&mut self, block: &[usize], samples: &[&Sample], misses: &[Miss], products: &mut Products) {
+        let mut first = 0;
+        for eight in eights(block, samples) {
+            let own: Vec<(&Sample, &Miss)> = eight.iter().map(|&i| (samples[i], &misses[i])).collect();
+            self.put(&own, first, products);
+            first += eight.len();
+        }
+    }
+
+    /// Stores the columns that `further` adds for the same samples, behind those of the model.
+    fn put_further(
+        &mut self,
+        block: &[usize],
+        samples: &[&Sample],
+        misses: &[Miss],
+        further: Further,
+        products: &mut Products,
+    ) {
+        let first = width(self.numbers, self.here);
+        for (k, &i) in block.iter().enumerate() {
+            self.single.place_m(samples[i].placing());
+            self.columns.clear();
+            further(samples[i], &self.single, &mut self.columns);
+            let scales = samples[i].precision * self.here.weight(&misses[i]).sqrt();
+            for (j, column) in self.columns.iter().enumerate() {
+                let mut to = products.rows.fixed_view_mut::<3, 1>(3 * k, first + j);
+                to.copy_from(&column.component_mul(&scales));
+            }
         }
     }
 
@@ -209,8 +247,8 @@ impl<'a> EightRows<'a> {
         }
     }
 
-    /// Stores the derivatives of one sample that do not follow from the geometry: those with respect to all
-    /// compliances, and to the numbers in `beyond_geometry`.
+    /// Stores the derivatives of one sample that do not follow from the geometry: those with respect to all compliances
+    /// and to the numbers in `beyond_geometry`.
     fn put_beyond_geometry(&self, sample: &Sample, scales: &Vector3<f64>, k: usize, products: &mut Products) {
         let mut store = |j: usize, by: Vector3<f64>| {
             products.rows.fixed_view_mut::<3, 1>(3 * k, j).copy_from(&by.component_mul(scales));
@@ -219,11 +257,10 @@ impl<'a> EightRows<'a> {
             let by = slope_beyond_geometry(self.here, &self.from_level, sample, &self.numbers[j]);
             by.into_iter().for_each(|by| store(j, by));
         }
-        let mut j = self.numbers.len();
+        let mut columns = self.numbers.len()..;
         for &effect in &self.here.effects {
             sample.deflection.per_compliance(effect, &self.here.geometry.gravity, |by| {
-                store(j, self.from_level * by);
-                j += 1;
+                columns.next().into_iter().for_each(|j| store(j, self.from_level * by));
             });
         }
     }
@@ -248,12 +285,9 @@ impl Products {
         }
     }
 
-    /// Stores the three rows of a sample (x, y, z) in the present block, as the block's sample number `k`.
-    fn put(&mut self, k: usize, columns: &[Vector3<f64>], error: &Vector3<f64>) {
-        for (j, column) in columns.iter().enumerate() {
-            self.rows.fixed_view_mut::<3, 1>(3 * k, j).copy_from(column);
-        }
-        self.right.fixed_view_mut::<3, 1>(3 * k, 0).copy_from(error);
+    fn join(&mut self, other: &Self) {
+        self.curvature += &other.curvature;
+        self.gradient += &other.gradient;
     }
 
     /// Adds the products of the present block, which has `samples` samples, to the sums. Columns that are zero in the
@@ -290,11 +324,7 @@ impl Products {
     /// The normal equations of the model `here` with these sums and with its priors.
     fn into_normal(self, numbers: &[Number], here: &Fitted) -> Normal {
         let (mut curvature, mut gradient) = self.into_whole();
-        let priors = numbers.iter().map(Number::prior).zip(&here.moved);
-        // a weak prior keeps the equations regular for a compliance that no weight loads
-        let compliances = here.compliances.iter().flatten().map(|c| (PRIOR_RAD_PER_NM, c));
-        for (i, (prior, moved)) in priors.chain(compliances).enumerate() {
-            let precision = prior.powi(-2);
+        for (i, (precision, moved)) in precisions(numbers, here).enumerate() {
             curvature[(i, i)] += precision;
             gradient[i] -= precision * moved;
         }
@@ -308,14 +338,29 @@ mod tests {
     use crate::arm::file::read_arm_document;
     use crate::catalog::Catalogs;
     use crate::input::json::Document;
-    use crate::reconcile::positions::fitted::misses;
-    use crate::reconcile::positions::kinematics::{Geometry, Pose, testing::ARM};
-    use crate::reconcile::positions::loads::Deflection;
+    use crate::mechanics::tip::UnitRotation;
+    use crate::reconcile::positions::deflection::{Deflection, Slot};
+    use crate::reconcile::positions::fit::ln_likelihood;
+    use crate::reconcile::positions::kinematics::{Geometry, testing::ARM};
+    use crate::reconcile::positions::pose::Pose;
+    use crate::reconcile::positions::shape::Shape;
     use crate::reconcile::positions::tree::Tree;
     use crate::reconcile::readings::campaign::{Campaign, read_statement};
     use rand_xoshiro::Xoshiro256PlusPlus;
     use rand_xoshiro::rand_core::{Rng, SeedableRng};
     use std::sync::Arc;
+
+    impl Fitted {
+        /// The equations without the priors of `numbers`.
+        fn without_priors(&self, numbers: &[Number], all: &Normal) -> Normal {
+            let (mut curvature, mut gradient) = (all.curvature.clone(), all.gradient.clone());
+            for (i, (precision, moved)) in precisions(numbers, self).enumerate() {
+                curvature[(i, i)] -= precision;
+                gradient[i] += precision * moved;
+            }
+            Normal { curvature, gradient, own: all.own }
+        }
+    }
 
     /// Eleven samples of the arm of the tests, each in a pose of its own.
     fn eleven() -> (Geometry, Vec<Sample>) {
@@ -327,7 +372,7 @@ mod tests {
             read_arm_document(Document::parse("a", ARM).expect("JSON"), &Catalogs::default()).expect("sound");
         let campaign = Campaign::of_positions(&statement, &[&arm], Vec::new()).expect("one trunk");
         let sample = |k: usize| Sample {
-            pose: Arc::new(Pose::new(vec![0.3 * k as f64 - 1.0, 0.9 - 0.2 * k as f64])),
+            pose: Pose::new(&[0.3 * k as f64 - 1.0, 0.9 - 0.2 * k as f64]),
             arm: 0,
             point: 0,
             station: 0,
@@ -344,7 +389,7 @@ mod tests {
     }
 
     #[test]
-    fn equations_of_eight_samples_at_a_time_have_the_bits_of_each_alone() {
+    fn equations_of_eight_samples_at_a_time_are_those_of_each_alone() {
         let (mut geometry, samples) = eleven();
         let drift = (0..3).map(Number::Drift);
         let numbers: Vec<Number> = (0..3).map(Number::BaseRotation).chain(drift.clone()).collect();
@@ -353,16 +398,83 @@ mod tests {
         here.moved = vec![0.1; numbers.len()];
         let samples: Vec<&Sample> = samples.iter().collect();
         let drifted = misses(&samples, &here);
-        let [alone, eight] = [
-            normal(&samples, &numbers, &here, &|_, _, _| {}),
-            normal_of_fit(&samples, &drifted, &numbers, &here),
-        ];
-        assert_eq!((&alone.curvature, &alone.gradient), (&eight.curvature, &eight.gradient));
-        // without the drift, the error of each row changes by its fraction of the drift
+        // the same columns twice: by eight samples, and as further columns by each sample alone
+        let found = normal(&samples, &numbers, &here, &|sample, placer, columns| {
+            let from = columns.len();
+            placer.slopes(sample.placing(), &numbers, columns);
+            let from_level = here.geometry.level_to_instrument();
+            for (column, number) in columns[from..].iter_mut().zip(&numbers) {
+                let by = slope_beyond_geometry(&here, &from_level, sample, number);
+                by.into_iter().for_each(|by| *column = by);
+            }
+        });
+        let eight = normal_of_fit(&samples, &drifted, &numbers, &here);
+        let alone = here.without_priors(&numbers, &eight);
+        let count = numbers.len();
+        let further = found.curvature.view((count, count), (count, count)).into_owned();
+        assert!((further - &alone.curvature).amax() < 1e-12 * alone.curvature.amax());
+        let further = found.gradient.rows(count, count).into_owned();
+        assert!((further - &alone.gradient).amax() < 1e-12 * alone.gradient.amax());
+        // without the drift each row is off by its part of it
         here.geometry.step(&drift.collect::<Vec<_>>(), &[-0.04, -0.05, -0.06]);
         for (k, (with, without)) in drifted.iter().zip(misses(&samples, &here)).enumerate() {
             let moved_m = Vector3::new(0.04, 0.025, 0.06) * (0.1 * k as f64);
             assert!((without.scaled_m - with.scaled_m - moved_m).norm() < 1e-15, "{k}");
+        }
+    }
+
+    /// A deflection by a spring and by the shapes `others` about the same axis, in the direction of gravity and across it.
+    fn deflection(k: usize, others: &[Shape]) -> Deflection {
+        let angle = 0.7 * k as f64;
+        let rotation = UnitRotation {
+            motion_m: Vector3::new(0.4 * angle.cos(), -0.3, 0.5 + 0.2 * angle.sin()),
+            pull_nm: Vector3::new(20.0, 30.0 * angle.cos(), 40.0 * angle.sin() - 15.0),
+        };
+        let shapes = [Shape::Spring].into_iter().chain(others.iter().copied());
+        let slot = |shape| Slot { first: 0, rotations: 1, compliances: 1, shape, driven: 0 };
+        Deflection {
+            known_slopes_m: [Vector3::new(1e-3, 2e-3, angle * 1e-3), Vector3::new(-1e-3, angle * 2e-3, 0.0)],
+            rotations: Arc::new([rotation]),
+            slots: shapes.map(slot).collect(),
+            ..Deflection::known(Vector3::new(0.0, 0.0, -1e-3 * k as f64))
+        }
+    }
+
+    #[test]
+    fn the_gradient_is_that_of_the_likelihood_and_of_the_priors() {
+        let (mut geometry, mut samples) = eleven();
+        for (k, sample) in samples.iter_mut().enumerate() {
+            sample.deflection = Arc::new(deflection(k, &[Shape::Play(12.0), Shape::Lift(11.0)]));
+        }
+        geometry.step(&(0..3).map(Number::BaseRotation).collect::<Vec<_>>(), &[0.2, -0.1, 0.3]);
+        let numbers: Vec<Number> = (0..2)
+            .map(Number::Gravity)
+            .chain([Number::Zero(0), Number::Drift(1), Number::BasePosition(2)])
+            .collect();
+        geometry.step(&numbers, &[0.02, -0.03, 0.1, 0.05, 0.2]);
+        let mut here = Fitted::rigid(geometry, 0.2);
+        here.moved = vec![0.003; numbers.len()];
+        (here.effects, here.compliances) = (vec![0, 1, 2], vec![vec![2e-3], vec![0.04], vec![1e-3]]);
+        let samples: Vec<&Sample> = samples.iter().collect();
+        let found = normal_of_fit(&samples, &misses(&samples, &here), &numbers, &here).gradient;
+        let value = |j: usize, by: f64| {
+            let mut moved = here.clone();
+            match numbers.get(j) {
+                Some(number) => {
+                    moved.geometry.step(std::slice::from_ref(number), &[by]);
+                    moved.moved[j] += by;
+                }
+                None => moved.compliances[j - numbers.len()][0] += by,
+            }
+            let compliances = moved.compliances.iter().flatten();
+            let improbable: f64 = compliances.map(|c| 0.5 * (c / PRIOR_RAD_PER_NM).powi(2)).sum();
+            ln_likelihood(&misses(&samples, &moved), here.scale_m)
+                - moved.improbability(&numbers)
+                - improbable
+        };
+        for (j, found) in found.iter().enumerate() {
+            let difference = (value(j, 1e-6) - value(j, -1e-6)) / 2e-6;
+            assert!((difference / found - 1.0).abs() < 1e-5, "{j}: {difference} {found}");
         }
     }
 
@@ -380,9 +492,8 @@ mod tests {
             let count = BLOCK.min(samples - first);
             for k in 0..count {
                 let three = 3 * (first + k);
-                let columns: Vec<Vector3<f64>> =
-                    (0..width).map(|j| rows.fixed_view::<3, 1>(three, j).into_owned()).collect();
-                products.put(k, &columns, &errors.fixed_rows::<3>(three).into_owned());
+                products.rows.rows_mut(3 * k, 3).copy_from(&rows.rows(three, 3));
+                products.right.rows_mut(3 * k, 3).copy_from(&errors.rows(three, 3));
             }
             products.add(count);
         }

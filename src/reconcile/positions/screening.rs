@@ -14,9 +14,9 @@
 
 use super::align::align;
 use super::analysis::Positions;
+use super::deflection::Deflection;
 use super::fitted::{Fitted, Sample, readings};
 use super::kinematics::number_groups;
-use super::loads::Deflection;
 use super::transmission::EFFECT as TRANSMISSION;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::rows::PositionRow;
@@ -112,6 +112,7 @@ impl Positions {
             stages: Vec::new(),
             candidates: self.candidates.clone(),
             considered: self.considered.clone(),
+            considers_transmissions: self.considers_transmissions,
             fitted: self.fitted.clone(),
             rigid: self.rigid.clone(),
             gross: Vec::new(),

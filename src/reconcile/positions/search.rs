@@ -3,7 +3,7 @@
 //! number of places examined. A candidate whose gain exceeds its price stays if held-out poses confirm it.
 
 use super::analysis::Positions;
-use super::fit::{fit, ln_likelihood, scale};
+use super::fit::{fit, likeliest, ln_likelihood, scale};
 use super::fitted::{Fitted, Miss, Sample, readings};
 use super::normal::Factor;
 use super::rows::{Further, normal};
@@ -90,9 +90,11 @@ impl Positions {
 
     /// The part of the rise of the logarithm of the likelihood from this model to `next` that is due to chance. With
     /// few readings the likelihood rises with every further number by chance. This part is subtracted for the first
-    /// effect only, because the first effect decides whether anything is missing at all; for others it is 0.
+    /// effect only, because the first effect decides whether anything is missing at all; for others it is 0. A mass or a
+    /// modulus on which the nominal deflection depends counts as an effect too.
     fn untelling_rise(&self, next: &Self) -> f64 {
-        if !self.fitted.effects.is_empty() || !self.transmissions.is_empty() {
+        let is_without = self.fitted.effects.is_empty() && self.named_dependences.is_empty();
+        if !is_without || !self.transmissions.is_empty() {
             return 0.0;
         }
         let count =
@@ -242,7 +244,10 @@ impl Positions {
         let gains = springs;
         let models = gains.into_iter().flat_map(|(c, _)| self.with(base, c).into_iter().map(move |m| (c, m)));
         let models: Vec<(usize, Vec<usize>)> = models.collect();
-        models.into_par_iter().map(|(c, effects)| (c, fit(&all, &self.numbers, &effects, base))).collect()
+        models
+            .into_par_iter()
+            .map(|(c, effects)| (c, likeliest(&all, &self.numbers, &effects, base)))
+            .collect()
     }
 
     /// The rise of the logarithm of the likelihood that makes the candidate `added` worth adding to the model `base`.
@@ -327,7 +332,7 @@ impl Positions {
         let all: Vec<&Sample> = self.samples.iter().collect();
         let own = self.fitted.effects[position];
         let rest: Vec<usize> = self.fitted.effects.iter().copied().filter(|e| *e != own).collect();
-        fit(&all, &self.numbers, &rest, &self.fitted)
+        likeliest(&all, &self.numbers, &rest, &self.fitted)
     }
 
     /// Candidates that compete with effect number `position` of the model: they have no more parameters and fit as

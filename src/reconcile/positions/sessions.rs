@@ -18,18 +18,22 @@
 
 use super::analysis::Positions;
 use super::fit::fit;
-use super::fitted::{Fitted, Sample, readings};
+use super::fitted::{Fitted, Sample, misses, readings};
 use super::kinematics::Number;
 use super::moved::{Boundary, Kind, Moved};
 use super::normal::Factor;
 use super::points::Point;
-use super::rows::{Linearized, normal};
+use super::rows::{in_blocks, normal_of_fit};
 use super::structure::squares;
-use nalgebra::{DMatrix, DVector, Vector3};
+use crate::mechanics::product::Panels;
+use nalgebra::{Cholesky, DMatrix, DVector};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Smallest number of positions that a session must have on either side of its boundary.
 const FEWEST_PER_SIDE: usize = 5;
+/// A matrix is regular if the smallest entry on the diagonal of its Cholesky factor is more than this times the largest.
+const REGULAR: f64 = 0.01;
 /// Largest number of sessions that are found, beyond the first.
 const MOST_SESSIONS: usize = 6;
 
@@ -113,7 +117,7 @@ impl Positions {
 
     pub(super) fn whole(&self) -> Option<Whole> {
         let all: Vec<&Sample> = self.samples.iter().collect();
-        let normal = normal(&all, &self.numbers, &self.fitted, &|_, _, _| {});
+        let normal = normal_of_fit(&all, &misses(&all, &self.fitted), &self.numbers, &self.fitted);
         let own: Vec<usize> = (0..normal.own).collect();
         Some(Whole { factor: Factor::new(&normal.curvature, &own)?, gradient: normal.gradient })
     }
@@ -122,24 +126,26 @@ impl Positions {
     /// the logarithm of the likelihood that the linearized model expects. `None` if no row has enough rows before and
     /// after it.
     pub(super) fn best_first(&self, moved: Moved, whole: &Whole) -> Option<(usize, f64)> {
-        let rows = self.samples.iter().filter(|s| moved.has(s)).count();
-        let inside = FEWEST_PER_SIDE..rows.saturating_sub(FEWEST_PER_SIDE);
-        let own = moved.numbers();
-        let mut linearized = Linearized::new(&self.fitted, &self.numbers);
-        let mut earlier = Earlier::new(whole, own.len());
+        let rows: Vec<&Sample> = self.samples.iter().filter(|s| moved.has(s)).collect();
+        let inside = FEWEST_PER_SIDE..rows.len().saturating_sub(FEWEST_PER_SIDE);
+        let numbers = [self.numbers.as_slice(), &moved.numbers()].concat();
+        let offset = self.numbers.len()..numbers.len();
+        let mut earlier = Earlier::new(whole, offset);
         let mut best: Option<(usize, f64)> = None;
-        for (at, sample) in self.samples.iter().filter(|s| moved.has(s)).enumerate().take(inside.end) {
-            if inside.contains(&at) {
-                let gain = earlier.gain();
-                if best.is_none_or(|(_, most)| gain >= most) {
-                    best = Some((sample.index, gain));
+        let mut at = 0;
+        in_blocks(&rows[..inside.end], &numbers, &self.fitted, |block, slopes, errors| {
+            let whitened = earlier.whitened(slopes);
+            for (k, sample) in block.iter().enumerate() {
+                if inside.contains(&at) {
+                    let gain = earlier.gain();
+                    if best.is_none_or(|(_, most)| gain >= most) {
+                        best = Some((sample.index, gain));
+                    }
                 }
+                earlier.add(3 * k, &whitened, slopes, errors);
+                at += 1;
             }
-            let error = linearized.at(sample, &|sample, placer, columns| {
-                placer.slopes(sample.placing(), &own, columns);
-            });
-            earlier.add(&linearized.columns, &error);
-        }
+        });
         best
     }
 
@@ -209,51 +215,51 @@ fn determined(fitted: &Fitted, numbers: &[Number]) -> f64 {
     free.sum::<f64>() + fitted.compliances.iter().map(Vec::len).sum::<usize>() as f64
 }
 
-/// Sums over the rows before some row. From the sums follows the gain of the likelihood if these rows get an offset (a
-/// placement) of their own.
-struct Earlier<'a> {
-    factor: &'a Factor,
-    /// Derivatives of the logarithm of the posterior density of all rows with respect to the model's numbers,
-    /// multiplied by the whitening factor `W`.
+/// Sums over the rows before some row. They give the gain if these rows had an offset (a placement) of their own.
+struct Earlier {
+    /// The whitening factor `W`, with a column of zeros for each number of the offset. A product with the transpose of the
+    /// slopes whitens those of the model's numbers.
+    whitening: Panels,
+    /// Indices of the columns of the slopes that belong to the offset.
+    columns: Range<usize>,
+    /// Derivatives of the logarithm of the likelihood of all rows with respect to the model's numbers, multiplied by
+    /// the whitening factor `W`.
     gradient: DVector<f64>,
-    /// Derivatives of a row's position with respect to the model's numbers, multiplied by `W`. The next field,
-    /// `offset`, has the derivatives with respect to the offset.
-    model: DMatrix<f64>,
-    offset: DMatrix<f64>,
     cross: DMatrix<f64>,
     curvature: DMatrix<f64>,
     slope: DVector<f64>,
 }
 
-impl<'a> Earlier<'a> {
-    /// Sums over no rows, for an offset that has `width` numbers.
-    fn new(whole: &'a Whole, width: usize) -> Self {
-        let numbers = whole.gradient.len();
+impl Earlier {
+    /// Sums over no rows, for an offset whose numbers have the columns `columns` of the slopes.
+    fn new(whole: &Whole, columns: Range<usize>) -> Self {
+        let (numbers, width) = (whole.gradient.len(), columns.len());
         let mut gradient = DMatrix::from_columns(std::slice::from_ref(&whole.gradient));
         whole.factor.whiten(&mut gradient);
+        let mut whitening = DMatrix::identity(numbers, numbers);
+        whole.factor.whiten(&mut whitening);
         Self {
-            factor: &whole.factor,
+            whitening: Panels::of_rows(&whitening.insert_columns(columns.start, width, 0.0)),
+            columns,
             gradient: gradient.column(0).into_owned(),
-            model: DMatrix::zeros(numbers, 3),
-            offset: DMatrix::zeros(3, width),
             cross: DMatrix::zeros(numbers, width),
             curvature: DMatrix::zeros(width, width),
             slope: DVector::zeros(width),
         }
     }
 
-    /// Adds the equations of one row to the sums. `columns` are the derivatives of its position: first with respect
-    /// to the model's numbers, then to the offset.
-    fn add(&mut self, columns: &[Vector3<f64>], error: &Vector3<f64>) {
-        let (model, offset) = columns.split_at(self.model.nrows());
-        for c in 0..3 {
-            self.model.column_mut(c).iter_mut().zip(model).for_each(|(to, column)| *to = column[c]);
-            self.offset.row_mut(c).iter_mut().zip(offset).for_each(|(to, column)| *to = column[c]);
-        }
-        self.factor.whiten(&mut self.model);
-        self.cross.gemm(1.0, &self.model, &self.offset, 1.0);
-        self.curvature.gemm_tr(1.0, &self.offset, &self.offset, 1.0);
-        self.slope.gemv_tr(1.0, &self.offset, error, 1.0);
+    /// The derivatives `slopes` with respect to the model's numbers, multiplied by `W`: a column for each row of `slopes`.
+    fn whitened(&self, slopes: &DMatrix<f64>) -> DMatrix<f64> {
+        self.whitening.times(slopes.transpose().as_view())
+    }
+
+    /// Adds the equations of one position to the sums. They are three rows of `slopes` and `errors`, and columns of
+    /// `whitened`, from `first` on.
+    fn add(&mut self, first: usize, whitened: &DMatrix<f64>, slopes: &DMatrix<f64>, errors: &DMatrix<f64>) {
+        let offset = slopes.view((first, self.columns.start), (3, self.columns.len()));
+        self.cross.gemm(1.0, &whitened.columns(first, 3), &offset, 1.0);
+        self.curvature.gemm_tr(1.0, &offset, &offset, 1.0);
+        self.slope.gemv_tr(1.0, &offset, &errors.fixed_view::<3, 1>(first, 0), 1.0);
     }
 
     /// Rise of the logarithm of the likelihood, by the linearized model, if the rows added so far had an offset of
@@ -261,13 +267,21 @@ impl<'a> Earlier<'a> {
     fn gain(&self) -> f64 {
         let left = &self.curvature - self.cross.tr_mul(&self.cross);
         let gradient = &self.slope - self.cross.tr_mul(&self.gradient);
-        0.5 * squares(&left, &gradient).0
+        0.5 * regular_square(&left, &gradient).unwrap_or_else(|| squares(&left, &gradient).0)
     }
+}
+
+/// The statistic `bᵀ S⁻¹ b`; `None` if the matrix is singular, or nearly so.
+fn regular_square(s: &DMatrix<f64>, b: &DVector<f64>) -> Option<f64> {
+    let factor = Cholesky::new(s.clone())?;
+    let pivots = factor.l_dirty().diagonal();
+    (pivots.min() > REGULAR * pivots.max()).then(|| b.dot(&factor.solve(b)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Vector3;
     use rand_xoshiro::Xoshiro256PlusPlus;
     use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
@@ -303,13 +317,16 @@ mod tests {
             let all: Vec<usize> = (0..NUMBERS).collect();
             let factor = Factor::new(&x.tr_mul(&x), &all).expect("regular");
             let whole = Whole { factor, gradient: x.tr_mul(&e) };
-            let mut earlier = Earlier::new(&whole, width);
-            for (first, (columns, error)) in rows.iter().enumerate() {
+            let mut earlier = Earlier::new(&whole, NUMBERS..NUMBERS + width);
+            let slopes = DMatrix::from_fn(3 * ROWS, NUMBERS + width, |r, j| rows[r / 3].0[j][r % 3]);
+            let errors = DMatrix::from_fn(3 * ROWS, 1, |r, _| rows[r / 3].1[r % 3]);
+            let whitened = earlier.whitened(&slopes);
+            for first in 0..ROWS {
                 if (FEWEST_PER_SIDE..ROWS - FEWEST_PER_SIDE).contains(&first) {
                     let (own, dense) = (earlier.gain(), dense_gain(&rows, width, first));
                     assert!((own - dense).abs() < 1e-9 * dense, "row {first}: {own} and {dense}");
                 }
-                earlier.add(columns, error);
+                earlier.add(3 * first, &whitened, &slopes, &errors);
             }
         }
     }

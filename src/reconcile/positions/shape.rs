@@ -70,6 +70,16 @@ impl Shape {
         self.threshold_nm().is_none()
     }
 
+    /// By how much a rotation grows with the torque `nm` about its axis, over the size of the effect: over its compliance,
+    /// or over its half width \[1/(N m)\]. Waves have this factor in addition to that of the angle.
+    pub(crate) fn slope_per_nm(self, nm: f64) -> f64 {
+        match self {
+            Shape::Play(scale_nm) => libm::cosh(nm / scale_nm).powi(-2) / scale_nm,
+            Shape::Lift(preload_nm) if nm.abs() <= preload_nm => 0.0,
+            Shape::Spring | Shape::Lift(_) | Shape::Waves(_) => 1.0,
+        }
+    }
+
     /// Indices of the compliance's waves among the four waves of an angle; `None` if it does not vary with the angle.
     pub(crate) fn waves(self) -> Option<Range<usize>> {
         match self {

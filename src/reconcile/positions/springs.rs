@@ -5,7 +5,7 @@
 //! compliance that would be negative is fixed at zero. The matrix of a frame is written as `L Lᵀ`, which is positive
 //! semidefinite for every `L`, and the quadratic function is minimized over the entries of `L` and all other numbers.
 
-use super::loads::FRAME_ENTRIES;
+use super::deflection::FRAME_ENTRIES;
 use super::normal::{Factor, Normal};
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix2, Matrix3, Vector2};
 use std::ops::Range;
@@ -29,6 +29,8 @@ const LOWER: [(usize, usize); FRAME_ENTRIES.len()] = [(0, 0), (1, 0), (1, 1), (2
 pub(crate) struct ConstrainedStep {
     /// Change of each number of the model. The numbers of the geometry come first, then the compliances.
     pub step: Vec<f64>,
+    /// By how much the step lowers half of chi-squared.
+    pub fall: f64,
     /// Derivatives of the numbers of the model with respect to every free variable of the minimization.
     slopes: Vec<Slope>,
     /// The factorized curvature of half of chi-squared over the free variables.
@@ -120,7 +122,7 @@ pub(crate) fn best_springs(normal: &Normal, numbers: usize, now: &[Vec<f64>]) ->
         let mut best = parabola.best()?;
         // the value at the start is zero: if the descent from the projected compliances ends above it, it starts
         // again from the present compliances
-        if parabola.value(&best.step) > 0.0 {
+        if best.fall < 0.0 {
             parabola.frames_from_now();
             best = parabola.best()?;
         }
@@ -194,7 +196,7 @@ impl Parabola<'_> {
             // without frames, one step leads to the minimum, and the derivatives are the same everywhere
             let is_linear = !self.blocks.iter().any(|block| matches!(block, Block::Frame(_)));
             if is_linear {
-                return Some(ConstrainedStep { step, slopes, factor });
+                return Some(ConstrainedStep { fall: -self.value(&step), step, slopes, factor });
             }
             if !is_better || right.dot(&move_by) < SETTLED {
                 break;
@@ -202,7 +204,7 @@ impl Parabola<'_> {
         }
         let slopes = self.slopes();
         let factor = self.factor(&slopes)?;
-        Some(ConstrainedStep { step, slopes, factor })
+        Some(ConstrainedStep { fall: -self.value(&step), step, slopes, factor })
     }
 
     /// Sets the entries of `L` of every frame so that `L Lᵀ` is the frame's present compliance matrix, slightly

@@ -92,8 +92,8 @@ impl Positions {
     /// Ratio of the variance of the errors to the declared variance. It is estimated from the median length of an
     /// error, so that a few gross errors hardly change it.
     fn variance_ratio(&self, campaign: &Campaign) -> f64 {
-        let rows = campaign.positions.iter().zip(&self.samples);
-        let lengths = rows.map(|(row, s)| declared_length(row, &self.fitted.error(s)) / median_length(s));
+        let rows = campaign.positions.iter().zip(&self.samples).zip(self.errors_m());
+        let lengths = rows.map(|((row, s), error_m)| declared_length(row, &error_m) / median_length(s));
         let free = (self.numbers.len() + self.fitted.compliances.iter().map(Vec::len).sum::<usize>()) as f64;
         let count = readings(&self.samples) as f64;
         median(lengths.collect()).powi(2) * count / (count - free).max(1.0)
@@ -181,7 +181,7 @@ impl<'a> Asker<'a> {
         let from_level = self.found.fitted.geometry.level_to_instrument();
         for (j, &candidate) in self.driven.iter().enumerate() {
             let lever = from_level * sample.deflection.lever(candidate).0;
-            for wave in waves(sample.pose.angles_rad[j].to_degrees()) {
+            for wave in waves(sample.pose.turns()[j].rad.to_degrees()) {
                 out.extend(along(wave));
                 out.push(lever * wave);
             }

@@ -12,7 +12,9 @@
 //! the vertex of this parabola, and only the nearest thresholds on both sides are tried for the interval.
 
 use super::analysis::Positions;
-use super::fitted::Sample;
+use super::fit::{fit, likeliest};
+use super::fitted::{Fitted, Sample};
+use super::kinematics::Number;
 use crate::reconcile::model::estimate::{Estimate, RISE_AT_95};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -42,6 +44,9 @@ const FARTHEST: f64 = 3.0;
 /// Largest threshold that is tried, as a multiple of the largest torque. Play with a larger torque scale acts as a
 /// spring.
 const LARGEST_RATIO: f64 = 3.0;
+
+/// A fit, with standard deviations or without.
+type Fit = fn(&[&Sample], &[Number], &[usize], &Fitted) -> Fitted;
 
 /// The size of an effect and its likelihood for one value of its threshold.
 struct Tried {
@@ -75,6 +80,7 @@ impl Positions {
             };
             if best.fitted.ln_likelihood > self.fitted.ln_likelihood {
                 *self = best;
+                self.refit();
             }
         }
     }
@@ -82,7 +88,7 @@ impl Positions {
     /// The model with the best threshold of effect number `position`, by a golden section search between two logarithms
     /// of the threshold \[ln(N m)\].
     fn golden_section(&self, position: usize, mut low: f64, mut high: f64) -> Self {
-        let at = |ln: f64| (ln, self.with_threshold(position, libm::exp(ln)));
+        let at = |ln: f64| (ln, self.with_threshold(position, libm::exp(ln), likeliest));
         let is_better = |a: &Self, b: &Self| a.fitted.ln_likelihood > b.fitted.ln_likelihood;
         let mut left = at(high - GOLDEN * (high - low));
         let mut right = at(low + GOLDEN * (high - low));
@@ -104,13 +110,17 @@ impl Positions {
     /// three thresholds about `ln_nm` \[ln(N m)\], and then at the vertex of the parabola through these values. This is
     /// done for each width of [`WIDTHS`]. `high` is the largest logarithm of a threshold that is tried.
     fn at_the_vertex(&self, position: usize, mut ln_nm: f64, high: f64) -> Self {
-        let at = |ln: f64| self.with_threshold(position, libm::exp(ln));
+        let at = |ln: f64| self.with_threshold(position, libm::exp(ln), likeliest);
         let mut best = at(ln_nm);
         for width in WIDTHS {
-            let (below, above) = rayon::join(|| at(ln_nm - width), || at((ln_nm + width).min(high)));
-            let fits = [&below, &best, &above].map(|model| model.fitted.ln_likelihood);
-            let vertex = (ln_nm + width * vertex(fits).clamp(-FARTHEST, FARTHEST)).min(high);
-            let own = [(ln_nm - width, below), ((ln_nm + width).min(high), above), (vertex, at(vertex))];
+            // the upper point is nearer than the lower one if it would be above the largest threshold
+            let [lower, upper] = [ln_nm - width, (ln_nm + width).min(high)];
+            let (below, above) = rayon::join(|| at(lower), || at(upper));
+            let fits = [(lower, &below), (ln_nm, &best), (upper, &above)];
+            let moved = vertex(fits.map(|(ln, model)| (ln, model.fitted.ln_likelihood)));
+            let farthest = FARTHEST * width;
+            let vertex = (ln_nm + moved.clamp(-farthest, farthest)).min(high);
+            let own = [(lower, below), (upper, above), (vertex, at(vertex))];
             let better = |a: (f64, Self), b: (f64, Self)| {
                 if b.1.fitted.ln_likelihood > a.1.fitted.ln_likelihood { b } else { a }
             };
@@ -130,8 +140,8 @@ impl Positions {
         self.samples.iter().map(|s| s.deflection.torque_nm(own)).fold(0.0, f64::max)
     }
 
-    /// The model with another torque scale or preload of effect number `position` \[N m\], fitted again.
-    fn with_threshold(&self, position: usize, nm: f64) -> Self {
+    /// The model with another torque scale or preload of effect number `position` \[N m\], fitted again by `fit`.
+    fn with_threshold(&self, position: usize, nm: f64, fit: Fit) -> Self {
         let mut out = self.clone();
         let own = self.fitted.effects[position];
         out.candidates[own].shape = out.candidates[own].shape.with_threshold(nm);
@@ -142,7 +152,8 @@ impl Positions {
             slots.for_each(|slots| sample.deflection = Arc::new(sample.deflection.with_slots(slots)));
         };
         out.samples.iter_mut().for_each(changed);
-        out.refit();
+        let all: Vec<&Sample> = out.samples.iter().collect();
+        out.fitted = fit(&all, &out.numbers, &out.fitted.effects, &out.fitted);
         out
     }
 
@@ -153,7 +164,7 @@ impl Positions {
         let best_nm = self.threshold_nm(position)?;
         let (size, deviation) = (self.fitted.compliances[position][0], self.fitted.deviations[position][0]);
         let most_nm = LARGEST_RATIO * self.largest_torque_nm(position);
-        let fitted_deviation = self.with_threshold(position, best_nm).fitted.deviations[position][0];
+        let fitted_deviation = self.with_threshold(position, best_nm, fit).fitted.deviations[position][0];
         // compliances without a name widen the interval at every threshold by the same factor
         let widened = (deviation / fitted_deviation).max(1.0);
         let mut tried = vec![Tried { threshold_nm: best_nm, size, deviation, fall: 0.0 }];
@@ -196,7 +207,7 @@ impl Positions {
         // of the size
         let flatter = (widened * self.fitted.robust_factor).max(1.0).powi(2);
         let tried = thresholds_nm.into_par_iter().map(|threshold_nm| {
-            let other = self.with_threshold(position, threshold_nm).fitted;
+            let other = self.with_threshold(position, threshold_nm, fit).fitted;
             Tried {
                 threshold_nm,
                 size: other.compliances[position][0],
@@ -208,11 +219,18 @@ impl Positions {
     }
 }
 
-/// Position of the vertex of the parabola through three values at -1, 0 and 1. If the parabola has no maximum, the
-/// position is infinite, on the side of the larger value.
-fn vertex([left, middle, right]: [f64; 3]) -> f64 {
-    let bent = left - 2.0 * middle + right;
-    if bent < 0.0 { 0.5 * (left - right) / bent } else { f64::INFINITY.copysign(right - left) }
+/// Distance of the vertex of the parabola through three points (position and value) from the middle point. It is infinite
+/// if the values are not bent as about a maximum, or if the last two positions are the same.
+fn vertex([left, middle, right]: [(f64, f64); 3]) -> f64 {
+    let [before, after] = [middle.0 - left.0, right.0 - middle.0];
+    let rise = (middle.1 - left.1) / before;
+    if after <= 0.0 {
+        return f64::INFINITY.copysign(rise);
+    }
+    let further = (right.1 - middle.1) / after;
+    let bent = (further - rise) / (before + after);
+    let slope = (rise * after + further * before) / (before + after);
+    if bent < 0.0 { -0.5 * slope / bent } else { f64::INFINITY.copysign(right.1 - left.1) }
 }
 
 /// The threshold with its interval \[N m\]. An end of the interval lies between a threshold that is likely enough and
@@ -244,9 +262,12 @@ mod tests {
 
     #[test]
     fn the_vertex_of_a_parabola_is_found_from_three_of_its_values() {
-        let parabola = |x: f64| 3.0 - 2.0 * (x - 0.4).powi(2);
+        let parabola = |x: f64| (x, 3.0 - 2.0 * (x - 0.4).powi(2));
         assert!((vertex([-1.0, 0.0, 1.0].map(parabola)) - 0.4).abs() < 1e-12);
-        assert_eq!(vertex([3.0, 2.0, 1.0]), f64::NEG_INFINITY);
+        // the upper point is nearer where it would be above the largest threshold
+        assert!((vertex([-1.0, 0.0, 0.2].map(parabola)) - 0.4).abs() < 1e-12);
+        assert_eq!(vertex([(-1.0, 3.0), (0.0, 2.0), (1.0, 1.0)]), f64::NEG_INFINITY);
+        assert_eq!(vertex([(-1.0, 1.0), (0.0, 2.0), (0.0, 2.0)]), f64::INFINITY);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //! turn.
 
 use super::analysis::Positions;
-use super::fit::fit;
+use super::fit::likeliest;
 use super::fitted::{Fitted, Sample};
 use super::kinematics::Number;
 use super::search::{FULL_FITS, TIE};
@@ -23,10 +23,7 @@ pub(crate) fn numbers(joint: usize) -> impl Iterator<Item = Number> {
 impl Positions {
     /// The driven joint whose transmission error raises the likelihood most, with the gain of the likelihood beyond the
     /// price \[ln of the likelihood\], the index of the joint and the fit. `None` if no rise exceeds its price.
-    pub(super) fn best_transmission(&self, campaign: &Campaign) -> Option<(f64, (usize, Fitted))> {
-        if !campaign.statement.considers(EFFECT) {
-            return None;
-        }
+    pub(super) fn best_transmission(&self) -> Option<(f64, (usize, Fitted))> {
         let price = self.transmission_price();
         let tried = self.best_transmissions(price).into_iter();
         let gains = tried.map(|(j, f)| (f.ln_likelihood - self.fitted.ln_likelihood - price, (j, f)));
@@ -50,8 +47,11 @@ impl Positions {
 
     /// Fits in which one more joint has a transmission error, each with the index of this joint. All joints are
     /// screened with the linearized model, and the most promising are fitted in full, if they may raise the logarithm of the
-    /// likelihood by `asked`.
+    /// likelihood by `asked`. There are none if the campaign leaves this effect out.
     pub(super) fn best_transmissions(&self, asked: f64) -> Vec<(usize, Fitted)> {
+        if !self.considers_transmissions {
+            return Vec::new();
+        }
         let all: Vec<&Sample> = self.samples.iter().collect();
         let open: Vec<usize> =
             (0..self.tree.driven.len()).filter(|j| !self.transmissions.contains(j)).collect();
@@ -66,7 +66,7 @@ impl Positions {
         order.retain(|(_, gain)| self.may_rise(*gain, asked));
         let with = |(joint, _): (usize, f64)| {
             let all_numbers: Vec<Number> = self.numbers.iter().cloned().chain(numbers(joint)).collect();
-            (joint, fit(&all, &all_numbers, &self.fitted.effects, &self.fitted))
+            (joint, likeliest(&all, &all_numbers, &self.fitted.effects, &self.fitted))
         };
         order.into_par_iter().map(with).collect()
     }

@@ -25,7 +25,7 @@ impl Positions {
     /// transmission error. Adds it if the rise is worth its price and held-out poses confirm it. If a varying stiffness
     /// is not confirmed, the best transmission error is tried in its place. Returns whether one was added.
     pub(super) fn add_periodic(&mut self, campaign: &Campaign) -> bool {
-        let uneven = self.best_transmission(campaign);
+        let uneven = self.best_transmission();
         let base = &self.fitted;
         let varies = |c: usize| self.candidates[c].shape.waves().is_some();
         let tried = self.best_additions(base, varies, |c| self.required_rise(base, c)).into_iter();
