@@ -117,8 +117,9 @@ fn blanks_table(catalogs: &Catalogs) -> String {
 /// Number of parts whose names are listed in one line; further parts are only counted.
 const PARTS_NAMED: usize = 3;
 
-/// A list of the parts that `size` and `run` cannot choose because ratings are blank, grouped by file and by blank
-/// ratings. It also says which of these parts an arm file cannot name. It is empty if there are no such parts.
+/// A list of the parts that `size` and `run` cannot choose, and of the materials that no link can have, because ratings are
+/// blank, grouped by file and by blank ratings. It also says which of these parts an arm file cannot name. It is empty if
+/// there are no such parts.
 fn unchoosable(catalogs: &Catalogs) -> String {
     let mut by_lacks: BTreeMap<(String, String), Vec<(usize, &str)>> = BTreeMap::new();
     let mut add = |from: &Provenance, id, lacks: Vec<Lack>| {
@@ -146,6 +147,11 @@ fn unchoosable(catalogs: &Catalogs) -> String {
         .filter(|m| !catalogs.gears.iter().any(|g| g.kind == GearKind::Actuator && g.goes_with(m)))
     {
         add(&motor.provenance, motor.id.as_str(), motor.lacks());
+    }
+    for material in catalogs.materials.iter().filter(|material| material.shear_modulus_pa.is_none()) {
+        let Provenance { file, line, .. } = &material.provenance;
+        let why = "no link can be made of it: no g_pa (torsion and shear)";
+        by_lacks.entry((file.clone(), why.into())).or_default().push((*line, material.name.as_str()));
     }
     let lines = by_lacks.into_iter().map(|((file, lacks), mut parts)| {
         parts.sort_unstable();

@@ -3,7 +3,7 @@
 use super::keys::FIT;
 use crate::catalog::Catalogs;
 use crate::catalog::gear::GearMass;
-use crate::catalog::motor::MotorKind;
+use crate::catalog::motor::{Motor, MotorKind};
 use crate::input::json::{Node, Object};
 use crate::report::number::significant;
 use crate::sizing::fit::{FitRequirement, MotorPlace};
@@ -199,9 +199,16 @@ fn unknown_sizes(asking: &[&SpaceJoint], catalogs: &Catalogs) -> Option<String> 
         })
     });
     let (gears, motors) = (gears.count(), motors.count());
+    let all_gears =
+        catalogs.gears.iter().filter(|gear| by_any(asking, &|_, filter| filter.allows_gear(gear)));
+    let is_motor = |motor: &&Motor| motor.kind != MotorKind::OfActuator;
+    let all_motors = catalogs.motors.iter().filter(is_motor);
+    let all_motors = all_motors.filter(|motor| by_any(asking, &|_, filter| filter.allows_motor(motor)));
     let counts = format!(
-        "{gears} gears and {motors} motors that these joints may have lack a size in the catalogs, and that size is not \
-         checked."
+        "{gears} of the {} gears and {motors} of the {} motors that these joints may have lack a size in the catalogs, and that \
+         size is not checked.",
+        all_gears.count(),
+        all_motors.count()
     );
     (gears + motors > 0).then_some(counts)
 }
@@ -265,7 +272,7 @@ mod tests {
              and of the motor behind it at most 150.0 mm (shoulder); motor in the hollow of that link and no longer than it \
              (elbow)",
             "not compared with a link in elbow: there is none before the next joint",
-            "lack a size in the catalogs, and that size is not checked",
+            " motors that these joints may have lack a size in the catalogs, and that size is not checked",
             "Sizes that were recalled and not seen in a document count like others",
         ] {
             assert!(remarks.contains(words), "{words}\n{remarks}");

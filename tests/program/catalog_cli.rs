@@ -107,3 +107,13 @@ fn every_help_says_what_a_flag_does_and_gives_an_example() {
     );
     assert!(show.render_long_help().to_string().contains("armwright catalog show --part HFUC-58-100"));
 }
+
+#[test]
+fn a_material_without_a_shear_modulus_is_among_the_parts_that_cannot_be_used() {
+    let folder = tempfile::tempdir().expect("temporary folder");
+    let rows = "name,class,e_pa,density_kg_m3,source,confidence\nCast X,metal,1.1e11,7200,a test,verified\n";
+    std::fs::write(folder.path().join("materials.csv"), rows).expect("written");
+    let text = shown(&format!("check --catalogs {}", folder.path().display()));
+    let listed = text.split("cannot be used because a rating is blank").nth(1).expect("a list");
+    assert!(listed.contains("Cast X: no link can be made of it: no g_pa (torsion and shear)"), "{text}");
+}

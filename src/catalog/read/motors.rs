@@ -40,6 +40,45 @@ fn check(row: &Row) {
     }
     power(row);
     inertia(row);
+    usual_torque(row);
+    usual_speed(row);
+}
+
+/// Usual continuous torque of a motor for each kilogram of its mass \[N m/kg\]. Motors of the built-in catalogs have 0.19
+/// (a small brushless servo) to 28 (a hydraulic orbital motor).
+const TORQUE_NM_PER_KG: [f64; 2] = [0.005, 60.0];
+/// Largest usual ratio of the largest speed to the rated speed. Motors of the built-in catalogs have 1 to 2.7.
+const MOST_SPEED_RATIO: f64 = 8.0;
+
+/// Warns if the continuous torque is unusual for the motor's mass.
+fn usual_torque(row: &Row) {
+    if let (Some(torque_nm), Some(mass_kg)) = (row.number("rated_torque_nm"), row.number("mass_kg")) {
+        let nm_per_kg = torque_nm / mass_kg;
+        let [low, high] = TORQUE_NM_PER_KG;
+        if !(low..=high).contains(&nm_per_kg) {
+            row.warn(
+                "rated_torque_nm",
+                format!("= {torque_nm} gives {nm_per_kg:.3e} N m for each kg"),
+                &format!(
+                    "usual: {low} to {high} N m/kg; a slip of unit? (1 N mm = 0.001 N m, 1 N cm = 0.01 N m)"
+                ),
+            );
+        }
+    }
+}
+
+/// Warns if the rated speed is unusually far below the largest speed.
+fn usual_speed(row: &Row) {
+    if let (Some(rated_rpm), Some(most_rpm)) = (row.number("rated_speed_rpm"), row.number("max_speed_rpm")) {
+        let ratio = most_rpm / rated_rpm;
+        if ratio > MOST_SPEED_RATIO {
+            row.warn(
+                "rated_speed_rpm",
+                format!("= {rated_rpm} is 1/{ratio:.1} of max_speed_rpm = {most_rpm}"),
+                &format!("usual: at least 1/{MOST_SPEED_RATIO}; a slip of unit? (1 rad/s = 9.55 rpm)"),
+            );
+        }
+    }
 }
 
 /// Checks that the rated power of a row agrees with rated torque times rated speed, P = T ω.
@@ -78,6 +117,24 @@ mod tests {
     use crate::catalog::read::log::Log;
     use crate::catalog::read::table::rows;
     use crate::catalog::{CatalogFile, Envelope};
+
+    #[test]
+    fn torque_and_speed_in_other_units_are_warned_of() {
+        let warned = |figures: &str| -> Vec<String> {
+            let log = Log::default();
+            let text = format!(
+                "type,model,rated_torque_nm,mass_kg,rated_speed_rpm,max_speed_rpm,source,confidence\n\
+                ac-servo,A,{figures},a test,verified\n"
+            );
+            rows(CatalogFile::Motors, "motors.csv", text.as_bytes(), &log)
+                .iter()
+                .for_each(|row| drop(motor(row)));
+            log.warnings.borrow().iter().map(|warning| warning.field.clone()).collect()
+        };
+        assert_eq!(warned("1.3,1.8,3000,5000"), [""; 0]);
+        assert_eq!(warned("1300,1.8,3000,5000"), ["rated_torque_nm"]);
+        assert_eq!(warned("1.3,1.8,314,5000"), ["rated_speed_rpm"]);
+    }
 
     #[test]
     fn outer_sizes_of_motors_become_metres_and_blank_ones_stay_unknown() {
