@@ -18,8 +18,8 @@ use std::path::PathBuf;
     their folder, a catalog with its folder, a stiffness file with the arm.json in its folder. The files of a result are compared with the hashes in it. The exit code is 3 if \
     a file has a fault, 9 if a result is not what was written or is incomplete, 7 if a file cannot be read.\n\n\
     --same compares two folders of results, with the folders in them, byte by byte. It ignores:\n  \
-    elapsed_s, designs_per_s, threads, platform and files of run.json and shard.json;\n  \
-    files of verdict.json;\n  \
+    elapsed_s, designs_per_s, threads, platform, files and manifest_hash of run.json and shard.json;\n  \
+    files and manifest_hash of verdict.json;\n  \
     the marked timing of summary.md and report.html, and the folder's own name in the commands there.\n\
     Shards are compared if the folder has nothing else. The exit code is 9 if the folders differ, 7 if there is nothing to compare.")]
 pub(crate) struct CheckArgs {

@@ -3,7 +3,7 @@
 use super::check_kinds::{kind_of, missing_keys, table_of};
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
-use super::manifest::{MANIFESTS, RUN, hash, listed};
+use super::manifest::{MANIFESTS, RUN, hash, is_as_written, listed};
 use super::result_folder::complete;
 use crate::arm::{Arm, DrivenJoint, Motion, read_arm, read_arm_document, read_load_cases};
 use crate::catalog::Catalogs;
@@ -265,13 +265,14 @@ fn unchanged(folder: &Path, manifest: &str) -> Result<Value, Problem> {
     let Some(files) = listed(&value) else {
         return Err(Problem::Changed(format!("{manifest} lists no files, as of a version before 0.2")));
     };
-    let wrong: Vec<String> = files
-        .iter()
-        .filter_map(|(name, expected)| match std::fs::read(folder.join(name)) {
+    let edited = (!is_as_written(&value)).then(|| format!("{manifest} is not what was written"));
+    let wrong: Vec<String> = edited
+        .into_iter()
+        .chain(files.iter().filter_map(|(name, expected)| match std::fs::read(folder.join(name)) {
             Ok(bytes) if hash(&bytes) == *expected => None,
             Ok(_) => Some(format!("{name} is not what was written")),
             Err(e) => Some(format!("{name}: {e}")),
-        })
+        }))
         .collect();
     if wrong.is_empty() { Ok(value) } else { Err(Problem::Changed(wrong.join("\n  "))) }
 }

@@ -1,7 +1,7 @@
 //! Compares two folders of results, without the numbers that depend on the time and on the machine.
 
 use super::failure::Failure;
-use super::manifest::{CHOICES, MANIFESTS, OF_A_RUN, PAGE, RUN, SHARD, SUMMARY, VERDICT};
+use super::manifest::{CHOICES, MANIFESTS, OF_A_RUN, OWN_HASH, PAGE, RUN, SHARD, SUMMARY, VERDICT};
 use super::result_folder::complete;
 use crate::report::summary::TIMING;
 use crate::report::whole_file::folder_of;
@@ -14,6 +14,9 @@ use std::path::{Path, PathBuf};
 /// the comparison, because each result is in a folder of its own.
 const COMMANDS: [&str; 5] =
     ["armwright design ", "armwright analyze ", "armwright compare ", "armwright front check ", " --cases "];
+
+/// Keys with the hashes of the files of a result and of the manifest. They depend on the times in these files.
+const OF_THE_FILES: [&str; 2] = ["files", OWN_HASH];
 
 /// Compares the folders of results `a` and `b`. If both results are the same, returns a sentence that says so.
 ///
@@ -80,8 +83,8 @@ fn neutral(folder: &Path, name: &str) -> Result<Vec<u8>, Failure> {
     // is
     Ok(match Path::new(name).file_name().and_then(|name| name.to_str()) {
         // the hashes of files that contain times differ from run to run as well
-        Some(RUN | SHARD | CHOICES) => without_keys(bytes, &[&OF_A_RUN[..], &["files"]].concat()),
-        Some(VERDICT) => without_keys(bytes, &["files"]),
+        Some(RUN | SHARD | CHOICES) => without_keys(bytes, &[&OF_A_RUN[..], &OF_THE_FILES].concat()),
+        Some(VERDICT) => without_keys(bytes, &OF_THE_FILES),
         Some(SUMMARY | PAGE) => without_timing(bytes, typed_as(&inside).as_deref()),
         _ => bytes,
     })

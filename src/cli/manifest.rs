@@ -29,6 +29,8 @@ pub(super) const PAGE: &str = "report.html";
 pub(super) const OF_A_RUN: [&str; 4] = ["elapsed_s", "designs_per_s", "threads", "platform"];
 /// Names of all files that may have a manifest.
 pub(super) const MANIFESTS: [&str; 4] = [RUN, VERDICT, SHARD, CHOICES];
+/// Key of the hash of the other keys of a manifest, but for those of [`OF_A_RUN`].
+pub(super) const OWN_HASH: &str = "manifest_hash";
 
 /// Names and contents of files. The names are relative to a folder of results.
 pub(super) type Files = Vec<(String, Vec<u8>)>;
@@ -37,8 +39,8 @@ pub(super) type Files = Vec<(String, Vec<u8>)>;
 pub(super) enum Earlier {
     /// There is no earlier result.
     Nothing,
-    /// The result is from an early version that listed no files. Every file with the name of a result file may be
-    /// replaced.
+    /// Nothing says which files are those of the result: it is from an early version that listed no files, or the
+    /// manifest lost its contents. Every file with the name of a result file may be replaced.
     Unlisted,
     /// The listed files, each with its hash.
     Listed(BTreeMap<String, String>),
@@ -56,6 +58,9 @@ impl Earlier {
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(Earlier::Nothing),
             Err(e) => return Err(Failure::file(&path, "read", &e)),
         };
+        if is_empty(text.as_bytes()) {
+            return Ok(Earlier::Unlisted);
+        }
         let value: Value = serde_json::from_str(&text).unwrap_or_default();
         let is_ours = ["study", "verdict"].iter().any(|key| value.get(key).is_some());
         Ok(match (is_ours, listed(&value)) {
@@ -93,6 +98,30 @@ pub(super) fn listed(manifest: &Value) -> Option<BTreeMap<String, String>> {
     Some(listed.map(|(name, hash)| (name.clone(), hash.as_str().unwrap_or_default().to_string())).collect())
 }
 
+/// Whether the folder has a manifest of this name with contents. A power failure can leave an empty file.
+pub(super) fn has_manifest(folder: &Path, manifest: &str) -> bool {
+    std::fs::read(folder.join(manifest)).is_ok_and(|bytes| !is_empty(&bytes))
+}
+
+/// Whether a file has no contents: no byte, or only bytes that are zero, as after a power failure.
+fn is_empty(bytes: &[u8]) -> bool {
+    bytes.iter().all(|byte| *byte == 0)
+}
+
+/// Whether a manifest still says what was written. A manifest of an early version without a hash of its own counts as
+/// unchanged.
+pub(super) fn is_as_written(manifest: &Value) -> bool {
+    let Some(keys) = manifest.as_object() else { return false };
+    keys.get(OWN_HASH).is_none_or(|written| written.as_str() == Some(&own_hash(keys)))
+}
+
+/// Hash of the keys of a manifest that are the same in every run.
+fn own_hash(keys: &Map<String, Value>) -> String {
+    let varies = |key: &str| key == OWN_HASH || OF_A_RUN.contains(&key);
+    let kept = keys.iter().filter(|(key, _)| !varies(key)).map(|(key, value)| (key.clone(), value.clone()));
+    hash(Value::Object(kept.collect()).to_string().as_bytes())
+}
+
 /// Whether a relative name stays inside its folder.
 fn stays_inside(name: &str) -> bool {
     !name.is_empty() && Path::new(name).components().all(|part| matches!(part, Component::Normal(_)))
@@ -109,9 +138,9 @@ pub(super) fn another_stands(name: &str) -> String {
     format!("{name}: a file that is no part of the result stands there")
 }
 
-/// The files of a result, with two lists added to the file named `manifest`, which comes last: `files` has the hashes of
-/// the others. `not_written` says what is missing: what `manifest` says already, and the files named `taken`, in whose
-/// places files stand that are no part of the result.
+/// The files of a result, with two lists and a hash added to the file named `manifest`, which comes last: `files` has the
+/// hashes of the others. `not_written` says what is missing: what `manifest` says already, and the files named `taken`, in
+/// whose places files stand that are no part of the result. The hash is that of the manifest itself.
 ///
 /// # Errors
 /// The manifest is not among the files, or it is not a JSON object.
@@ -127,6 +156,8 @@ pub(super) fn sealed(mut files: Files, manifest: &str, taken: &[String]) -> Resu
     let missing =
         keys.entry("not_written").or_insert_with(|| json!([])).as_array_mut().ok_or_else(internal)?;
     missing.extend(taken.iter().map(|name| another_stands(name).into()));
+    let own = own_hash(keys);
+    keys.insert(OWN_HASH.into(), own.into());
     let mut text = serde_json::to_vec_pretty(&value).map_err(|_| internal())?;
     // if the manifest ended in a line break before, it does so again
     text.extend(bytes.last().filter(|last| **last == b'\n'));
@@ -138,6 +169,25 @@ pub(super) fn sealed(mut files: Files, manifest: &str, taken: &[String]) -> Resu
 mod tests {
     use super::*;
     use serde_json::json;
+
+    #[test]
+    fn a_manifest_knows_when_it_was_edited() {
+        let run = json!({"study": "s", "front_size": 12, "gap": 0.02, "elapsed_s": 1.5});
+        let files = vec![("front.csv".into(), b"id".to_vec()), (RUN.into(), run.to_string().into_bytes())];
+        let whole = sealed(files, RUN, &[]).expect("an object");
+        let (_, bytes) = whole.last().expect("the manifest");
+        let written: Value = serde_json::from_slice(bytes).expect("JSON");
+        assert!(is_as_written(&written), "{written}");
+        let with = |key: &str, value: Value| {
+            let mut edited = written.clone();
+            edited[key] = value;
+            edited
+        };
+        assert!(!is_as_written(&with("front_size", json!(13))));
+        assert!(!is_as_written(&with("more", json!(1))));
+        // what differs from run to run is not a part of the hash
+        assert!(is_as_written(&with("elapsed_s", json!(2.5))));
+    }
 
     #[test]
     fn a_list_never_names_a_file_outside_its_folder() {

@@ -261,10 +261,16 @@ impl Shards {
         let ranges = self.by_number.values().filter_map(|found| found.range.clone()).collect();
         match gaps(ranges, self.designs_total) {
             (missing, None) if missing.is_empty() => Ok(()),
-            (missing, shared) => Err(Failure::Check(format!(
-                "the shards do not cover the {} designs once: {missing:?} is in none, and design {shared:?} in two",
-                self.designs_total
-            ))),
+            (missing, shared) => {
+                let in_none =
+                    missing.iter().map(|r| format!("designs {} to {} are in none", r.start, r.end - 1));
+                let in_two = shared.iter().map(|design| format!("design {design} is in two"));
+                Err(Failure::Check(format!(
+                    "the shards do not cover the {} designs once: {}",
+                    self.designs_total,
+                    in_none.chain(in_two).collect::<Vec<_>>().join(", ")
+                )))
+            }
         }
     }
 

@@ -43,6 +43,13 @@ const LIST: Kind = Kind::List(&Kind::Anything);
 const STATUS: Kind = Kind::Word(&["complete", "certified", "partial", "interrupted", "infeasible"]);
 const FILES: Key =
     required("files", Kind::Map(&Kind::Text), "-", "Every other file, with the BLAKE3 hash of its bytes.");
+const OWN_HASH: Key = optional(
+    "manifest_hash",
+    Kind::Text,
+    "-",
+    "left out by early versions",
+    "BLAKE3 hash of the other keys, without times and machine, so that an edited file is noticed.",
+);
 const NOT_WRITTEN: Key =
     required("not_written", WORDS, "-", "What could not be made or written; empty in a whole result.");
 const VERSION: Key = required("tool_version", Kind::Text, "-", "Version of armwright that wrote the file.");
@@ -149,6 +156,7 @@ static RUN: Shape = Shape::new(
             "Designs near the front, or null.",
         ),
         FILES,
+        OWN_HASH,
     ],
     &[],
 );
@@ -166,6 +174,7 @@ static CHOICES: Shape = Shape::new(
         CATALOGS_HASH,
         VERSION,
         FILES,
+        OWN_HASH,
         NOT_WRITTEN,
     ],
     &[],
@@ -270,6 +279,7 @@ static SHARD: Shape = Shape::new(
         THREADS,
         PLATFORM,
         FILES,
+        OWN_HASH,
         NOT_WRITTEN,
     ],
     &[],
@@ -352,6 +362,7 @@ static VERDICT: Shape = Shape::new(
             "left out by the library",
             "Every other file, with the BLAKE3 hash of its bytes.",
         ),
+        OWN_HASH,
         optional(
             "not_written",
             WORDS,

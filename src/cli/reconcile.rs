@@ -6,7 +6,7 @@ use super::extra_files::{ExtraFiles, say_missing, say_taken};
 use super::failure::Failure;
 use super::finished::catalogs_hash;
 use super::log::Log;
-use super::manifest::{Files, PAGE, VERDICT, hash, listed};
+use super::manifest::{Files, PAGE, VERDICT, hash, is_as_written, listed};
 use super::rerun::{Again, CHANGES, Rerun, rerun};
 use super::result_folder::ResultFolder;
 use super::search::SearchArgs;
@@ -38,7 +38,8 @@ use std::sync::Arc;
     four.\n\n\
     With --study and the verdict explained, the study is run without and with the effects that were found: \
     study/nominal and study/corrected are results as `armwright run` writes them, study_changes.csv has \
-    every design of either front under both models, and verdict.json says under \"study\" which picks change.")]
+    every design of either front under both models, and verdict.json says under \"study\" which picks change. \
+    If one of the models finds no design, the exit code is 6; the verdict is written all the same.")]
 pub(crate) struct ReconcileArgs {
     /// Folder of a campaign: campaign.json, arm.json and any of static.csv, modal.csv, windup.csv,
     /// positions.csv, record.csv. Several campaigns of one arm are reconciled together.
@@ -121,7 +122,8 @@ fn kept_before(out: &Path, campaign: &Campaign, hash_of_catalogs: &str) -> Optio
     let same = verdict["campaign_blake3"] == campaign.hash.as_str()
         && verdict["catalogs_hash"] == hash_of_catalogs
         && verdict["tool_version"] == env!("CARGO_PKG_VERSION")
-        && verdict.get("study").is_none();
+        && verdict.get("study").is_none()
+        && is_as_written(&verdict);
     let is_there = |(name, listed): (&String, &String)| {
         std::fs::read(out.join(name)).is_ok_and(|bytes| hash(&bytes) == *listed)
     };

@@ -38,7 +38,7 @@ pub(super) struct Rerun {
     /// Files of both runs in `study/nominal` and `study/corrected`, and `study_changes.csv` if both runs found a
     /// front.
     pub files: Files,
-    /// Exit status of the program. If one of the runs was stopped, the status is that of this run.
+    /// Exit status of the program. If one of the runs was stopped or found no design, the status is that of this run.
     pub exit: Exit,
 }
 
@@ -115,7 +115,8 @@ pub(super) fn rerun(outcome: &Outcome, again: &Again, setup: Setup) -> Result<Re
             }
             Err(Failure::Infeasible(why)) => {
                 let words = format!("the {folder} model finds no design: {why}");
-                return Ok(Rerun { files: kept, ..Rerun::without(&name, "infeasible", &words) });
+                let without = Rerun::without(&name, "infeasible", &words);
+                return Ok(Rerun { files: kept, exit: Exit::Infeasible, ..without });
             }
             Err(other) => return Err(other),
         }

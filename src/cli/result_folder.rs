@@ -31,6 +31,9 @@ pub(super) struct ResultFolder {
     folder: PathBuf,
     manifest: &'static str,
     lock: Option<Lock>,
+    /// Whether the folder had a result of which nothing lists the files when it was opened. Every file with the name of a
+    /// result file may then be replaced.
+    had_unlisted: bool,
 }
 
 impl ResultFolder {
@@ -50,11 +53,12 @@ impl ResultFolder {
         create_folder(&state).map_err(|e| Failure::file(folder, "create", &e))?;
         // `out` is made before the lock is taken, so that its `drop` removes empty folders if anything fails from here
         // on
-        let mut out = Self { folder: folder.to_path_buf(), manifest, lock: None };
+        let mut out = Self { folder: folder.to_path_buf(), manifest, lock: None, had_unlisted: false };
         out.lock = Some(Lock::take(&state.join(LOCK), folder)?);
         roll_forward(folder).map_err(|e| Failure::file(folder, "complete", &e))?;
         sweep(&state.join("next")).map_err(|e| Failure::file(folder, "write in", &e))?;
         let earlier = Earlier::read(folder, manifest)?;
+        out.had_unlisted = matches!(earlier, Earlier::Unlisted);
         let foreign: Vec<&str> = planned
             .iter()
             .map(AsRef::as_ref)
@@ -79,7 +83,10 @@ impl ResultFolder {
     /// The folder cannot be written. Either the earlier result stays, or the new result counts and the next reader
     /// completes it.
     pub(super) fn publish(&self, files: &[(String, Vec<u8>)]) -> Result<Vec<String>, Failure> {
-        let earlier = Earlier::read(&self.folder, self.manifest)?;
+        let earlier = match self.had_unlisted {
+            true => Earlier::Unlisted,
+            false => Earlier::read(&self.folder, self.manifest)?,
+        };
         let is_foreign = |(name, bytes): &(String, Vec<u8>)| {
             is_foreign(&self.folder, name, &earlier, self.manifest) && !self.has(name, bytes)
         };

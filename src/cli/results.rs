@@ -1,7 +1,7 @@
 //! Reads a folder of results: either it has one complete result, or a reason is given why it has none.
 
 use super::failure::Failure;
-use super::manifest::{CHOICES, RUN, hash, listed};
+use super::manifest::{CHOICES, RUN, has_manifest, hash, is_as_written, listed};
 use super::result_folder::complete;
 use super::version::refuse_earlier;
 use crate::report::front_table::FrontTable;
@@ -66,7 +66,7 @@ impl Results {
 
     fn read_run(folder: &Path) -> Result<Self, Failure> {
         let path = folder.join(RUN);
-        if !path.exists() {
+        if !has_manifest(folder, RUN) {
             return Err(Failure::File(no_result(folder)));
         }
         let text = fs_err::read_to_string(&path).map_err(|e| Failure::File(e.to_string()))?;
@@ -76,8 +76,11 @@ impl Results {
         Ok(Self { folder: folder.to_path_buf(), files: listed(&run), run })
     }
 
-    /// Names of the files that exist but differ from those that `run.json` lists.
+    /// Names of the files that exist but are not those that were written, by what `run.json` says.
     fn strange_files(&self) -> Vec<&str> {
+        if !is_as_written(&self.run) {
+            return vec![RUN];
+        }
         let files = self.files.iter().flatten();
         let differs = |name: &str, listed: &str| match std::fs::read(self.folder.join(name)) {
             Ok(bytes) => hash(&bytes) != listed,
@@ -178,14 +181,18 @@ fn no_result(folder: &Path) -> String {
              compare, as {shown}/choice-*"
         );
     }
-    let what = if folder.is_dir() { "has no run.json, so it is no result" } else { "is no folder" };
+    let what = match (folder.join(RUN).exists(), folder.is_dir()) {
+        (true, _) => "has an empty run.json, so it is no result",
+        (false, true) => "has no run.json, so it is no result",
+        (false, false) => "is no folder",
+    };
     format!("{shown} {what}; give a result folder of `armwright run`")
 }
 
 fn mixture(folder: &Path, names: &[&str]) -> Failure {
     Failure::Check(format!(
-        "{} is not one result: {} {} not what its {RUN} lists, so that files of different runs may be mixed or a file was \
-         edited; run the study again, or restore the folder",
+        "{} is not one result: {} {} not what was written, by its {RUN}, so that files of different runs may be mixed or a \
+         file was edited; run the study again, or restore the folder",
         folder.display(),
         names.join(", "),
         if names.len() == 1 { "is" } else { "are" }

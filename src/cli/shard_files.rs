@@ -1,7 +1,7 @@
 //! The files of a shard: where they are, and how they are read back.
 
 use super::failure::Failure;
-use super::manifest::{SHARD, STUDY, hash};
+use super::manifest::{SHARD, STUDY, has_manifest, hash, is_as_written};
 use crate::exact::outcome::FoundInShard;
 use crate::search::sweep::Shard;
 use crate::study::definition::Study;
@@ -73,7 +73,7 @@ pub(super) const MOST_LEVELS: usize = 3;
 /// The folders of the shards in `folder`, in the order of their names. If `folder` is itself a shard, it is the only
 /// one. `depth` is the number of levels of subfolders that are searched.
 pub(super) fn shards_in(folder: &Path, depth: usize) -> Result<Vec<PathBuf>, Failure> {
-    if folder.join(SHARD).is_file() {
+    if has_manifest(folder, SHARD) {
         return Ok(vec![folder.to_path_buf()]);
     }
     let mut out = Vec::new();
@@ -108,6 +108,12 @@ pub(super) fn read_manifest(dir: &Path) -> Result<Value, Failure> {
     let text = fs_err::read_to_string(&path).map_err(|e| Failure::File(e.to_string()))?;
     let manifest: Value =
         serde_json::from_str(&text).map_err(|e| Failure::File(format!("{}: {e}", path.display())))?;
+    if !is_as_written(&manifest) {
+        return Err(Failure::Check(format!(
+            "{} is not what was written: run the shard again",
+            path.display()
+        )));
+    }
     for name in [CANDIDATES, STUDY] {
         let file = dir.join(name);
         let bytes = fs_err::read(&file).map_err(|e| Failure::File(e.to_string()))?;

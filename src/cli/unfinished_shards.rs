@@ -1,7 +1,7 @@
 //! Shards that were begun and are not finished: their folders have a state or a writer, and no manifest yet.
 
 use super::failure::Failure;
-use super::manifest::SHARD;
+use super::manifest::{SHARD, has_manifest};
 use super::result_folder::{is_being_written, unfinished_in};
 use super::shard::shard_of;
 use super::shard_files::folders_inside;
@@ -30,7 +30,7 @@ pub(super) struct Begun {
 /// # Errors
 /// A folder cannot be read.
 pub(super) fn begun_in(folder: &Path, depth: usize) -> Result<Vec<Begun>, Failure> {
-    if folder.join(SHARD).is_file() {
+    if has_manifest(folder, SHARD) {
         return Ok(Vec::new());
     }
     let state = unfinished_in(folder, "search");

@@ -59,6 +59,8 @@ fn replace(dir: &TempDir, lines: &[String]) {
     run["front_size"] = (lines.len() - 1).into();
     let bytes = std::fs::read(dir.path().join("front.csv")).expect("a front");
     run["files"]["front.csv"] = blake3::hash(&bytes).to_hex().to_string().into();
+    // without a hash of itself, as in early versions
+    run.as_object_mut().expect("keys").remove("manifest_hash");
     std::fs::write(&file, run.to_string()).expect("written");
 }
 

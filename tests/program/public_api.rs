@@ -49,7 +49,8 @@ fn an_item_is_listed_by_the_path_by_which_it_is_reached() {
     write("a.rs", "pub use crate::b::Two;\npub struct One { pub x_m: f64, y: u8 }\npub(crate) fn f() {}\n");
     write(
         "b.rs",
-        "pub enum Two { A, B(u8) }\nimpl Two { pub fn of(x: &str) -> Self { Two::A } fn g() {} }\n",
+        "pub enum Two { A, B(u8) }\nimpl Two { pub fn of(x: &str) -> Self { Two::A } fn g() {} }\n\
+         pub(crate) trait Own {}\nimpl Own for Two {}\n",
     );
     let expected = [
         "a::One struct",
@@ -71,9 +72,17 @@ fn interface(house: &Crate) -> Vec<String> {
         .collect();
     let reached = reached(house, &files);
     let public_names: BTreeSet<&String> = reached.keys().map(|(_, name)| name).collect();
+    let private_traits = files.values().flat_map(|file| file.items.iter().filter_map(private_trait));
+    let private_traits: BTreeSet<String> = private_traits.collect();
+    let is_public = |item: &&Item| match item {
+        Item::Impl(syn::ItemImpl { trait_: Some((_, of_trait, _)), .. }) => {
+            !of_trait.segments.last().is_some_and(|name| private_traits.contains(&name.ident.to_string()))
+        }
+        _ => true,
+    };
     let mut out = BTreeSet::new();
     for (module, file) in &files {
-        for item in file.items.iter().filter(|item| !is_of_tests(item)) {
+        for item in file.items.iter().filter(|item| !is_of_tests(item)).filter(is_public) {
             let at = |name: &str| {
                 let own = (module.clone(), name.to_string());
                 reached.get(&own).cloned().unwrap_or_else(|| format!("({}::{name})", module.join("::")))
@@ -147,6 +156,14 @@ fn public_name(item: &Item) -> Option<String> {
         _ => return None,
     };
     matches!(vis, Visibility::Public(_)).then(|| ident.to_string())
+}
+
+/// The name of a trait that is not public; `None` for all other items.
+fn private_trait(item: &Item) -> Option<String> {
+    match item {
+        Item::Trait(item) if !matches!(item.vis, Visibility::Public(_)) => Some(item.ident.to_string()),
+        _ => None,
+    }
 }
 
 /// The lines of an item: itself, its public fields, its variants, its methods, the traits that it has.

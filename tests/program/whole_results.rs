@@ -224,6 +224,28 @@ fn a_mixture_of_two_results_is_refused_by_every_reader() {
 }
 
 #[test]
+fn an_edited_run_json_is_refused_by_every_reader_and_an_empty_one_is_written_anew() {
+    let here = tempfile::tempdir().expect("a folder");
+    let path = here.path().join("out/run.json");
+    fs::write(here.path().join("study.json"), study("new", 3.0)).expect("written");
+    succeeds(here.path(), &["run", "study.json", "--out", "out"]);
+    let mut run = json_of(&path);
+    run["designs_evaluated"] = json!(3);
+    fs::write(&path, format!("{run:#}")).expect("written");
+    let readers: [&[&str]; 4] =
+        [&["design", "out", "x0"], &["front", "check", "out"], &["compare", "out"], &["check", "out"]];
+    for words in readers {
+        let (code, text) = said(&mut command(here.path(), words));
+        assert!(code == 9 && text.contains("run.json is not what was written"), "{words:?}: {code} {text}");
+    }
+    fs::write(&path, "").expect("written");
+    let (code, text) = said(&mut command(here.path(), &["design", "out", "x0"]));
+    assert!(code == 7 && text.contains("has an empty run.json"), "{code} {text}");
+    succeeds(here.path(), &["run", "study.json", "--out", "out"]);
+    assert_eq!(whole(&here.path().join("out")), "new");
+}
+
+#[test]
 fn a_second_writer_is_refused_until_the_first_one_ends() {
     let here = tempfile::tempdir().expect("a folder");
     fs::write(here.path().join("study.json"), study("new", 3.0)).expect("written");
