@@ -3,7 +3,7 @@
 use super::check_kinds::{kind_of, missing_keys, table_of};
 use super::exit::{Answer, Exit};
 use super::failure::Failure;
-use super::manifest::{MANIFESTS, RUN, hash, is_as_written, listed};
+use super::manifest::{MANIFESTS, RUN, has_manifest, hash, is_as_written, listed};
 use super::result_folder::complete;
 use crate::arm::{Arm, DrivenJoint, Motion, read_arm, read_arm_document, read_load_cases};
 use crate::catalog::Catalogs;
@@ -259,6 +259,9 @@ fn result_words(manifest: &str) -> &'static str {
 /// file.
 fn unchanged(folder: &Path, manifest: &str) -> Result<Value, Problem> {
     let path = folder.join(manifest);
+    if !has_manifest(folder, manifest) {
+        return Err(Problem::Incomplete(format!("{manifest} is empty")));
+    }
     let text = std::fs::read_to_string(&path).map_err(|e| Problem::Unreadable(e.to_string()))?;
     let value: Value =
         serde_json::from_str(&text).map_err(|e| Problem::Changed(format!("{manifest} is not JSON: {e}")))?;

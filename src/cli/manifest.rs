@@ -98,9 +98,13 @@ pub(super) fn listed(manifest: &Value) -> Option<BTreeMap<String, String>> {
     Some(listed.map(|(name, hash)| (name.clone(), hash.as_str().unwrap_or_default().to_string())).collect())
 }
 
-/// Whether the folder has a manifest of this name with contents. A power failure can leave an empty file.
+/// Whether the folder has a manifest of this name with contents. A power failure can leave an empty file. A manifest that
+/// cannot be read counts as one with contents, so that its reader says why.
 pub(super) fn has_manifest(folder: &Path, manifest: &str) -> bool {
-    std::fs::read(folder.join(manifest)).is_ok_and(|bytes| !is_empty(&bytes))
+    match std::fs::read(folder.join(manifest)) {
+        Ok(bytes) => !is_empty(&bytes),
+        Err(e) => e.kind() != std::io::ErrorKind::NotFound,
+    }
 }
 
 /// Whether a file has no contents: no byte, or only bytes that are zero, as after a power failure.

@@ -262,8 +262,7 @@ impl Shards {
         match gaps(ranges, self.designs_total) {
             (missing, None) if missing.is_empty() => Ok(()),
             (missing, shared) => {
-                let in_none =
-                    missing.iter().map(|r| format!("designs {} to {} are in none", r.start, r.end - 1));
+                let in_none = missing.iter().map(|r| format!("designs {} to {} are in none", r.start, r.end));
                 let in_two = shared.iter().map(|design| format!("design {design} is in two"));
                 Err(Failure::Check(format!(
                     "the shards do not cover the {} designs once: {}",

@@ -9,7 +9,7 @@ use super::exit::Exit;
 use super::failure::Failure;
 use super::links::{has_strange_parent, is_there, refuse_link, refuse_strange_parents};
 use super::lock::Lock;
-use super::manifest::{Earlier, Files, MANIFESTS, sealed};
+use super::manifest::{Earlier, Files, MANIFESTS, has_manifest, sealed};
 use super::unfinished::{ENDING, remove};
 use crate::report::whole_file::{
     create_folder, folder_of, remove_file, remove_temporaries, rename, sync_folder, write_staged,
@@ -230,7 +230,7 @@ fn roll_forward(folder: &Path) -> io::Result<()> {
         return Ok(());
     }
     // the manifest is moved last, so without it everything has been moved already
-    if let Some(manifest) = MANIFESTS.into_iter().find(|name| ready.join(name).is_file()) {
+    if let Some(manifest) = MANIFESTS.into_iter().find(|name| has_manifest(&ready, name)) {
         let read =
             |folder: &Path| Earlier::read(folder, manifest).map_err(|e| io::Error::other(e.to_string()));
         let (new, old) = (read(&ready)?, read(folder)?);

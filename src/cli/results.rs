@@ -172,7 +172,7 @@ impl Results {
     }
 }
 
-/// Why a folder without `run.json` is no result, and what to give instead.
+/// Why a folder without `run.json`, or with an empty one, is no result, and what to give instead.
 fn no_result(folder: &Path) -> String {
     let shown = folder.display();
     if folder.join(CHOICES).is_file() {
@@ -190,9 +190,15 @@ fn no_result(folder: &Path) -> String {
 }
 
 fn mixture(folder: &Path, names: &[&str]) -> Failure {
+    if names == [RUN] {
+        return Failure::Check(format!(
+            "{} is not what was written: it was edited; run the study again, or restore the file",
+            folder.join(RUN).display()
+        ));
+    }
     Failure::Check(format!(
-        "{} is not one result: {} {} not what was written, by its {RUN}, so that files of different runs may be mixed or a \
-         file was edited; run the study again, or restore the folder",
+        "{} is not one result: {} {} not what its {RUN} lists, so that files of different runs may be mixed or a file was \
+         edited; run the study again, or restore the folder",
         folder.display(),
         names.join(", "),
         if names.len() == 1 { "is" } else { "are" }

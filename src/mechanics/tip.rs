@@ -350,7 +350,7 @@ impl Tip {
                     let axis = place.rotation * hinge.axis.into_inner();
                     let nm = axis.dot(&moment_nm(&place.at_m)) + hinge.own_nm(load.pose_rad);
                     out[k].turn_rad = hinge.axis.into_inner() * hinge.torsion_rad(load.pose_rad, nm);
-                    torques_nm.iter_mut().skip(k).take(1).for_each(|own| *own = nm);
+                    torques_nm.get_mut(k).into_iter().for_each(|own| *own = nm);
                 }
                 Step::Beam(vector_m, end) => {
                     let end_m = place.at_m + place.rotation * vector_m;

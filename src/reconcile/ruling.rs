@@ -36,7 +36,7 @@ impl Analysis<'_> {
         if self.best.model.effects.is_empty() {
             return self.without_effect(Vec::new());
         }
-        // an effect that is only suspected needs no law that is as good, and such a law is no gap
+        // a law that is only as good does not count against an effect that is only suspected
         if let Some(better) = self.unnamed.as_ref().filter(|law| law.is_clear() || self.without.is_none()) {
             return (Verdict::Unexplained, vec![self.beaten(better)]);
         }

@@ -5,7 +5,7 @@
 //! in as many dimensions `d` as coordinates were measured. Its weight `(ν+d)/(ν + |r|²/s²)` reduces the influence of
 //! gross errors. A compliance `c` moves the point by `c P ĝ`. Here `ĝ` is the direction of gravity, and the columns of
 //! the 3x3 matrix `P` are the displacements of the point at unit compliance under gravity along each axis
-//! ([`loads`](super::loads)).
+//! ([`deflection`](super::deflection)).
 
 use super::fitted::{Fitted, Miss, NU, Sample, misses, weight};
 use super::kinematics::Number;
@@ -98,7 +98,7 @@ pub(crate) fn fit(samples: &[&Sample], numbers: &[Number], effects: &[usize], st
     here
 }
 
-/// The model of [`fit`] without its standard deviations, which take about as long as the fit itself.
+/// The model of [`fit`] without its standard deviations, which take about as long as a further step.
 pub(crate) fn likeliest(
     samples: &[&Sample],
     numbers: &[Number],
@@ -137,7 +137,8 @@ fn most_likely(
             break;
         }
     }
-    if here.merit(numbers) < begin.0.merit(numbers) { begin } else { (here, misses) }
+    // no step was taken if the merit is still without a value
+    if merit.is_finite() && merit >= begin.0.merit(numbers) { (here, misses) } else { begin }
 }
 
 /// For each of the `folds` of all rows of a long campaign, the fit without this fold, by one Newton step from the fit `here` to

@@ -156,9 +156,9 @@ fn asked(search: &Search, effect: usize, law: &Competitor) -> f64 {
     }
 }
 
-/// The law of the `competitors` that exceeds by most what is asked of it. What is asked is that the logarithm of its
-/// evidence, less a charge for having tried `places` places, is higher than `evidence` by more than `least` says; `None`
-/// if no law does that. `evidence` is the logarithm of the evidence of the model with which they compete, less the charges
+/// The best law of those `competitors` that are as good as is asked of them. What is asked is that the logarithm of the
+/// law's evidence, less a charge for having tried `places` places, is higher than `evidence` by more than `least` says;
+/// `None` if no law does that. `evidence` is the logarithm of the evidence of the model with which they compete, less the charges
 /// for effects that only this model has. Effects that are in both models are not charged for their places.
 fn best_of(
     competitors: Vec<Competitor>,
@@ -167,12 +167,11 @@ fn best_of(
     least: impl Fn(&Competitor) -> f64,
 ) -> Option<Better> {
     let gain = |law: &Competitor| law.evidence - libm::log(places) - evidence;
-    let excess = |law: &Competitor| gain(law) - least(law);
-    let best = competitors.into_iter().max_by(|a, b| excess(a).total_cmp(&excess(b)))?;
+    let good = competitors.into_iter().filter(|law| gain(law) > least(law));
+    let best = good.max_by(|a, b| gain(a).total_cmp(&gain(b)))?;
     let gain = gain(&best);
-    let keeps = gain > least(&best);
     let Competitor { what, numbers, objective, .. } = best;
-    keeps.then_some(Better { what, numbers, objective, gain })
+    Some(Better { what, numbers, objective, gain })
 }
 
 /// Fits each law without a name together with the parameters of the model `fit`. Laws that are the same as an effect

@@ -42,7 +42,7 @@ impl Builder<'_> {
             }
         }
         let [own, other] = [twisted, loaded].map(|j| forward.layout.joints[j].twist);
-        self.add_modal(&mut truth, |_, y| y[own] * y[other] * compliance);
+        self.add_modal(&mut truth, |_, _, y| y[own] * y[other] * compliance);
         self.read(&truth)
     }
 }

@@ -44,7 +44,7 @@ impl Builder<'_> {
             pose.add_compliant(&forward.layout, &self.fit.point.coefficients, &further, &mut truth);
             row += pose.count();
         }
-        self.add_modal(&mut truth, |datum, y| {
+        self.add_modal(&mut truth, |_, datum, y| {
             let part = (modal[datum - forward.starts[1]] / largest).powi(power);
             own.clone().map(|i| y[i].powi(2) * part * compliance(i)).sum()
         });

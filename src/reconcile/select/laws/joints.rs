@@ -147,7 +147,7 @@ impl Builder<'_> {
             }
         }
         let slot = &forward.layout.joints[joint];
-        self.add_modal(&mut truth, |datum, y| {
+        self.add_modal(&mut truth, |_, datum, y| {
             let row = datum - forward.starts[1];
             let state = State {
                 torque_nm: self.torques_nm[datum][joint],

@@ -99,7 +99,7 @@ impl Builder<'_> {
         for pose in &forward.statics {
             pose.add_compliant(&forward.layout, &self.fit.point.coefficients, further, &mut truth);
         }
-        self.add_modal(&mut truth, |_, y| further.iter().map(|(i, c)| y[*i].powi(2) * c).sum());
+        self.add_modal(&mut truth, |_, _, y| further.iter().map(|(i, c)| y[*i].powi(2) * c).sum());
         self.read(&truth)
     }
 }

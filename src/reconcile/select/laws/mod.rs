@@ -13,7 +13,9 @@
 //! - a base, a bearing or a link that is more compliant in one direction only,
 //! - a guide whose compliance changes with the position,
 //! - a link whose mass, wall or length differs from the drawing,
-//! - another direction of gravity.
+//! - another direction of gravity,
+//! - a stiffness that depends on the occasion of a reading (the order of the tests, how long a pose is kept, the temperature,
+//!   the sense of loading), on the size of the load, or on the angle several times a turn.
 //!
 //! A law may also be an error of a reading as a function of the true value, of the direction, of the kind of load, or
 //! of the time in a pose. A law consists of a few columns: changes of the readings, linearized about a fit.
@@ -117,13 +119,13 @@ impl<'a> Builder<'a> {
     }
 
     /// Sets the entries of `truth` that belong to frequencies: the first-order change of each frequency \[Hz\] when
-    /// the compliance matrix changes by `dC`. `energy` receives the index of a datum and the inertia forces `y` of its
-    /// mode, and returns `yᵀ dC y`.
-    fn add_modal(&self, truth: &mut [f64], energy: impl Fn(usize, &DVector<f64>) -> f64) {
-        for (test, solved) in self.forward.modal.iter().zip(&self.fit.point.solved) {
+    /// the compliance matrix changes by `dC`. `energy` receives the index of a modal test, that of a datum and the inertia
+    /// forces `y` of its mode, and returns `yᵀ dC y`.
+    fn add_modal(&self, truth: &mut [f64], energy: impl Fn(usize, usize, &DVector<f64>) -> f64) {
+        for (index, (test, solved)) in self.forward.modal.iter().zip(&self.fit.point.solved).enumerate() {
             for &(datum, mode) in &test.modes {
                 let Some(s) = solved.get(mode) else { continue };
-                let d_mu = energy(datum, &s.y) / s.mu;
+                let d_mu = energy(index, datum, &s.y) / s.mu;
                 truth[datum] = -0.5 * d_mu / s.mu / (TAU * s.mu.sqrt());
             }
         }

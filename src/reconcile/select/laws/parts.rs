@@ -128,6 +128,11 @@ impl Builder<'_> {
         if part.joint.is_none() {
             out.push(law("that is another in the static tests", self.only(part, Channel::Static, &|_| 1.0)));
         }
+        // with one of the two kinds of tests only, these laws are those of its own tests
+        let has = |channel| !self.forward.range(channel).is_empty();
+        if !has(Channel::Static) || !has(Channel::Modal) {
+            return out;
+        }
         let both = |channel: Channel, o: &Occasion| if channel == Channel::Windup { 0.0 } else { o.part };
         out.push(law("that changes with the order of the static and modal tests", self.times(part, &both)));
         let course = |channel: Channel, o: &Occasion| match channel {

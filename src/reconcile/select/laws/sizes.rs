@@ -65,10 +65,7 @@ impl Builder<'_> {
             }
         }
         let forces_in_modal_tests = self.forces_in_modal_tests(coordinates);
-        let test_of =
-            |datum: usize| forward.modal.iter().position(|t| t.modes.iter().any(|(d, _)| *d == datum));
-        self.add_modal(&mut truth, |datum, y| {
-            let Some(test) = test_of(datum) else { return 0.0 };
+        self.add_modal(&mut truth, |test, _, y| {
             let forces = &forces_in_modal_tests[test];
             let size = size(forces);
             let (mut along, mut all) = (0.0, 0.0);
