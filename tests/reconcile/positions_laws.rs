@@ -84,7 +84,9 @@ fn a_steady_drift_is_no_session() {
 fn a_joint_that_grows_stiffer_with_its_torque_has_no_lost_motion() {
     let outcome = outcome(standard().write(&Made::bent).path());
     assert_eq!(outcome.verdict, Verdict::Unexplained, "{}", outcome.to_text());
-    assert!(says(&outcome, "a torsion of q2"), "{}", outcome.to_text());
+    // as a law that is better, or as what the residuals of the best model follow
+    let is_told = ["a torsion of q2", "the torque on q2"].iter().any(|words| says(&outcome, words));
+    assert!(is_told, "{}", outcome.to_text());
 }
 
 #[test]
