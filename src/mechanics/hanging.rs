@@ -268,4 +268,30 @@ mod tests {
         let (sin, cos) = turned_rad.sin_cos();
         assert!((tip_m - Vector3::new(0.6 * cos + 0.2, 0.0, -0.6 * sin)).norm() < 1e-8, "{tip_m}");
     }
+
+    /// A joint about y on a bearing that tilts, with a load beside the arm. The bearing tilts about x alone, since weight has
+    /// no moment about z, and turns the joint's axis with it. The arm rests where the energy of springs and weight is least.
+    #[test]
+    fn a_joint_turns_about_the_axis_that_its_bearing_has_tilted() {
+        let (along_m, beside_m, weight_n) = (0.8, 0.5, 20.0 * 9.81);
+        let (of_joint, of_bearing) = (3000.0, 1500.0);
+        let chain = chain(&format!(
+            r#"{{"gravity_m_s2": 9.81, "chain": [
+            {{"type": "joint", "name": "j1", "axis": [0, 1, 0], "stiffness_nm_per_rad": {of_joint}}},
+            {{"type": "link", "name": "l1", "vector_m": [{along_m}, {beside_m}, 0]}}],
+            "effects": [{{"effect": "bearing_tilt", "at": "j1", "parameters": {{"stiffness_nm_per_rad": {of_bearing}}}}}]}}"#
+        ));
+        // the tip is at Rx(tilt) Ry(twist) (along, beside, 0); each angle in turn, with the other one as it is
+        let (mut tilt, mut twist) = (0.0f64, 0.0f64);
+        for _ in 0..100 {
+            let lever_m = beside_m * tilt.cos() + along_m * twist.sin() * tilt.sin();
+            (tilt, twist) =
+                (-weight_n * lever_m / of_bearing, weight_n * along_m * twist.cos() * tilt.cos() / of_joint);
+        }
+        let turned = Rotation3::from_axis_angle(&Vector3::x_axis(), tilt)
+            * Rotation3::from_axis_angle(&Vector3::y_axis(), twist);
+        let right_m = turned * Vector3::new(along_m, beside_m, 0.0);
+        let found_m = hanging_tip_m(|by| chain.pose_with(&[0.0], &payload(20.0), Vector3::zeros(), by));
+        assert!((found_m - right_m).norm() < 1e-9, "{found_m} {right_m}");
+    }
 }

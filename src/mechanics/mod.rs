@@ -50,7 +50,7 @@ pub use prismatic::GuideLoad;
 pub use response::{Response, frequency_response};
 pub use statics::{JointLoad, SectionLoad, Statics};
 
-use nalgebra::{Matrix6, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix6, Rotation3, Unit, Vector3, Vector6};
 
 /// Translation and rotation of a body as one vector `(v, ω)`, taken at the world's origin.
 pub type Twist = Vector6<f64>;
@@ -87,6 +87,23 @@ pub(crate) fn angular(six: &Vector6<f64>) -> Vector3<f64> {
     six.fixed_rows::<3>(3).into_owned()
 }
 
+/// Rotation about the axis `axis` by an angle that is given by its sine and cosine (Rodrigues' formula).
+pub(crate) fn turn(axis: &Unit<Vector3<f64>>, (sin, cos): (f64, f64)) -> Rotation3<f64> {
+    let (x, y, z) = (axis.x, axis.y, axis.z);
+    let rest = 1.0 - cos;
+    Rotation3::from_matrix_unchecked(Matrix3::new(
+        x * x * rest + cos,
+        x * y * rest - z * sin,
+        x * z * rest + y * sin,
+        x * y * rest + z * sin,
+        y * y * rest + cos,
+        y * z * rest - x * sin,
+        x * z * rest - y * sin,
+        y * z * rest + x * sin,
+        z * z * rest + cos,
+    ))
+}
+
 /// Two unit vectors perpendicular to `axis` and to each other.
 pub(crate) fn across(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
     // The cross product has the least rounding error with the world axis that is least parallel to `axis`.
@@ -96,11 +113,7 @@ pub(crate) fn across(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
 }
 
 /// Inertia matrix (6x6) of a rigid body about the world's origin. It turns the twist of the body into its momentum.
-pub fn body_inertia(
-    mass_kg: f64,
-    cg_m: &Vector3<f64>,
-    inertia_about_cg: &nalgebra::Matrix3<f64>,
-) -> Matrix6<f64> {
+pub fn body_inertia(mass_kg: f64, cg_m: &Vector3<f64>, inertia_about_cg: &Matrix3<f64>) -> Matrix6<f64> {
     let cross = cg_m.cross_matrix();
     let mut out = Matrix6::zeros();
     out.fixed_view_mut::<3, 3>(0, 0).fill_diagonal(mass_kg);

@@ -14,7 +14,7 @@
 use super::beam::PreparedBeam;
 use super::deflections::deflect;
 use super::hanging::Deflected;
-use super::{across, angular, linear, stack};
+use super::{across, angular, linear, stack, turn};
 use crate::arm::LinkModel;
 use crate::arm::base_lift::BaseLift;
 use crate::arm::body::RigidBody;
@@ -85,10 +85,7 @@ impl Hinge {
 
     /// Torsion under the torque `nm` \[rad\].
     fn torsion_rad(&self, pose_rad: &[f64], nm: f64) -> f64 {
-        match self.law.waves == [0.0; 4] {
-            true => self.law.rising_angle_rad(nm),
-            false => self.law.at_angle(self.angle.of(pose_rad)).rising_angle_rad(nm),
-        }
+        self.law.at_angle(self.angle.of(pose_rad)).rising_angle_rad(nm)
     }
 
     /// Sine and cosine of the angle of the joint. `sin_cos` has those of the pose.
@@ -350,7 +347,9 @@ impl Tip {
                     let axis = place.rotation * hinge.axis.into_inner();
                     let nm = axis.dot(&moment_nm(&place.at_m)) + hinge.own_nm(load.pose_rad);
                     out[k].turn_rad = hinge.axis.into_inner() * hinge.torsion_rad(load.pose_rad, nm);
-                    torques_nm.get_mut(k).into_iter().for_each(|own| *own = nm);
+                    if let Some(own) = torques_nm.get_mut(k) {
+                        *own = nm;
+                    }
                 }
                 Step::Beam(vector_m, end) => {
                     let end_m = place.at_m + place.rotation * vector_m;
@@ -450,13 +449,6 @@ impl Deflected for Hung<'_> {
         let strains = self.arm.strains(self.load, &self.places, &self.tip);
         (self.arm.moved_m(&self.places, &self.tip, &strains), strains)
     }
-}
-
-/// Rotation about a unit axis by an angle that is given by its sine and cosine (Rodrigues' formula).
-fn turn(axis: &Unit<Vector3<f64>>, (sin, cos): (f64, f64)) -> Rotation3<f64> {
-    let axis = axis.as_ref();
-    let along = axis * axis.transpose() * (1.0 - cos);
-    Rotation3::from_matrix_unchecked(along + axis.cross_matrix() * sin + Matrix3::identity() * cos)
 }
 
 /// The steps of an arm, base to tip, as they are collected.

@@ -201,8 +201,12 @@ impl Analysis<'_> {
                 self.best.model.label()
             ),
         };
+        let all = match law.put_back {
+            0 => String::new(),
+            rows => format!(" and with the {rows} row(s) that the effects leave out as gross errors"),
+        };
         format!(
-            "{start}: {} (chi-squared {:.0} with its {} parameter(s), {:.0} with {} of the best effects; ln of the evidence \
+            "{start}: {} (chi-squared {:.0} with its {} parameter(s){all}, {:.0} with {} of the best effects; ln of the evidence \
              changes by {:+.1})",
             law.what,
             law.objective,

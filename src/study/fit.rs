@@ -273,6 +273,7 @@ mod tests {
              (elbow)",
             "not compared with a link in elbow: there is none before the next joint",
             " motors that these joints may have lack a size in the catalogs, and that size is not checked",
+            &format!(" of the {} gears and ", Catalogs::builtin().gears.len()),
             "Sizes that were recalled and not seen in a document count like others",
         ] {
             assert!(remarks.contains(words), "{words}\n{remarks}");

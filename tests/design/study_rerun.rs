@@ -200,6 +200,25 @@ fn a_study_of_very_many_designs_is_not_searched_design_by_design() {
 }
 
 #[test]
+fn a_study_without_a_design_is_no_success_and_the_verdict_stands() {
+    let dir = tempfile::tempdir().expect("a folder");
+    let mut study = read_json(Path::new(&format!("{}/study.json", example())));
+    study["constraints"]["mass_max_kg"] = 0.1.into();
+    let file = dir.path().join("light.json");
+    std::fs::write(&file, study.to_string()).expect("written");
+    let out = dir.path().join("out");
+    let output = armwright(&["reconcile", &example(), "--study", word(&file), "--out", word(&out)]);
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(6), "{said}");
+    assert!(said.contains("the nominal model finds no design"), "{said}");
+    let verdict = read_json(&out.join("verdict.json"));
+    assert_eq!(
+        (&verdict["verdict"], &verdict["study"]["status"]),
+        (&"explained".into(), &"infeasible".into())
+    );
+}
+
+#[test]
 fn a_stop_in_the_first_search_ends_the_second_too_and_nothing_is_compared() {
     let dir = tempfile::tempdir().expect("a folder");
     let study = format!("{}/study.json", example());

@@ -52,8 +52,7 @@ pub struct PoseGeometry {
     pub base: [Mover; 2],
     /// Moments of the template's weight about world x and y of the base \[N m\].
     dead_base_nm: [f64; 2],
-    /// For each mass that a fit can change, the moments of one unit of this mass about world x and y of the base
-    /// \[N m\].
+    /// For each mass that a fit can change, the moments of one unit of it about world x and y of the base \[N m\].
     dead_base_per_mass_nm: Vec<[f64; 2]>,
 }
 
@@ -139,9 +138,8 @@ pub(crate) fn prepare(
         let mut load =
             Load { payload: row.payload, force_n: row.force_n, data: [None; 3], when: row.moment() };
         for (component, read) in row.measured.iter().enumerate() {
-            let Some(Component { value_mm, sigma_mm }) = *read else { continue };
+            let Some(Component { value_mm: value, sigma_mm: sigma }) = *read else { continue };
             load.data[component] = Some(data.len());
-            let (value, sigma) = (value_mm, sigma_mm);
             data.push(Datum {
                 channel: Channel::Static,
                 row: row.row,
@@ -178,6 +176,12 @@ impl StaticPose {
 }
 
 impl PoseGeometry {
+    /// Generalized force on a strain coordinate by the dead weight and by the load `wrench` \[N m for a rotation\].
+    pub(crate) fn force_on(&self, index: usize, wrench: &Wrench) -> f64 {
+        let mover = self.linear.iter().find(|mover| mover.index == index);
+        self.dead_forces[index] + mover.map_or(0.0, |mover| mover.twist.dot(wrench))
+    }
+
     /// Computes the geometry of a pose with the mechanics of the full model.
     pub fn new(layout: &Layout, nominal: &Subject, pose_deg: &[f64]) -> Self {
         let pose_rad = nominal.standing_rad(layout.template.pose_si(pose_deg));

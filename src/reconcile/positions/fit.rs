@@ -125,7 +125,7 @@ fn most_likely(
     let mut merit = f64::NEG_INFINITY;
     for _ in 0..MOST_STEPS {
         let normal = normal_of_fit(samples, &misses, numbers, &here);
-        let Some(step) = Step::new(&normal, 1.0, numbers, &here) else { break };
+        let Some(step) = Step::new(&normal, numbers, &here) else { break };
         // the last step is taken whole or not at all
         let halvings = if step.fall < SETTLED { 1 } else { MOST_HALVINGS };
         let mut tried =
@@ -149,7 +149,7 @@ pub(super) fn fits_without(folds: &[Vec<&Sample>], numbers: &[Number], here: &Fi
     let part = Means::new(&misses(&all, here), here.scale_m).newton_part();
     let without = |normal: Normal| {
         let mut out = here.clone();
-        let step = Step::new(&normal, part, numbers, here);
+        let step = Step::new(&with_part(&normal, part, numbers, here), numbers, here);
         step.iter().for_each(|step| out.take(step, 1.0, numbers));
         out
     };
@@ -167,11 +167,9 @@ struct Step {
 }
 
 impl Step {
-    /// The step from the model `here`, about which the samples have the equations `normal`. Newton's step has the part
-    /// `part` of their weighted curvature; that of Gauss and Newton has all of it. `None` if the equations are singular.
-    fn new(normal: &Normal, part: f64, numbers: &[Number], here: &Fitted) -> Option<Self> {
-        let newton = with_part(normal, part, numbers, here);
-        let best = best_springs(&newton, numbers.len(), &here.compliances)?;
+    /// The step from the model `here` by the equations `normal`; `None` if they are singular.
+    fn new(normal: &Normal, numbers: &[Number], here: &Fitted) -> Option<Self> {
+        let best = best_springs(normal, numbers.len(), &here.compliances)?;
         let (of_numbers, compliances) = best.step.split_at(numbers.len());
         Some(Self {
             numbers: shortened(numbers, of_numbers.to_vec()),
@@ -205,8 +203,8 @@ impl Means {
         out
     }
 
-    /// The part of the weighted curvature that half of chi-squared has: the weights fall as the errors grow. A step with this
-    /// part of the curvature is Newton's.
+    /// The part of the weighted curvature that half of chi-squared has, since the weights fall as the errors grow. A step with
+    /// this part of the curvature is Newton's; one with all of it is that of Gauss and Newton.
     fn newton_part(&self) -> f64 {
         (self.slope / self.weight).clamp(LEAST_PART, 1.0)
     }

@@ -141,19 +141,14 @@ impl Fitted {
     /// Displacement of the measured point of a sample by gravity, in the level frame \[m\]: the known deflection, plus
     /// the deflection by the effects of the model, plus the part that linear statics lack.
     pub(crate) fn displacement(&self, sample: &Sample) -> Vector3<f64> {
-        self.without_effects_m(sample) + self.displaced_m(sample, &self.geometry.gravity)
-    }
-
-    /// The displacement of the measured point of a sample by gravity, without the deflection by the effects of the model,
-    /// in the level frame \[m\].
-    pub(crate) fn without_effects_m(&self, sample: &Sample) -> Vector3<f64> {
         let gravity = &self.geometry.gravity;
         let [by_x, by_y] = &sample.deflection.known_slopes_m;
         // most dependences are zero; reading them all from memory would take longer than the sum
         let dependent = self.geometry.dependences.iter().zip(sample.nominal_m.iter());
         let dependent = dependent.filter(|(x, _)| **x != 0.0);
         let known_m = dependent.fold(sample.deflection.known_m, |sum, (x, by)| sum + by * *x);
-        known_m + by_x * gravity.x + by_y * gravity.y + sample.second_order_m
+        let without_effects_m = known_m + by_x * gravity.x + by_y * gravity.y + sample.second_order_m;
+        without_effects_m + self.displaced_m(sample, gravity)
     }
 
     /// How far the effects of the model let the measured point of a sample move under gravity along the direction

@@ -6,8 +6,9 @@ use super::tree::Tree;
 use crate::arm::effect::waves::{transmission_rad, transmission_waves};
 use crate::arm::structure::{JointAngle, Piece};
 use crate::arm::{Arm, Element};
+use crate::mechanics::turn;
 use crate::reconcile::readings::campaign::PositionsSpec;
-use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
+use nalgebra::{Rotation3, Unit, Vector3};
 
 /// The amplitudes of a joint's transmission error if the joint has none.
 pub(super) const EVEN: [f64; 4] = [0.0; 4];
@@ -501,23 +502,6 @@ pub(super) fn rate(angle: &JointAngle, driven: usize) -> f64 {
         JointAngle::Driven(index) => f64::from(u8::from(*index == driven)),
         JointAngle::Coupled(terms) => terms.iter().filter(|(i, _)| *i == driven).map(|(_, f)| f).sum(),
     }
-}
-
-/// Rotation about the axis `axis` by an angle that is given by its sine and cosine (Rodrigues' formula).
-fn turn(axis: &Unit<Vector3<f64>>, (sin, cos): (f64, f64)) -> Rotation3<f64> {
-    let (x, y, z) = (axis.x, axis.y, axis.z);
-    let rest = 1.0 - cos;
-    Rotation3::from_matrix_unchecked(Matrix3::new(
-        x * x * rest + cos,
-        x * y * rest - z * sin,
-        x * z * rest + y * sin,
-        x * y * rest + z * sin,
-        y * y * rest + cos,
-        y * z * rest - x * sin,
-        x * z * rest - y * sin,
-        y * z * rest + x * sin,
-        z * z * rest + cos,
-    ))
 }
 
 /// Two unit vectors that are perpendicular to the axis `axis` and to each other.

@@ -129,7 +129,8 @@ impl<'a> EightPlacer<'a> {
     fn turn(&mut self, lanes: &[&Placing; LANES]) {
         let own = self.placer.geometry;
         self.turned_rad.clear();
-        for asked in lanes.iter().filter(|_| self.needs_angles) {
+        let asked_for = if self.needs_angles { lanes.as_slice() } else { &[] };
+        for asked in asked_for {
             let joints = asked.pose.turns().iter().zip(&own.zeros_rad).zip(&own.transmissions_rad);
             self.turned_rad.extend(joints.map(|((q, zero), waves)| match *waves == EVEN {
                 true => q.rad + zero,

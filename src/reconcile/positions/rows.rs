@@ -139,9 +139,9 @@ fn sums(
         let mut rows = EightRows::new(here, numbers);
         for block in portion.chunks(BLOCK) {
             rows.put_block(block, samples, misses, &mut products);
-            further
-                .iter()
-                .for_each(|further| rows.put_further(block, samples, misses, further, &mut products));
+            if let Some(further) = further {
+                rows.put_further(block, samples, misses, further, &mut products);
+            }
             products.add(block.len());
         }
         products
@@ -257,10 +257,11 @@ impl<'a> EightRows<'a> {
             let by = slope_beyond_geometry(self.here, &self.from_level, sample, &self.numbers[j]);
             by.into_iter().for_each(|by| store(j, by));
         }
-        let mut columns = self.numbers.len()..;
+        let mut j = self.numbers.len();
         for &effect in &self.here.effects {
             sample.deflection.per_compliance(effect, &self.here.geometry.gravity, |by| {
-                columns.next().into_iter().for_each(|j| store(j, self.from_level * by));
+                store(j, self.from_level * by);
+                j += 1;
             });
         }
     }

@@ -55,6 +55,8 @@ pub(crate) struct Better {
     /// Rise of the logarithm of the evidence, less the charge for the place, over the model with which the law
     /// competes.
     pub gain: f64,
+    /// Number of rows that are gross errors with the named effects and that the law explains: they are among its readings.
+    pub put_back: usize,
 }
 
 impl Better {
@@ -109,7 +111,9 @@ pub(crate) fn instead(search: &Search, best: &Scored, baseline: &Fit, noise: &No
         let whole = Search { weights: &all, ..*search };
         let baseline = whole.fit(&[], &baseline.point.u, Effort::default());
         let credit = GROSS_ERROR_CHARGE * noise.outliers.len() as f64;
-        found = found.into_iter().chain(instead_with(&whole, best, &baseline, credit)).max_by(by_gain);
+        let with_all = instead_with(&whole, best, &baseline, credit);
+        let with_all = with_all.map(|law| Better { put_back: noise.outliers.len(), ..law });
+        found = found.into_iter().chain(with_all).max_by(by_gain);
     }
     found
 }
@@ -171,7 +175,7 @@ fn best_of(
     let best = good.max_by(|a, b| gain(a).total_cmp(&gain(b)))?;
     let gain = gain(&best);
     let Competitor { what, numbers, objective, .. } = best;
-    Some(Better { what, numbers, objective, gain })
+    Some(Better { what, numbers, objective, gain, put_back: 0 })
 }
 
 /// Fits each law without a name together with the parameters of the model `fit`. Laws that are the same as an effect

@@ -12,16 +12,9 @@ impl Builder<'_> {
             let laws = &self.fit.point.coefficients.laws;
             let compliance = [twisted, loaded].map(|j| laws[j].tangent_compliance_rad_per_nm(0.0));
             let compliance = compliance.into_iter().fold(0.0, f64::max);
-            Law {
-                what: format!(
-                    "a twist of {} under the torque of {}",
-                    joints[twisted].name, joints[loaded].name
-                ),
-                at: None,
-                refines: None,
-                effect: None,
-                columns: vec![self.coupling_column(twisted, loaded, compliance)],
-            }
+            let what =
+                format!("a twist of {} under the torque of {}", joints[twisted].name, joints[loaded].name);
+            Law::new(what, vec![self.coupling_column(twisted, loaded, compliance)])
         };
         pairs.map(law).collect()
     }

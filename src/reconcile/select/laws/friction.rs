@@ -4,7 +4,7 @@
 //! largest lag (half width) is the same at all torques. Here it is a fraction of the torque, so that a joint hardly
 //! lags near zero torque and lags much under a large one.
 
-use super::{Builder, Law};
+use super::{Builder, Law, placed};
 
 /// Friction torques that are tried, as fractions of the torque. The lag is not linear in this fraction, so a small and
 /// a large one are tried.
@@ -19,14 +19,8 @@ impl Builder<'_> {
                 continue;
             }
             let what = format!("a friction of {} in proportion to its torque", slot.name);
-            let law = |part: f64| Law {
-                what: what.clone(),
-                at: Some(slot.name.clone()),
-                refines: None,
-                effect: None,
-                columns: vec![self.friction_column(joint, part)],
-            };
-            out.extend(TRIED_PARTS.map(law));
+            let law = |part: f64| Law::new(what.clone(), vec![self.friction_column(joint, part)]);
+            out.extend(placed(&slot.name, TRIED_PARTS.map(law).into()));
         }
         out
     }

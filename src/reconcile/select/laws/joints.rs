@@ -1,6 +1,7 @@
 //! Laws of joints: a further twist as a function of the torque, the angle or the order of the tests.
 
 use super::super::waves::waves;
+use super::occasions::part;
 use super::{Builder, Law, one_or_both};
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::{servo_compliance, stiffness_waves};
@@ -64,8 +65,8 @@ impl Builder<'_> {
         if self.campaign.arm.driven_joint_names().contains(&name.as_str()) {
             let what = format!("a stiffness of {name} that changes with its angle");
             let effect = Some(stiffness_waves::KIND.name);
-            out.push(Law::without_place(what.clone(), effect, vec![wave(0), wave(1)]));
-            out.push(Law::without_place(what, effect, vec![wave(2), wave(3)]));
+            out.push(Law { effect, ..Law::new(what.clone(), vec![wave(0), wave(1)]) });
+            out.push(Law { effect, ..Law::new(what, vec![wave(2), wave(3)]) });
         }
         for channel in [Channel::Static, Channel::Modal] {
             let what =
@@ -76,7 +77,7 @@ impl Builder<'_> {
             if self.kinds_of_readings() > 1 {
                 let what = format!("a stiffness of {name} that is another in the {} tests", channel.word());
                 let effect = Some(servo_compliance::KIND.name);
-                out.push(Law::without_place(what, effect, vec![order(channel, 0)]));
+                out.push(Law { effect, ..Law::new(what, vec![order(channel, 0)]) });
             }
         }
         out.extend(self.warming_laws(joint, &column));
@@ -135,7 +136,7 @@ impl Builder<'_> {
                 let state = |load: usize| State {
                     torque_nm: torques[load][joint],
                     angle_deg: angle_deg(&self.campaign.statics[row].pose_deg),
-                    part: row as f64 / self.campaign.statics.len() as f64,
+                    part: part(row, self.campaign.statics.len()),
                     channel: Channel::Static,
                     is_reference: load == 0,
                 };
@@ -152,7 +153,7 @@ impl Builder<'_> {
             let state = State {
                 torque_nm: self.torques_nm[datum][joint],
                 angle_deg: angle_deg(&self.campaign.modal[row].pose_deg),
-                part: row as f64 / self.campaign.modal.len() as f64,
+                part: part(row, self.campaign.modal.len()),
                 channel: Channel::Modal,
                 is_reference: false,
             };

@@ -15,12 +15,8 @@ impl Builder<'_> {
     pub(super) fn length_laws(&self) -> Vec<Law> {
         let names: Vec<&str> = self.campaign.arm.links().map(|link| link.name.as_str()).collect();
         let columns = self.forward.length_columns.get_or_init(|| self.length_columns(&names));
-        let law = |(name, column): (&&str, &Vec<f64>)| Law {
-            what: format!("a length of {name} other than drawn"),
-            at: None,
-            refines: None,
-            effect: None,
-            columns: vec![column.clone()],
+        let law = |(name, column): (&&str, &Vec<f64>)| {
+            Law::new(format!("a length of {name} other than drawn"), vec![column.clone()])
         };
         names.iter().zip(columns).map(law).collect()
     }

@@ -12,13 +12,8 @@ impl Builder<'_> {
     /// The law that gravity is tilted, with one parameter for each horizontal axis.
     pub(super) fn level_laws(&self) -> Vec<Law> {
         let columns = self.forward.level_columns.get_or_init(|| self.level_columns());
-        vec![Law {
-            what: "a direction of gravity other than stated (an arm that is out of level)".into(),
-            at: None,
-            refines: None,
-            effect: None,
-            columns: columns.clone(),
-        }]
+        let what = "a direction of gravity other than stated (an arm that is out of level)";
+        vec![Law::new(what, columns.clone())]
     }
 
     /// For each horizontal axis of the world, the change of every reading of the nominal arm, in its unit, if gravity

@@ -1,7 +1,7 @@
 //! Laws of a base, of bearings and of links: they may be more compliant in one direction or in one part only, and links
 //! may have another mass or wall than drawn.
 
-use super::{Builder, Law};
+use super::{Builder, Law, placed};
 use crate::arm::BASE;
 use crate::mechanics::beam::Strain;
 use crate::reconcile::fit::descent::change_to;
@@ -14,13 +14,10 @@ impl Builder<'_> {
         let layout = &self.forward.layout;
         let own = &self.fit.point.coefficients;
         let joints: Vec<f64> = own.laws.iter().map(|law| law.tangent_compliance_rad_per_nm(0.0)).collect();
-        let Some(common) = joints.iter().copied().find(|c| *c > 0.0) else { return Vec::new() };
+        let Some(common) = self.first_compliance_rad_per_nm() else { return Vec::new() };
         let law = |at: &str, what: String, further: &[(usize, f64)]| Law {
-            what,
             at: Some(at.to_string()),
-            refines: None,
-            effect: None,
-            columns: vec![self.compliance_column(further)],
+            ..Law::new(what, vec![self.compliance_column(further)])
         };
         let tilts = |at: &str, what: String, first: usize, compliance: f64| {
             [first, first + 1].map(|i| law(at, what.clone(), &[(i, compliance)]))
@@ -63,14 +60,11 @@ impl Builder<'_> {
                 let own = slot.first..slot.first + slot.strains.len();
                 c.linear[own].iter_mut().for_each(|compliance| *compliance *= 1.0 + part);
             };
-            let law = |what: &str, changed: &dyn Fn(&mut Coefficients, f64)| Law {
-                what: format!("a {what} of {} other than drawn", link.name),
-                at: Some(link.name.clone()),
-                refines: None,
-                effect: None,
-                columns: vec![self.changed_column(changed)],
+            let law = |what: &str, changed: &dyn Fn(&mut Coefficients, f64)| {
+                let what = format!("a {what} of {} other than drawn", link.name);
+                Law::new(what, vec![self.changed_column(changed)])
             };
-            [law("mass", &lighter), law("wall", &thinner)]
+            placed(&link.name, vec![law("mass", &lighter), law("wall", &thinner)])
         });
         laws.collect()
     }

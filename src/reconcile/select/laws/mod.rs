@@ -63,9 +63,9 @@ pub(crate) struct Law {
 }
 
 impl Law {
-    /// A law that has no place yet, with its description `what`, the effect that is the same as the law, and its columns.
-    fn without_place(what: String, effect: Option<&'static str>, columns: Vec<Vec<f64>>) -> Self {
-        Self { what, at: None, refines: None, effect, columns }
+    /// A law with its description `what` and its columns, that has no place and nothing to do with an effect.
+    fn new(what: impl Into<String>, columns: Vec<Vec<f64>>) -> Self {
+        Self { what: what.into(), at: None, refines: None, effect: None, columns }
     }
 }
 
@@ -148,8 +148,7 @@ fn placed(at: &str, mut laws: Vec<Law>) -> Vec<Law> {
 /// Three laws with the description `what`: one with the first column, one with the second, and one with both.
 fn one_or_both(what: &str, columns: [Vec<f64>; 2]) -> Vec<Law> {
     let [a, b] = columns;
-    let law = |columns| Law { what: what.to_string(), at: None, refines: None, effect: None, columns };
-    vec![law(vec![a.clone()]), law(vec![b.clone()]), law(vec![a, b])]
+    [vec![a.clone()], vec![b.clone()], vec![a, b]].map(|columns| Law::new(what, columns)).into()
 }
 
 #[cfg(test)]

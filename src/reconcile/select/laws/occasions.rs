@@ -25,7 +25,6 @@ pub(super) fn occasions(campaign: &Campaign, forward: &Forward) -> Vec<Occasion>
     let (rows, modal, bench) = (&campaign.statics, &campaign.modal, &campaign.windup);
     let kept = rows_in_pose(rows.iter().map(|row| row.pose_deg.as_slice()));
     let is_unloading = unloading(rows, &kept);
-    let part = |row: usize, count: usize| row as f64 / count as f64;
     let of = |(i, datum): (usize, &crate::reconcile::forward::datum::Datum)| match datum.channel {
         Channel::Static => Occasion {
             part: part(datum.index, rows.len()),
@@ -46,8 +45,13 @@ pub(super) fn occasions(campaign: &Campaign, forward: &Forward) -> Vec<Occasion>
     forward.data.iter().enumerate().map(of).collect()
 }
 
+/// Fraction of the `count` rows of a file that were taken before the row with the index `row`.
+pub(super) fn part(row: usize, count: usize) -> f64 {
+    row as f64 / count as f64
+}
+
 /// For each row, how many rows with the same pose stand directly before it.
-pub(super) fn rows_in_pose<'a>(poses: impl Iterator<Item = &'a [f64]>) -> Vec<usize> {
+fn rows_in_pose<'a>(poses: impl Iterator<Item = &'a [f64]>) -> Vec<usize> {
     let mut last: Option<(&[f64], usize)> = None;
     poses
         .map(|pose| {

@@ -65,8 +65,7 @@ impl Builder<'_> {
     pub(super) fn linear_parts(&self) -> Vec<LinearPart> {
         let layout = &self.forward.layout;
         let own = &self.fit.point.coefficients;
-        let joints = own.laws.iter().map(|law| law.tangent_compliance_rad_per_nm(0.0));
-        let Some(common) = joints.into_iter().find(|c| *c > 0.0) else { return Vec::new() };
+        let Some(common) = self.first_compliance_rad_per_nm() else { return Vec::new() };
         let compliance = |i: usize| if own.linear[i] > 0.0 { own.linear[i] } else { common };
         let tilts = |first: usize| vec![(first, compliance(first)), (first + 1, compliance(first + 1))];
         let mut out = vec![(BASE.to_string(), "the base".to_string(), tilts(0))];
@@ -83,6 +82,12 @@ impl Builder<'_> {
         out
     }
 
+    /// Compliance of the first joint that is compliant, a size of compliances for parts that are rigid \[rad/(N m)\].
+    pub(super) fn first_compliance_rad_per_nm(&self) -> Option<f64> {
+        let laws = self.fit.point.coefficients.laws.iter();
+        laws.map(|law| law.tangent_compliance_rad_per_nm(0.0)).find(|compliance| *compliance > 0.0)
+    }
+
     fn readings_as_a_part(&self) -> Part {
         let predicted = self.fit.point.predicted.iter().zip(&self.forward.data);
         let column = predicted.map(|(d, datum)| if datum.channel == Channel::Static { *d } else { 0.0 });
@@ -97,13 +102,7 @@ impl Builder<'_> {
 
     /// The laws that the stiffness of a part depends on the occasion of a reading.
     pub(super) fn occasion_laws(&self, part: &Part) -> Vec<Law> {
-        let law = |what: &str, column| Law {
-            what: format!("{} {what}", part.stiffness),
-            at: None,
-            refines: None,
-            effect: None,
-            columns: vec![column],
-        };
+        let law = |what: &str, column| Law::new(format!("{} {what}", part.stiffness), vec![column]);
         let longest = self.occasions.iter().map(|o| o.rows_in_pose).max().unwrap_or(0).max(1) as f64;
         let kept = [
             self.only(part, Channel::Static, &|o| o.rows_in_pose as f64 / longest),
@@ -173,7 +172,7 @@ impl Builder<'_> {
             let index = driven.iter().position(|name| *name == joints[joint].name)?;
             let columns = all_waves.iter().flat_map(|n| [column(index, *n, 0), column(index, *n, 1)]);
             let refines = Some(stiffness_waves::KIND.name);
-            Some(Law { what, at: None, refines, effect: None, columns: columns.collect() })
+            Some(Law { refines, ..Law::new(what, columns.collect()) })
         };
         let sets = FINE_WAVES.iter().map(std::slice::from_ref).chain([FINE_WAVES.as_slice()]);
         let what = format!("{} that changes several times a turn with its angle", part.stiffness);

@@ -29,13 +29,8 @@ impl Builder<'_> {
             let what = format!("{} readings that are not straight in the true value", channel.word());
             let mut own = one_or_both(&what, bent);
             if channel == Channel::Modal {
-                own.push(Law {
-                    what: "modal readings that are all off by the same frequency".into(),
-                    at: None,
-                    refines: None,
-                    effect: None,
-                    columns: vec![column(&|_, _| largest)],
-                });
+                let what = "modal readings that are all off by the same frequency";
+                own.push(Law::new(what, vec![column(&|_, _| largest)]));
             }
             if channel == Channel::Static {
                 own.extend(self.direction_laws(&column));
@@ -74,15 +69,13 @@ impl Builder<'_> {
         let is_carrying = |r: usize| rows[r].payload.mass_kg > 0.0;
         let gain_where = |holds: &dyn Fn(usize) -> bool| column(&|i, d| if holds(row(i)) { d } else { 0.0 });
         let gain_of_payloads = || gain_where(&is_carrying);
-        let law =
-            |what: &str, columns| Law { what: what.into(), at: None, refines: None, effect: None, columns };
         let mut out = vec![
-            law("static readings under payloads with a gain of their own", vec![gain_of_payloads()]),
-            law(
+            Law::new("static readings under payloads with a gain of their own", vec![gain_of_payloads()]),
+            Law::new(
                 "payloads that weigh a factor of what is stated",
                 vec![self.heavier_payloads(gain_of_payloads())],
             ),
-            law(
+            Law::new(
                 "static readings under tip forces alone with a gain of their own",
                 vec![gain_where(&|r| !is_carrying(r))],
             ),
@@ -137,19 +130,12 @@ impl Builder<'_> {
         if !(0..3).all(|c| data[range.clone()].iter().any(|d| d.component == c)) {
             turns.retain(|column| column.iter().any(|x| *x != 0.0));
         }
-        let law = |what: &str, columns: Vec<Vec<f64>>| Law {
-            what: what.into(),
-            at: None,
-            refines: None,
-            effect: None,
-            columns,
-        };
-        let mut out = vec![law(
+        let mut out = vec![Law::new(
             "static readings with a gain of their own in each direction",
             (0..3).map(gain).collect(),
         )];
         if !turns.is_empty() {
-            out.push(law("static readings in a frame that is turned", turns));
+            out.push(Law::new("static readings in a frame that is turned", turns));
         }
         out
     }

@@ -15,13 +15,8 @@ impl Builder<'_> {
         let mut out = Vec::new();
         for (at, name, coordinates) in self.linear_parts() {
             let Some(column) = self.size_column(&coordinates) else { continue };
-            let law = |columns| Law {
-                what: format!("a stiffness of {name} that changes with the size of its load"),
-                at: Some(at.clone()),
-                refines: None,
-                effect: None,
-                columns,
-            };
+            let what = format!("a stiffness of {name} that changes with the size of its load");
+            let law = |columns| Law { at: Some(at.clone()), ..Law::new(what.clone(), columns) };
             let is_rigid = coordinates.iter().all(|(i, _)| self.fit.point.coefficients.linear[*i] == 0.0);
             if is_rigid {
                 out.push(law(vec![self.compliance_column(&coordinates), column.clone()]));
@@ -42,16 +37,15 @@ impl Builder<'_> {
         let mut largest = 0.0f64;
         let mut truth = vec![0.0; forward.data.len()];
         for pose in &forward.statics {
-            let own_movers = coordinates
+            let movers: Vec<_> = coordinates
                 .iter()
-                .map(|(index, _)| pose.geometry.linear.iter().find(|mover| mover.index == *index));
-            let movers: Vec<_> = own_movers.collect();
+                .map(|(index, _)| pose.geometry.linear.iter().find(|mover| mover.index == *index))
+                .collect();
             let dead: Vec<f64> = coordinates.iter().map(|(i, _)| pose.geometry.dead_forces[*i]).collect();
             let before = size(&dead);
             for (load, wrench) in pose.wrenches(&forward.layout, own).iter().enumerate() {
-                let further = movers.iter().map(|mover| mover.map_or(0.0, |m| m.twist.dot(wrench)));
                 let forces: Vec<f64> =
-                    dead.iter().zip(further).map(|(dead, further)| dead + further).collect();
+                    coordinates.iter().map(|(i, _)| pose.geometry.force_on(*i, wrench)).collect();
                 let after = size(&forces);
                 largest = largest.max(after);
                 for (component, datum) in pose.measured(load) {
@@ -88,11 +82,7 @@ impl Builder<'_> {
         let (forward, own) = (self.forward, &self.fit.point.coefficients);
         let of_test = |test: &ModalTest| {
             let wrench = test.wrench(&forward.layout, own);
-            let of = |index: usize| {
-                let mover = test.geometry.linear.iter().find(|mover| mover.index == index);
-                test.geometry.dead_forces[index] + mover.map_or(0.0, |m| m.twist.dot(&wrench))
-            };
-            coordinates.iter().map(|(index, _)| of(*index)).collect()
+            coordinates.iter().map(|(index, _)| test.geometry.force_on(*index, &wrench)).collect()
         };
         forward.modal.iter().map(of_test).collect()
     }

@@ -7,12 +7,9 @@ impl Builder<'_> {
     pub(super) fn zero_laws(&self) -> Vec<Law> {
         let names = self.campaign.arm.driven_joint_names();
         let slopes = self.forward.turn_slopes(self.campaign);
-        let law = |(name, slope): (&&str, &Vec<f64>)| Law {
-            what: format!("an angle of {name} whose zero is off"),
-            at: None,
-            refines: None,
-            effect: None,
-            columns: vec![slope.iter().map(|slope| FULL_ANGLE_DEG * slope).collect()],
+        let law = |(name, slope): (&&str, &Vec<f64>)| {
+            let column = slope.iter().map(|slope| FULL_ANGLE_DEG * slope).collect();
+            Law::new(format!("an angle of {name} whose zero is off"), vec![column])
         };
         names.iter().zip(slopes).map(law).collect()
     }
