@@ -59,10 +59,10 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs, log: Log) -> Result<Stri
     };
     let remarks = paragraphs(&study.remarks);
     if let Some(joint) = &args.explain {
-        return Ok(explain(&problem, &chosen, joint)? + &remarks);
+        return Ok(explain(&problem, &chosen, joint, catalogs)? + &remarks);
     }
     if let Some(joint) = &args.all_fits {
-        return Ok(all_fits(&problem, &chosen, joint)? + &remarks);
+        return Ok(all_fits(&problem, &chosen, joint, catalogs)? + &remarks);
     }
     let Sizing { rows, remarks: said } = sizing_in(&study, &problem, &chosen, catalogs)?;
     let remarks = paragraphs(&said);
@@ -123,7 +123,12 @@ struct AtJoint {
 
 /// The design with the options `chosen`, built as far as the joint named `joint`. Fails if the study has no such joint,
 /// or if the arm outboard of it breaks a limit.
-fn before(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<AtJoint, Failure> {
+fn before(
+    problem: &ArmProblem,
+    chosen: &[u32],
+    joint: &str,
+    catalogs: &Catalogs,
+) -> Result<AtJoint, Failure> {
     let is_joint = |p: &&SpacePiece| matches!(p, SpacePiece::Joint(_) | SpacePiece::Prismatic(_));
     let pieces = &problem.space().pieces;
     let unknown = || {
@@ -139,7 +144,7 @@ fn before(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<AtJoint, 
     });
     match (found, walked) {
         (Some(found), _) => Ok(found),
-        (None, Err(slot)) => Err(why_not_held(problem, chosen, slot).into()),
+        (None, Err(slot)) => Err(why_not_held(problem, chosen, slot, catalogs).into()),
         (None, Ok(_)) => Err(Failure::Internal(format!("joint \"{joint}\" was not met on the way"))),
     }
 }
@@ -154,8 +159,13 @@ fn sized<'p, 'c>(
         .ok_or_else(|| Failure::Usage(format!("joint {joint} has a given drive: there is nothing to choose")))
 }
 
-fn explain(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<String, Failure> {
-    let AtJoint { slot, piece, outboard: partial } = before(problem, chosen, joint)?;
+fn explain(
+    problem: &ArmProblem,
+    chosen: &[u32],
+    joint: &str,
+    catalogs: &Catalogs,
+) -> Result<String, Failure> {
+    let AtJoint { slot, piece, outboard: partial } = before(problem, chosen, joint, catalogs)?;
     let table = &sized(problem, piece, joint)?.table;
     let demand = problem.demand_at(&partial, slot);
     let mut out = format!("{}\n{}", demand_line(joint, &demand, table), bearing_line(joint, &demand.bearing));
@@ -172,8 +182,13 @@ fn explain(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<String, 
 /// drive.
 const MASS: &str = "mass kg (with extras)";
 
-fn all_fits(problem: &ArmProblem, chosen: &[u32], joint: &str) -> Result<String, Failure> {
-    let AtJoint { slot, piece, outboard: partial } = before(problem, chosen, joint)?;
+fn all_fits(
+    problem: &ArmProblem,
+    chosen: &[u32],
+    joint: &str,
+    catalogs: &Catalogs,
+) -> Result<String, Failure> {
+    let AtJoint { slot, piece, outboard: partial } = before(problem, chosen, joint, catalogs)?;
     let table = &sized(problem, piece, joint)?.table;
     let demand = problem.demand_at(&partial, slot);
     let mut out = format!("{}\n", demand_line(joint, &demand, table));

@@ -30,6 +30,18 @@ pub(crate) fn add_transposed_product(out: &mut DMatrix<f64>, a: DMatrixView<f64>
     Panels::of_columns(a).add_times(out, b);
 }
 
+/// Adds `AᵀA` to the symmetric matrix `out`: its entries from the diagonal down. Above the diagonal `out` is then incomplete:
+/// something is added to some of its entries and nothing to the others. Like in [`add_transposed_product`], A may be divided
+/// into blocks of rows.
+///
+/// # Panics
+/// If `out` does not have a row and a column for each column of A.
+pub(crate) fn add_lower_square(out: &mut DMatrix<f64>, a: DMatrixView<f64>) {
+    let columns: Vec<_> = a.column_iter().collect();
+    let columns: Vec<&[f64]> = columns.iter().map(|column| column.as_slice()).collect();
+    Panels::of_slices(&columns, a.nrows()).add_lower_square(out, &columns);
+}
+
 /// The left factor of a product, stored in panels of eight rows. The last panel is filled up with rows of zeros.
 pub(crate) struct Panels {
     /// For each panel, and in it for each column of the left factor (each term of the sums), the eight entries of the
@@ -83,12 +95,17 @@ impl Panels {
     /// # Panics
     /// If `columns` are not as many and as long as the left factor's rows.
     pub(crate) fn lower_square(&self, columns: &[&[f64]]) -> DMatrix<f64> {
-        assert_eq!(self.rows, columns.len(), "a column for each row");
         let mut out = DMatrix::zeros(self.rows, self.rows);
+        self.add_lower_square(&mut out, columns);
+        out
+    }
+
+    fn add_lower_square(&self, out: &mut DMatrix<f64>, columns: &[&[f64]]) {
+        assert_eq!(self.rows, columns.len(), "a column for each row");
+        assert_eq!(out.shape(), (self.rows, self.rows), "a place for every sum");
         if self.terms > 0 && !out.is_empty() {
             in_lanes(Sums { out: out.as_mut_slice(), stride: self.rows, a: self, columns, is_lower: true });
         }
-        out
     }
 
     /// Stores the matrix A so that its transpose can be the left factor of a product AᵀB.
@@ -217,6 +234,16 @@ mod tests {
             let own = Panels::of_slices(&columns, terms).lower_square(&columns);
             assert_eq!(own.lower_triangle(), transposed_product(&a, &a).lower_triangle());
         }
+    }
+
+    #[test]
+    fn squares_of_blocks_of_rows_add_up_to_the_square_of_the_whole() {
+        let a = numbers(50, 11, 2);
+        let mut parts = DMatrix::zeros(11, 11);
+        for (first, count) in [(0, 13), (13, 37)] {
+            add_lower_square(&mut parts, a.rows(first, count));
+        }
+        assert_eq!(parts.lower_triangle(), transposed_product(&a, &a).lower_triangle());
     }
 
     #[test]

@@ -2,11 +2,12 @@
 //! missing, how certain these are, and whether they predict held-out poses. In addition to effects of the library, the
 //! analysis tries *laws without a name*: smooth functions that reveal physics which the library lacks.
 
-use super::fit::descent::{Effort, Fit, Weights};
+use super::fit::descent::{Effort, Fit};
 use super::fit::held_out::{self, HeldOut, rms};
 use super::fit::interval::intervals;
 use super::fit::noise::Noise;
 use super::fit::units;
+use super::fit::weights::Weights;
 use super::forward::prepared::Forward;
 use super::model::calibration::Nuisance;
 use super::model::candidates::candidates;

@@ -1,6 +1,7 @@
 //! Reads the files that a prediction needs, and adds the predictions of the model to the readings.
 
 use super::predict::{predict, unplaced};
+use super::readings::campaign::MOST_READINGS;
 use super::readings::campaign::{Statement, read_statement};
 use super::readings::placement::{Placed, Placement};
 use super::readings::source::{DEFAULT_FILES, Source};
@@ -48,7 +49,9 @@ pub fn predict_files(files: &Files, catalogs: &Catalogs) -> Result<Prediction, I
     for file in &other_arms {
         arms.push(placed(file, catalogs)?);
     }
-    let csv = predict(&arms, &statement, table(files.readings, &statement)?)?;
+    let mut readings = table(files.readings, &statement)?;
+    readings.refuse_more_than(MOST_READINGS);
+    let csv = predict(&arms, &statement, readings)?;
     let remark = unplaced(&arms, &table(files.readings, &statement)?);
     let of_campaign = of_campaign(files.campaign, &statement);
     Ok(Prediction { csv, remark, other_arms, of_campaign })

@@ -169,12 +169,15 @@ impl<'c> ArmProblem<'c> {
         known.then_some(partial.cost_eur)
     }
 
-    /// Largest wall slenderness over the chosen links of a complete arm; 0 if it has none.
-    pub fn wall_slenderness(&self, complete: &Partial) -> f64 {
-        let chosen = self.space.pieces.iter().zip(self.options(complete));
-        chosen
-            .filter_map(|(piece, option)| match piece {
-                SpacePiece::Choice(choice) => Some(choice.options[option as usize].wall_slenderness()),
+    /// Largest wall slenderness over the chosen links of an arm, as far as it is built; 0 if it has none.
+    pub fn wall_slenderness(&self, partial: &Partial) -> f64 {
+        let built =
+            self.space.pieces.iter().zip(&self.piece_slots).filter(|(_, slot)| **slot < partial.next_slot);
+        built
+            .filter_map(|(piece, slot)| match piece {
+                SpacePiece::Choice(choice) => {
+                    Some(choice.options[partial.options[*slot] as usize].wall_slenderness())
+                }
                 _ => None,
             })
             .fold(0.0, f64::max)

@@ -112,7 +112,8 @@ pub(crate) fn reach_m(tip_m: &Vector3<f64>, down: &Vector3<f64>) -> f64 {
 pub fn capacity_of(study: &Study, id: Option<&str>, catalogs: &Catalogs) -> Result<Capacity, Refusal> {
     let (space, chosen) = chosen_design(study, id, catalogs)?;
     let problem = ArmProblem::new(&space, catalogs);
-    let arm = problem.walk(&chosen, |_, _| {}).map_err(|slot| why_not_held(&problem, &chosen, slot))?;
+    let arm =
+        problem.walk(&chosen, |_, _| {}).map_err(|slot| why_not_held(&problem, &chosen, slot, catalogs))?;
     let mut found = capacity(&space, catalogs, arm.slot_options(), &study.own_payloads);
     found.largest_speed = largest_speed(&problem, arm.slot_options(), catalogs);
     found.remarks.extend(duty_remark(&space));

@@ -6,6 +6,7 @@ use super::gear_remarks::life_remarks;
 use super::given_tube_remarks::given_tube_remarks_on;
 use super::guide_remarks::guide_remarks_on;
 use super::joint_obstacle::{first_fit_at, obstacle_at};
+use super::limit::Quantity;
 use super::load::refuse_empty;
 use super::motor_remarks::{heat_remark_on, stop_remark_on};
 use super::reaction_remarks::reaction_remark_on;
@@ -79,7 +80,8 @@ pub(crate) fn sizing_in(
     chosen: &[u32],
     catalogs: &Catalogs,
 ) -> Result<Sizing, Refusal> {
-    let rows = sizing_rows(problem, catalogs, chosen).map_err(|slot| why_not_held(problem, chosen, slot))?;
+    let rows = sizing_rows(problem, catalogs, chosen)
+        .map_err(|slot| why_not_held(problem, chosen, slot, catalogs))?;
     let of_lives = life_remarks(rows.iter().map(|row| row.gear.as_str()), catalogs);
     let of_reactions = reaction_remark_on(problem, catalogs, chosen, "in the sizing cases");
     let of_bearings = stated_bearing_remarks_on(problem, catalogs, chosen);
@@ -155,7 +157,12 @@ fn nearest_to_median(problem: &ArmProblem, outboard: &[u32], piece: usize, by_ma
 
 /// The reason why the options `chosen` give no design. [`ArmProblem::walk`] builds the arm from the tip inward; `slot`
 /// is the place of the joint or link at which it ended.
-pub(crate) fn why_not_held(problem: &ArmProblem, chosen: &[u32], slot: usize) -> Refusal {
+pub(crate) fn why_not_held(
+    problem: &ArmProblem,
+    chosen: &[u32],
+    slot: usize,
+    catalogs: &Catalogs,
+) -> Refusal {
     let mut last = Partial::default();
     let _ = problem.walk(chosen, |_, partial| last = partial.clone());
     let piece = problem.piece_of_slot(slot);
@@ -167,11 +174,33 @@ pub(crate) fn why_not_held(problem: &ArmProblem, chosen: &[u32], slot: usize) ->
             let why = obstacle_at(&sized.table, &demand).or_else(too_weak).unwrap_or_else(internal);
             Refusal::Infeasible(format!("with these links, {why}"))
         }
-        None => Refusal::Infeasible(
-            "a link breaks a limit on stress, wall slenderness, cost or mass: choose another with --design"
-                .into(),
-        ),
+        None => {
+            let link = problem.piece_in_slot(slot).map_or("", SpacePiece::name);
+            let broken = broken_limits(problem, chosen, slot, catalogs).join(" and ");
+            Refusal::Infeasible(format!(
+                "link {link} breaks a limit: {broken}; or name another design with --design"
+            ))
+        }
     }
+}
+
+/// The limits that the arm with the options `chosen` breaks as far as the link in `slot`, in words.
+fn broken_limits(problem: &ArmProblem, chosen: &[u32], slot: usize, catalogs: &Catalogs) -> Vec<String> {
+    let limits = problem.space().constraints;
+    let mut lax = problem.space().clone();
+    Quantity::OF_LINKS
+        .iter()
+        .for_each(|quantity| quantity.set(&mut lax.constraints, quantity.admits_all(&limits)));
+    let lax = ArmProblem::new(&lax, catalogs);
+    let mut with_link: Option<Partial> = None;
+    let whole = lax.walk(chosen, |next, partial| {
+        if next > slot && with_link.is_none() {
+            with_link = Some(partial.clone());
+        }
+    });
+    let Some(arm) = with_link.or(whole.ok()) else { return Vec::new() };
+    let words = |quantity: &Quantity| quantity.broken_words(&limits, quantity.of_part(&lax, &arm)?);
+    Quantity::OF_LINKS.iter().filter_map(words).collect()
 }
 
 /// The reason why the drive chosen at the joint `piece` does not meet `demand`. `None` unless the joint has a choice of

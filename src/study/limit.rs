@@ -21,6 +21,9 @@ impl Quantity {
     const ALL: [Self; 6] =
         [Self::Deflection, Self::Mode, Self::Mass, Self::Stress, Self::Slenderness, Self::Cost];
 
+    /// The quantities that are checked as soon as a link is added to an arm.
+    pub(super) const OF_LINKS: [Self; 3] = [Self::Slenderness, Self::Stress, Self::Cost];
+
     /// The quantities on which `constraints` has a limit.
     pub(super) fn limited(constraints: &Constraints) -> Vec<Self> {
         Self::ALL.into_iter().filter(|quantity| quantity.asked(constraints).is_some()).collect()
@@ -51,6 +54,23 @@ impl Quantity {
         }
     }
 
+    /// A limit that every design meets, if `constraints` has a limit on this quantity; `None` if it has none. With such a
+    /// limit the quantity is computed and excludes nothing.
+    pub(super) fn admits_all(self, constraints: &Constraints) -> Option<f64> {
+        self.asked(constraints).map(|_| if self.is_least() { f64::MIN_POSITIVE } else { f64::MAX })
+    }
+
+    /// The value of this quantity for a part of an arm, as far as it is built; `None` for a quantity that only a complete
+    /// arm has, or if a strength or a cost is unknown.
+    pub(super) fn of_part(self, problem: &ArmProblem, arm: &Partial) -> Option<f64> {
+        match self {
+            Self::Stress => problem.stress_safety_factor(arm),
+            Self::Slenderness => Some(problem.wall_slenderness(arm)),
+            Self::Cost => problem.material_cost_eur(arm),
+            Self::Deflection | Self::Mode | Self::Mass => None,
+        }
+    }
+
     /// The value of this quantity for a complete design: `arm` is the arm as the search builds it, `objectives` are its
     /// objectives. `None` if a strength or a cost is unknown.
     pub(super) fn of(self, problem: &ArmProblem, arm: &Partial, objectives: &Objectives) -> Option<f64> {
@@ -58,9 +78,8 @@ impl Quantity {
             Self::Deflection => Some(objectives.tip_deflection_m),
             Self::Mode => Some(objectives.lowest_mode_hz),
             Self::Mass => Some(objectives.mass_kg),
-            Self::Stress => Some(problem.stress_safety_factor(arm).unwrap_or(f64::INFINITY)),
-            Self::Slenderness => Some(problem.wall_slenderness(arm)),
-            Self::Cost => problem.material_cost_eur(arm),
+            Self::Stress => Some(self.of_part(problem, arm).unwrap_or(f64::INFINITY)),
+            Self::Slenderness | Self::Cost => self.of_part(problem, arm),
         }
     }
 
@@ -132,6 +151,24 @@ impl Quantity {
             words(reached),
             words((reached - asked).abs())
         )
+    }
+
+    /// The stated limit, the value `reached` by an arm, and the value of the key that would admit it, in words; `None` if
+    /// the arm meets the limit.
+    pub(super) fn broken_words(self, constraints: &Constraints, reached: f64) -> Option<String> {
+        let asked = self.asked(constraints)?;
+        let (is_broken, bound) =
+            if self.is_least() { (reached < asked, "at least") } else { (reached > asked, "at most") };
+        let (unit, scale) = self.unit();
+        let [reached_words, asked] = [reached, asked].map(|x| format!("{} {unit}", short(x * scale)));
+        let words = format!(
+            "{} {} where {bound} {} is asked (a change of {} admits it)",
+            self.name(),
+            reached_words.trim_end(),
+            asked.trim_end(),
+            self.enough_words(constraints, reached)
+        );
+        is_broken.then_some(words)
     }
 
     /// The keys of the study file that have to be changed to admit a design with the value `reached`, each with a value

@@ -323,6 +323,25 @@ fn predict_fills_what_was_not_measured() {
     assert!(column(&text, "dy_mm").iter().all(String::is_empty));
 }
 
+#[test]
+fn predict_refuses_more_readings_than_a_campaign_may_have() {
+    let header = "payload_kg,dy_mm,dz_mm,sigma_mm";
+    let write = |_: usize, _: [f64; 2], kg: f64, d: [f64; 3]| format!("{kg},,{:.3},{SIGMA_MM}", d[2]);
+    let made = Bench::standing(false).campaign(header, &write);
+    let file = made.path().join("static.csv");
+    let text = std::fs::read_to_string(&file).expect("readings");
+    let (header, row) = text.split_once('\n').expect("a header");
+    let row = row.lines().next().expect("a row");
+    std::fs::write(&file, format!("{header}\n") + &format!("{row}\n").repeat(100_001)).expect("written");
+    let words = ["predict", "arm.json", "static.csv", "--campaign", "campaign.json"];
+    let output = Command::new(env!("CARGO_BIN_EXE_armwright")).current_dir(made.path()).args(words).output();
+    let output = output.expect("it runs");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(3), "{said}");
+    assert!(said.contains("100001 rows") && said.contains("100000"), "{said}");
+    assert!(output.stdout.is_empty());
+}
+
 fn spreadsheet(file: &str, sheet: Option<&str>) -> tempfile::TempDir {
     let mut statement = json!({
         "name": "gauge", "tolerance": TOLERANCE.clone(),

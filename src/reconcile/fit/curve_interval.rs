@@ -11,8 +11,9 @@
 //! fit, close together near it. The search visits the neighbours of every node that the readings do not rule out.
 
 use super::descent::data_curvature;
-use super::descent::{Effort, Fit, Weights, fit_below};
+use super::descent::{Effort, Fit, fit_below};
 use super::stats::normal_below;
+use super::weights::Weights;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::estimate::Interval;
 use nalgebra::{Cholesky, DMatrix};

@@ -8,7 +8,8 @@
 //! because solving for frequencies takes most of the time. Static and bench readings are cheap to compute and are
 //! differentiated numerically.
 
-use crate::mechanics::product::add_transposed_product;
+use super::normal::{Normal, normal};
+use super::weights::{Weights, loss};
 use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::modal::{ModalTest, Solved};
 use crate::reconcile::forward::prepared::Forward;
@@ -18,30 +19,8 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Residual beyond which Huber's loss grows linearly \[standard deviations\].
-const HUBER_SIGMAS: f64 = 4.0;
 /// Step of a parameter by which numerical derivatives are computed, in the scaled parameters `u`.
 const DERIVATIVE_STEP: f64 = 1e-4;
-
-/// Weights of the data in a fit: which data are used, and how much their declared standard deviations are enlarged.
-#[derive(Debug, Clone)]
-pub struct Weights {
-    /// Reciprocal of each datum's standard deviation, which is the declared one times the factor of its channel; 0
-    /// where the datum is left out.
-    pub inverse: Vec<f64>,
-    /// Whether only static and bench readings are used. Natural frequencies are then not computed.
-    pub smooth_only: bool,
-}
-
-impl Weights {
-    /// These weights with all frequencies left out, so that no modes are computed.
-    pub fn without_modes(&self, forward: &Forward) -> Self {
-        let mut out = self.clone();
-        out.inverse[forward.starts[1]..forward.starts[2]].fill(0.0);
-        out.smooth_only = true;
-        out
-    }
-}
 
 /// The predictions and the objective of a model at one parameter vector `u`.
 pub struct Point {
@@ -129,17 +108,6 @@ pub fn objective(forward: &Forward, model: &Model, u: &[f64], predicted: &[f64],
     data + u[..model.calibrated()].iter().map(|u| u * u).sum::<f64>()
 }
 
-/// Factor on a residual \[standard deviations\] and on its row in iteratively reweighted least squares. It is 1 up to
-/// [`HUBER_SIGMAS`]. A larger residual has the weight `HUBER_SIGMAS / |r|`, and the factor is the root of this weight.
-pub(crate) fn robust_factor(residual: f64) -> f64 {
-    if residual.abs() <= HUBER_SIGMAS { 1.0 } else { (HUBER_SIGMAS / residual.abs()).sqrt() }
-}
-
-fn loss(r: f64) -> f64 {
-    let size = r.abs();
-    if size <= HUBER_SIGMAS { r * r } else { 2.0 * HUBER_SIGMAS * size - HUBER_SIGMAS * HUBER_SIGMAS }
-}
-
 /// Derivatives of all predicted readings at the point `at`: one row per datum, one column per parameter.
 pub fn jacobian(forward: &Forward, model: &Model, at: &Point) -> DMatrix<f64> {
     let stepped = |p: usize| {
@@ -187,95 +155,6 @@ fn changes_to(forward: &Forward, at: &Point, moved: &[Coefficients]) -> DMatrix<
         column.iter_mut().zip(&at.predicted).for_each(|(value, before)| *value -= before);
     }
     out
-}
-
-/// Gradient and curvature of half the objective (the normal equations of a step).
-pub struct Normal {
-    /// Gradient of half the objective, one entry per parameter.
-    pub gradient: DVector<f64>,
-    /// Curvature matrix of half the objective (Gauss-Newton).
-    pub curvature: DMatrix<f64>,
-}
-
-/// Builds the normal equations at the parameters `u`, of which the first `calibrated` have a prior. `slopes` contains
-/// the derivatives of the predicted readings. Residuals are predicted minus measured, times the weight of the datum.
-/// Large residuals get less weight, as Huber's loss requires.
-pub fn normal(
-    forward: &Forward,
-    calibrated: usize,
-    u: &[f64],
-    predicted: &[f64],
-    slopes: &Slopes,
-    weights: &Weights,
-) -> Normal {
-    let count = forward.data.len();
-    let (mut factors, mut right) = (Vec::with_capacity(count), Vec::with_capacity(count));
-    for ((datum, predicted), weight) in forward.data.iter().zip(predicted).zip(&weights.inverse) {
-        let residual = (predicted - datum.value) * weight;
-        let robust = robust_factor(residual);
-        factors.push(robust * weight);
-        right.push(residual * robust);
-    }
-    let (mut gradient, mut curvature) =
-        slopes.products(&DVector::from_vec(factors), &DVector::from_vec(right));
-    for p in 0..calibrated {
-        gradient[p] += u[p];
-        curvature[(p, p)] += 1.0;
-    }
-    Normal { gradient, curvature }
-}
-
-/// Number of rows (data) whose products are computed together. These rows then stay in the processor's cache.
-const ROWS_PER_BLOCK: usize = 256;
-
-/// Derivatives of the predicted readings (rows) with respect to parameters (columns), as several matrices whose columns
-/// follow one another. In this way, columns that many models have in common are not copied for each model.
-pub struct Slopes<'a>(pub &'a [&'a DMatrix<f64>]);
-
-impl Slopes<'_> {
-    fn columns(&self) -> usize {
-        self.0.iter().map(|part| part.ncols()).sum()
-    }
-
-    fn rows(&self) -> usize {
-        self.0.first().map_or(0, |part| part.nrows())
-    }
-
-    /// Linearized changes of the predicted readings, one per datum, if the parameters change by `step`.
-    pub fn times(&self, step: &DVector<f64>) -> Vec<f64> {
-        let mut out = DVector::zeros(self.rows());
-        for first in (0..self.rows()).step_by(ROWS_PER_BLOCK) {
-            let count = ROWS_PER_BLOCK.min(self.rows() - first);
-            let mut at = 0;
-            for part in self.0 {
-                let own = step.rows(at, part.ncols());
-                out.rows_mut(first, count).gemv(1.0, &part.rows(first, count), &own, 1.0);
-                at += part.ncols();
-            }
-        }
-        out.data.into()
-    }
-
-    /// The products `Xᵀr` and `XᵀX`. The rows of `X` are the rows of these derivatives, each times its entry of
-    /// `row_factors`; `r` is `right`.
-    fn products(&self, row_factors: &DVector<f64>, right: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
-        let width = self.columns();
-        let (mut gradient, mut curvature) = (DMatrix::zeros(width, 1), DMatrix::zeros(width, width));
-        let block = ROWS_PER_BLOCK.min(self.rows());
-        let mut scaled = DMatrix::zeros(block, width);
-        for first in (0..self.rows()).step_by(ROWS_PER_BLOCK) {
-            let count = block.min(self.rows() - first);
-            let factors = row_factors.rows(first, count);
-            let own = self.0.iter().flat_map(|part| part.column_iter());
-            for (mut to, column) in scaled.column_iter_mut().zip(own) {
-                to.rows_mut(0, count).cmpy(1.0, &column.rows(first, count), &factors, 0.0);
-            }
-            let scaled = scaled.rows(0, count);
-            add_transposed_product(&mut gradient, scaled, right.view((first, 0), (count, 1)));
-            add_transposed_product(&mut curvature, scaled, scaled);
-        }
-        (gradient.column(0).into_owned(), curvature)
-    }
 }
 
 /// Parameters after one damped step from `u`, kept within the bounds of the model. A larger `damping` makes the step
@@ -401,8 +280,7 @@ fn descended(
     let mut damping = 1e-4;
     for _ in 0..effort.steps {
         let slopes = jacobian(forward, model, &here);
-        let normal =
-            normal(forward, model.calibrated(), &here.u, &here.predicted, &Slopes(&[&slopes]), weights);
+        let normal = normal(forward, model.calibrated(), &here.u, &here.predicted, &slopes, weights);
         let Some(next) = descend(forward, model, &here, &normal, weights, &mut damping) else {
             return (here, Some(slopes));
         };
@@ -458,8 +336,7 @@ pub fn finish<'a>(
     // the readings, so its derivative is taken as zero
     let resting = (0..model.len()).filter(|p| model.rests(*p, &point.u));
     resting.for_each(|p| jacobian.fill_column(p, 0.0));
-    let slopes = Slopes(&[&jacobian]);
-    let normal = normal(forward, model.calibrated(), &point.u, &point.predicted, &slopes, weights);
+    let normal = normal(forward, model.calibrated(), &point.u, &point.predicted, &jacobian, weights);
     let mut curvature = normal.curvature;
     let mut evidence = -0.5 * point.objective;
     for (i, parameter) in model.free_parameters().enumerate() {
@@ -514,27 +391,4 @@ pub fn data_curvature(fit: &Fit) -> DMatrix<f64> {
         curvature[(p, p)] -= 11.9 / parameter.width(fit.point.u[p]).powi(2);
     }
     curvature
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn slopes_side_by_side_are_one_matrix() {
-        let rows = 2 * ROWS_PER_BLOCK + 11;
-        let whole = DMatrix::from_fn(rows, 5, |i, j| ((7 * i + 3 * j) % 11) as f64 - 5.0);
-        let (left, right) = (whole.columns(0, 3).into_owned(), whole.columns(3, 2).into_owned());
-        let parts = [&left, &right];
-        let slopes = Slopes(&parts);
-        let step = DVector::from_fn(5, |j, _| j as f64 - 1.0);
-        assert_eq!(slopes.times(&step), (&whole * &step).as_slice());
-        let factors = DVector::from_fn(rows, |i, _| (i % 4) as f64);
-        let residual = DVector::from_fn(rows, |i, _| (i % 5) as f64 - 2.0);
-        let scaled = DMatrix::from_fn(rows, 5, |i, j| factors[i] * whole[(i, j)]);
-        let (gradient, curvature) = slopes.products(&factors, &residual);
-        // whole numbers, so the order of the sums does not matter
-        assert_eq!(gradient, scaled.tr_mul(&residual));
-        assert_eq!(curvature, scaled.tr_mul(&scaled));
-    }
 }

@@ -6,7 +6,8 @@
 //! and a reference reading. Bench rows belong to no pose and stay in every fit. If there are only bench rows, every
 //! fourth row belongs to the same fold.
 
-use super::descent::{Effort, Fit, Weights, descent, robust_factor};
+use super::descent::{Effort, Fit, descent};
+use super::weights::{Weights, robust_factor};
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::Model;
 use nalgebra::{Cholesky, DMatrix};

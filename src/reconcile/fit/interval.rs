@@ -7,7 +7,8 @@
 //! of the interval is the value at which the objective has risen by 3.84.
 
 use super::curve_interval::curve_intervals;
-use super::descent::{Effort, Fit, Weights, data_curvature, descent};
+use super::descent::{Effort, Fit, data_curvature, descent};
+use super::weights::Weights;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::calibration::Calibration;
 use crate::reconcile::model::estimate::{Interval, RISE_AT_95, Z_95};

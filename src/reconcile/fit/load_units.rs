@@ -5,8 +5,9 @@
 //! payloads (or the forces) of all rows are converted from each unit that they may be in. A unit is named if the
 //! calibrated arm is then several times nearer to the displacements.
 
-use super::descent::{Effort, Weights, fit};
+use super::descent::{Effort, fit};
 use super::noise::Noise;
+use super::weights::Weights;
 use crate::arm::effect::channel::Channel;
 use crate::arm::effect::wrong_unit::{self, UnitColumn, UnitSlip};
 use crate::reconcile::forward::prepared::Forward;

@@ -7,6 +7,8 @@ pub(crate) mod held_out;
 pub(crate) mod interval;
 pub(crate) mod load_units;
 pub mod noise;
+pub mod normal;
 pub(crate) mod stats;
 pub(crate) mod steps;
 pub(crate) mod units;
+pub mod weights;

@@ -1,8 +1,9 @@
 //! Finds gross errors and wrongly declared standard deviations from the residuals of a model.
 
-use super::descent::{Fit, Weights};
+use super::descent::Fit;
 use super::held_out::rms;
 use super::stats::{MEDIAN_OF_NORMAL, median};
+use super::weights::Weights;
 use crate::arm::effect::channel::Channel;
 use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::datum::Datum;

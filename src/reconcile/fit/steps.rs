@@ -5,7 +5,8 @@
 //! jump. A descent cannot pass a jump. So the curve is smoothed at first and then sharpened step by step, and the
 //! descent starts from more than one point.
 
-use super::descent::{Effort, Fit, Weights, descent, fit};
+use super::descent::{Effort, Fit, descent, fit};
+use super::weights::Weights;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::parameters::Model;
 

@@ -256,7 +256,7 @@ impl Statement {
 }
 
 /// Largest number of readings of a channel. Up to this number, time and memory were measured (docs/speed.md).
-const MOST_READINGS: usize = 100_000;
+pub(crate) const MOST_READINGS: usize = 100_000;
 
 impl Campaign {
     /// Reads the campaign in the folder `folder`. The path of a file in the folder, such as `campaign.json`, is

@@ -6,8 +6,9 @@
 
 use super::search::{Scored, Search};
 use super::unnamed::evidence_with;
-use crate::reconcile::fit::descent::{Effort, Fit, Weights, change, fit};
+use crate::reconcile::fit::descent::{Effort, Fit, change, fit};
 use crate::reconcile::fit::noise::Noise;
+use crate::reconcile::fit::weights::Weights;
 use crate::reconcile::forward::prepared::Forward;
 use rayon::prelude::*;
 use std::sync::Arc;

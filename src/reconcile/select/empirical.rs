@@ -23,7 +23,8 @@ use crate::arm::effect::empirical::{
 use crate::arm::effect::kind::{Absent, Parameter, Scale};
 use crate::arm::structure::Piece;
 use crate::arm::{BASE, PAYLOAD};
-use crate::reconcile::fit::descent::{Fit, Weights};
+use crate::reconcile::fit::descent::Fit;
+use crate::reconcile::fit::weights::Weights;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::forward::statics::LoadedBy;
 use crate::reconcile::model::candidates::largest_torque_nm;

@@ -2,7 +2,8 @@
 //! payload slipped. A descent cannot find this row, because predicted readings jump as the row changes.
 
 use crate::arm::effect::channel::Channel;
-use crate::reconcile::fit::descent::{Fit, Weights};
+use crate::reconcile::fit::descent::Fit;
+use crate::reconcile::fit::weights::Weights;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::forward::statics::StaticPose;
 use nalgebra::{Matrix3, Vector3};

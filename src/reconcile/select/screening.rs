@@ -9,10 +9,11 @@ use super::search::{Scored, Search};
 use super::unnamed::{self, Better};
 use crate::arm::joint_law::{Curve, JointLaw};
 use crate::reconcile::fit::descent::{
-    Effort, Fit, Normal, Point, Slopes, Weights, bounded_step, change, descent, evaluate, evaluate_near, fit,
-    jacobian, normal, objective,
+    Effort, Fit, Point, bounded_step, change, descent, evaluate, evaluate_near, fit, jacobian, objective,
 };
+use crate::reconcile::fit::normal::{Extended, Shared};
 use crate::reconcile::fit::steps::WIDE_SMOOTHING;
+use crate::reconcile::fit::weights::Weights;
 use crate::reconcile::model::parameters::{Candidate, Model};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -87,7 +88,7 @@ impl Screened {
 /// The predictions of a model at one point, and their derivatives at this point.
 struct Linearized {
     here: Point,
-    slopes: DMatrix<f64>,
+    slopes: Shared,
 }
 
 impl<'a> Search<'a> {
@@ -446,6 +447,7 @@ impl<'a> Search<'a> {
     fn linearized(&self, model: &Model, u: &[f64]) -> Linearized {
         let here = evaluate(self.forward, model, u, self.weights);
         let slopes = jacobian(self.forward, model, &here);
+        let slopes = Shared::new(self.forward, &here.predicted, slopes, self.weights);
         Linearized { here, slopes }
     }
 
@@ -483,7 +485,7 @@ impl<'a> Search<'a> {
 
     /// Best parameters and score of the model `model` (the model at `here` and one candidate). The model is linearized
     /// about the parameters of `here` and the candidate's start `start`; `slopes` are the derivatives at `here`.
-    fn linear(&self, model: &Model, here: &Point, slopes: &DMatrix<f64>, start: &[f64]) -> (Vec<f64>, f64) {
+    fn linear(&self, model: &Model, here: &Point, slopes: &Shared, start: &[f64]) -> (Vec<f64>, f64) {
         let mut u = here.u.clone();
         u.extend_from_slice(start);
         let base = change(self.forward, model, here, &u);
@@ -498,8 +500,7 @@ impl<'a> Search<'a> {
             let changes = ahead.iter().zip(&base);
             column.iter_mut().zip(changes).for_each(|(slope, (ahead, base))| *slope = (ahead - base) / step);
         }
-        let columns = [slopes, &own];
-        let columns = Slopes(&columns);
+        let columns = Extended { shared: slopes, own };
         let origin = DVector::from_vec(u.clone());
         let at = |u: &[f64]| -> Vec<f64> {
             let delta = columns.times(&(DVector::from_column_slice(u) - &origin));
@@ -508,8 +509,7 @@ impl<'a> Search<'a> {
         let mut predicted = at(&u);
         let mut curvature = DMatrix::zeros(0, 0);
         for _ in 0..4 {
-            let normal: Normal =
-                normal(self.forward, model.calibrated(), &u, &predicted, &columns, self.weights);
+            let normal = columns.normal(self.forward, model.calibrated(), &u, &predicted, self.weights);
             u = bounded_step(model, &u, &normal, 1e-6);
             predicted = at(&u);
             curvature = normal.curvature;

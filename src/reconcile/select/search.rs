@@ -4,8 +4,9 @@
 //! model therefore start with a smoothed curve, and end with a direct search over the break points.
 
 use crate::reconcile::fit::curve_interval::RULED_OUT;
-use crate::reconcile::fit::descent::{Effort, Fit, Point, Weights, descent, evaluate_near, fit};
+use crate::reconcile::fit::descent::{Effort, Fit, Point, descent, evaluate_near, fit};
 use crate::reconcile::fit::steps::{self, NARROW_SMOOTHING, WIDE_SMOOTHING};
+use crate::reconcile::fit::weights::Weights;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::calibration::Nuisance;
 use crate::reconcile::model::parameters::{Candidate, Model};

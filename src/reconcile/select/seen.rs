@@ -1,6 +1,7 @@
 //! Leaves out the effects that no reading of a campaign can show.
 
-use crate::reconcile::fit::descent::{Weights, change, evaluate};
+use crate::reconcile::fit::descent::{change, evaluate};
+use crate::reconcile::fit::weights::Weights;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::calibration::Nuisance;
 use crate::reconcile::model::parameters::{Candidate, Model};

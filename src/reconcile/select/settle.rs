@@ -6,9 +6,10 @@
 use super::few_rows;
 use super::screening::Selection;
 use super::search::{Scored, Search};
-use crate::reconcile::fit::descent::{Effort, Fit, Weights};
+use crate::reconcile::fit::descent::{Effort, Fit};
 use crate::reconcile::fit::noise::{GROSS_ERROR_CHARGE, Noise, gross_lists};
 use crate::reconcile::fit::steps::best_fit;
+use crate::reconcile::fit::weights::Weights;
 use crate::reconcile::forward::coefficients::Coefficients;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::calibration::Nuisance;

@@ -9,9 +9,11 @@ use super::laws::{Law, of_every_law};
 use super::search::{Scored, Search};
 use super::structure::Structure;
 use crate::arm::effect::kind::Place;
-use crate::reconcile::fit::descent::{Effort, Fit, Slopes, Weights, normal, objective};
+use crate::reconcile::fit::descent::{Effort, Fit, objective};
 use crate::reconcile::fit::noise::{GROSS_ERROR_CHARGE, Noise};
+use crate::reconcile::fit::normal::{Extended, Shared};
 use crate::reconcile::fit::stats::ln_chi_squared_tail;
+use crate::reconcile::fit::weights::Weights;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::readings::campaign::Campaign;
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -74,7 +76,9 @@ pub(crate) fn law_questions(
     fit: &Fit,
     weights: &Weights,
 ) -> Vec<Structure> {
-    let competitors = of_every_law(campaign, forward, fit, |law| competitor(forward, fit, law, weights));
+    let shared = Shared::new(forward, &fit.point.predicted, fit.jacobian.clone(), weights);
+    let competitors =
+        of_every_law(campaign, forward, fit, |law| competitor(forward, fit, &shared, law, weights));
     // Bonferroni correction: one of many laws fits better by chance
     let asked = libm::log((competitors.len() as f64).max(1.0));
     competitors
@@ -182,17 +186,20 @@ fn best_of(
 /// among the candidates of the search are left out.
 fn competitors(search: &Search, fit: &Fit) -> Vec<Competitor> {
     let is_sought = |effect: &str| search.candidates.iter().any(|c| c.kind.name == effect);
-    let fitted = of_every_law(search.campaign, search.forward, fit, |law| {
+    let Search { campaign, forward, weights, .. } = *search;
+    let shared = Shared::new(forward, &fit.point.predicted, fit.jacobian.clone(), weights);
+    let fitted = of_every_law(campaign, forward, fit, |law| {
         // the effect of the library competes itself, under its name
         let has_no_name = !law.effect.is_some_and(is_sought);
-        has_no_name.then(|| competitor(search.forward, fit, law, search.weights))
+        has_no_name.then(|| competitor(forward, fit, &shared, law, weights))
     });
     fitted.into_iter().flatten().collect()
 }
 
-/// Fits the model of `fit` together with the law `law`. The predictions are linearized about `fit`.
-fn competitor(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Competitor {
-    let (objective, evidence) = with_columns(forward, fit, &law.columns, weights);
+/// Fits the model of `fit` together with the law `law`. The predictions are linearized about `fit`, whose derivatives are
+/// those of `shared`.
+fn competitor(forward: &Forward, fit: &Fit, shared: &Shared, law: &Law, weights: &Weights) -> Competitor {
+    let (objective, evidence) = with_columns(forward, fit, shared, &law.columns, weights);
     Competitor {
         what: law.what.clone(),
         at: law.at.clone(),
@@ -206,17 +213,23 @@ fn competitor(forward: &Forward, fit: &Fit, law: &Law, weights: &Weights) -> Com
 /// The logarithm of the evidence of the model of `fit` together with a law. `columns` has, for each parameter of the law, the
 /// change of every reading per unit of the parameter. The predictions are linearized about `fit`.
 pub(super) fn evidence_with(forward: &Forward, fit: &Fit, columns: &[Vec<f64>], weights: &Weights) -> f64 {
-    with_columns(forward, fit, columns, weights).1
+    let shared = Shared::new(forward, &fit.point.predicted, fit.jacobian.clone(), weights);
+    with_columns(forward, fit, &shared, columns, weights).1
 }
 
 /// The objective and the logarithm of the evidence of the model of `fit` together with a law that has these `columns`.
-fn with_columns(forward: &Forward, fit: &Fit, columns: &[Vec<f64>], weights: &Weights) -> (f64, f64) {
+fn with_columns(
+    forward: &Forward,
+    fit: &Fit,
+    shared: &Shared,
+    columns: &[Vec<f64>],
+    weights: &Weights,
+) -> (f64, f64) {
     let own = fit.point.u.len();
     let n = own + columns.len();
-    let mut further = DMatrix::zeros(fit.jacobian.nrows(), columns.len());
-    further.column_iter_mut().zip(columns).for_each(|(mut to, column)| to.copy_from_slice(column));
-    let columns = [&fit.jacobian, &further];
-    let columns = Slopes(&columns);
+    let further =
+        DMatrix::from_iterator(fit.jacobian.nrows(), columns.len(), columns.iter().flatten().copied());
+    let columns = Extended { shared, own: further };
     let mut origin = fit.point.u.clone();
     origin.resize(n, 0.0);
     let origin = DVector::from_vec(origin);
@@ -228,7 +241,7 @@ fn with_columns(forward: &Forward, fit: &Fit, columns: &[Vec<f64>], weights: &We
     let mut curvature = DMatrix::zeros(n, n);
     let mut here = fit.point.objective;
     for _ in 0..STEPS {
-        let equations = normal(forward, fit.model.calibrated(), u.as_slice(), &predicted, &columns, weights);
+        let equations = columns.normal(forward, fit.model.calibrated(), u.as_slice(), &predicted, weights);
         curvature = equations.curvature;
         let mut damped = curvature.clone();
         for p in fit.model.calibrated()..n {

@@ -8,10 +8,11 @@
 use super::fitted;
 use super::outcome::Row;
 use crate::arm::effect::empirical::KIND;
-use crate::reconcile::fit::descent::{Fit, Weights};
+use crate::reconcile::fit::descent::Fit;
 use crate::reconcile::fit::held_out::{self, rms};
 use crate::reconcile::fit::interval::intervals;
 use crate::reconcile::fit::noise::Noise;
+use crate::reconcile::fit::weights::Weights;
 use crate::reconcile::forward::datum::Datum;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::model::estimate::Finding;

@@ -3,8 +3,9 @@
 
 use super::outcome::Located;
 use crate::arm::effect::channel::Channel;
-use crate::reconcile::fit::descent::{Fit, Weights};
+use crate::reconcile::fit::descent::Fit;
 use crate::reconcile::fit::held_out::rms;
+use crate::reconcile::fit::weights::Weights;
 use crate::reconcile::forward::prepared::Forward;
 use crate::reconcile::readings::campaign::Campaign;
 use std::collections::HashMap;

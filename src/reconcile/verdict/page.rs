@@ -69,7 +69,9 @@ fn sentence(outcome: &Outcome) -> String {
             let names: Vec<String> = outcome.effects.iter().map(place).collect();
             format!("The gap between model and measurement is explained by {}.", names.join(" and "))
         }
-        Verdict::Unexplained => "The model is wrong in a way that no known effect explains.".into(),
+        Verdict::Unexplained => {
+            "The model is wrong, and no known effect can be named as what is missing.".into()
+        }
         Verdict::InsufficientData => "The readings do not suffice to tell what is behind the gap.".into(),
     }
 }

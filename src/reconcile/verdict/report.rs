@@ -73,7 +73,7 @@ impl Outcome {
             Verdict::NoGap => "no gap between model and measurement".into(),
             Verdict::Explained => format!("explained by {}", names(&self.effects)),
             Verdict::Unexplained => {
-                "UNEXPLAINED: no effect of the library explains where the model is wrong".into()
+                "UNEXPLAINED: the model is wrong, and no effect of the library can be named as what is missing".into()
             }
             Verdict::InsufficientData => "the readings are insufficient to tell".into(),
         }
