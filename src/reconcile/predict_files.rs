@@ -1,8 +1,7 @@
 //! Reads the files that a prediction needs, and adds the predictions of the model to the readings.
 
 use super::predict::{predict, unplaced};
-use super::readings::campaign::MOST_READINGS;
-use super::readings::campaign::{Statement, read_statement};
+use super::readings::campaign::{MOST_READINGS, Statement, read_statement};
 use super::readings::placement::{Placed, Placement};
 use super::readings::source::{DEFAULT_FILES, Source};
 use super::readings::table::Table;

@@ -179,7 +179,7 @@ impl Analysis<'_> {
             out.extend(beyond);
         }
         out.push(format!(
-            "the best model leaves {:.2} times the declared variance; no effect of the library explains the rest",
+            "the best model leaves {:.2} times the declared variance; no effect of the library can be named for the rest",
             self.lack_of_fit.chi2_per_dof
         ));
         out.extend(self.unnamed.as_ref().map(|law| {

@@ -6,7 +6,7 @@
 
 use super::attributes::OptionAttributes;
 use super::bearing_loads::BearingLoads;
-use super::design_space::{DesignSpace, SpacePiece};
+use super::design_space::{DesignSpace, LinkOption, SpacePiece};
 use super::effects::Layer;
 use super::fit::RoomAtJoint;
 use super::full_model::full_objectives;
@@ -19,6 +19,7 @@ use super::slot::{choice_slot, link_slot};
 use super::state::StationState;
 use super::station::{Block, BlockSlot, Modal, Station, StationSlot, reaches_m};
 use crate::arm::joint_law::{Curve, JointLaw};
+use crate::arm::{Link, LinkBody};
 use crate::catalog::Catalogs;
 use crate::mechanics::Wrench;
 use crate::mechanics::lanes::LANES;
@@ -169,18 +170,18 @@ impl<'c> ArmProblem<'c> {
         known.then_some(partial.cost_eur)
     }
 
-    /// Largest wall slenderness over the chosen links of an arm, as far as it is built; 0 if it has none.
+    /// Largest wall slenderness over the tubes of an arm, chosen and given, as far as it is built; 0 if it has none.
     pub fn wall_slenderness(&self, partial: &Partial) -> f64 {
         let built =
             self.space.pieces.iter().zip(&self.piece_slots).filter(|(_, slot)| **slot < partial.next_slot);
-        built
-            .filter_map(|(piece, slot)| match piece {
-                SpacePiece::Choice(choice) => {
-                    Some(choice.options[partial.options[*slot] as usize].wall_slenderness())
-                }
-                _ => None,
-            })
-            .fold(0.0, f64::max)
+        let of_piece = |(piece, slot): (&SpacePiece, &usize)| match piece {
+            SpacePiece::Choice(choice) => choice.options[partial.options[*slot] as usize].wall_slenderness(),
+            SpacePiece::Link(Link { body: LinkBody::Tube { material, section, .. }, .. }) => {
+                LinkOption::given(*material, *section).wall_slenderness()
+            }
+            _ => 0.0,
+        };
+        built.map(of_piece).fold(0.0, f64::max)
     }
 
     /// Mass of a partial arm \[kg\].

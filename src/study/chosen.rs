@@ -13,14 +13,15 @@ use super::reaction_remarks::reaction_remark_on;
 use super::refusal::Refusal;
 use super::stated_bearing_remarks::stated_bearing_remarks_on;
 use super::table::sizing_rows;
-use crate::arm::Arm;
 use crate::arm::load::LoadCase;
+use crate::arm::{Arm, Link};
 use crate::catalog::Catalogs;
 use crate::sizing::checks::checks;
 use crate::sizing::demand::JointDemand;
 use crate::sizing::sheet::JointSizingRow;
+use crate::space::constraint::Constraints;
 use crate::space::design::number_of;
-use crate::space::design_space::{DesignSpace, SpacePiece};
+use crate::space::design_space::{DesignSpace, LinkChoice, SpacePiece};
 use crate::space::problem::{ArmProblem, Partial};
 use crate::space::slot::SizedJoint;
 
@@ -73,7 +74,7 @@ pub struct Sizing {
 /// to which the problem belongs.
 ///
 /// # Errors
-/// A joint that no drive holds.
+/// A joint that no drive holds, or a limit that the arm breaks.
 pub(crate) fn sizing_in(
     study: &Study,
     problem: &ArmProblem,
@@ -156,7 +157,7 @@ fn nearest_to_median(problem: &ArmProblem, outboard: &[u32], piece: usize, by_ma
 }
 
 /// The reason why the options `chosen` give no design. [`ArmProblem::walk`] builds the arm from the tip inward; `slot`
-/// is the place of the joint or link at which it ended.
+/// is the place at which it ended: a joint whose drive does not hold, or a part with which the arm breaks a limit.
 pub(crate) fn why_not_held(
     problem: &ArmProblem,
     chosen: &[u32],
@@ -166,41 +167,55 @@ pub(crate) fn why_not_held(
     let mut last = Partial::default();
     let _ = problem.walk(chosen, |_, partial| last = partial.clone());
     let piece = problem.piece_of_slot(slot);
-    match problem.sized_joint(piece) {
-        Some(sized) => {
-            let demand = problem.demand_at(&last, slot);
-            let too_weak = || too_weak(problem, chosen, piece, sized, &demand);
-            let internal = || format!("joint {}: its drive does not hold", sized.table.joint());
-            let why = obstacle_at(&sized.table, &demand).or_else(too_weak).unwrap_or_else(internal);
-            Refusal::Infeasible(format!("with these links, {why}"))
-        }
-        None => {
-            let link = problem.piece_in_slot(slot).map_or("", SpacePiece::name);
-            let broken = broken_limits(problem, chosen, slot, catalogs).join(" and ");
-            Refusal::Infeasible(format!(
-                "link {link} breaks a limit: {broken}; or name another design with --design"
-            ))
-        }
-    }
+    let sized = problem.piece_in_slot(slot).and_then(|_| problem.sized_joint(piece));
+    let of_drive = sized.and_then(|sized| {
+        let demand = problem.demand_at(&last, slot);
+        obstacle_at(&sized.table, &demand).or_else(|| too_weak(problem, chosen, piece, sized, &demand))
+    });
+    Refusal::Infeasible(match of_drive {
+        Some(why) => format!("with these links, {why}"),
+        None => broken_limits(problem, chosen, slot, catalogs),
+    })
 }
 
-/// The limits that the arm with the options `chosen` breaks as far as the link in `slot`, in words.
-fn broken_limits(problem: &ArmProblem, chosen: &[u32], slot: usize, catalogs: &Catalogs) -> Vec<String> {
-    let limits = problem.space().constraints;
-    let mut lax = problem.space().clone();
-    Quantity::OF_LINKS
-        .iter()
-        .for_each(|quantity| quantity.set(&mut lax.constraints, quantity.admits_all(&limits)));
+/// The limits that the arm with the options `chosen` breaks as far as the part in `slot`, in words.
+fn broken_limits(problem: &ArmProblem, chosen: &[u32], slot: usize, catalogs: &Catalogs) -> String {
+    let limits = &problem.space().constraints;
+    let lax = DesignSpace { constraints: Constraints::default(), ..problem.space().clone() };
     let lax = ArmProblem::new(&lax, catalogs);
-    let mut with_link: Option<Partial> = None;
+    let mut built: Option<Partial> = None;
     let whole = lax.walk(chosen, |next, partial| {
-        if next > slot && with_link.is_none() {
-            with_link = Some(partial.clone());
+        if next > slot && built.is_none() {
+            built = Some(partial.clone());
         }
     });
-    let Some(arm) = with_link.or(whole.ok()) else { return Vec::new() };
-    let words = |quantity: &Quantity| quantity.broken_words(&limits, quantity.of_part(&lax, &arm)?);
-    Quantity::OF_LINKS.iter().filter_map(words).collect()
+    let arm = built.or(whole.ok());
+    let reached = |quantity: Quantity| Some((quantity, quantity.of_part(&lax, arm.as_ref()?)?));
+    let broken = Quantity::OF_PARTS.into_iter().filter_map(reached);
+    let broken = broken.filter(|(quantity, reached)| quantity.is_broken(limits, *reached));
+    let (asked, enough): (Vec<String>, Vec<String>) = broken
+        .map(|(quantity, reached)| {
+            (quantity.broken_words(limits, reached), quantity.enough_words(limits, reached))
+        })
+        .unzip();
+    let part = match problem.piece_in_slot(slot) {
+        Some(SpacePiece::Link(Link { name, .. }) | SpacePiece::Choice(LinkChoice { name, .. })) => {
+            format!("link {name}")
+        }
+        Some(joint) => format!("the arm from the tip to joint {}", joint.name()),
+        None => "the arm".into(),
+    };
+    match asked.is_empty() {
+        // a limit that is broken by less than the rounding of its words
+        true => format!(
+            "{part} breaks a limit on stress, wall slenderness, cost or mass: name another design with --design"
+        ),
+        false => format!(
+            "{part} breaks a limit: {}. Change {}, or name another design with --design",
+            asked.join(", and "),
+            enough.join(" and ")
+        ),
+    }
 }
 
 /// The reason why the drive chosen at the joint `piece` does not meet `demand`. `None` unless the joint has a choice of

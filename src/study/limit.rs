@@ -21,8 +21,8 @@ impl Quantity {
     const ALL: [Self; 6] =
         [Self::Deflection, Self::Mode, Self::Mass, Self::Stress, Self::Slenderness, Self::Cost];
 
-    /// The quantities that are checked as soon as a link is added to an arm.
-    pub(super) const OF_LINKS: [Self; 3] = [Self::Slenderness, Self::Stress, Self::Cost];
+    /// The quantities that are checked whenever a part is added to an arm.
+    pub(super) const OF_PARTS: [Self; 4] = [Self::Slenderness, Self::Stress, Self::Cost, Self::Mass];
 
     /// The quantities on which `constraints` has a limit.
     pub(super) fn limited(constraints: &Constraints) -> Vec<Self> {
@@ -54,12 +54,6 @@ impl Quantity {
         }
     }
 
-    /// A limit that every design meets, if `constraints` has a limit on this quantity; `None` if it has none. With such a
-    /// limit the quantity is computed and excludes nothing.
-    pub(super) fn admits_all(self, constraints: &Constraints) -> Option<f64> {
-        self.asked(constraints).map(|_| if self.is_least() { f64::MIN_POSITIVE } else { f64::MAX })
-    }
-
     /// The value of this quantity for a part of an arm, as far as it is built; `None` for a quantity that only a complete
     /// arm has, or if a strength or a cost is unknown.
     pub(super) fn of_part(self, problem: &ArmProblem, arm: &Partial) -> Option<f64> {
@@ -67,7 +61,8 @@ impl Quantity {
             Self::Stress => problem.stress_safety_factor(arm),
             Self::Slenderness => Some(problem.wall_slenderness(arm)),
             Self::Cost => problem.material_cost_eur(arm),
-            Self::Deflection | Self::Mode | Self::Mass => None,
+            Self::Mass => Some(problem.mass_kg(arm)),
+            Self::Deflection | Self::Mode => None,
         }
     }
 
@@ -153,22 +148,19 @@ impl Quantity {
         )
     }
 
-    /// The stated limit, the value `reached` by an arm, and the value of the key that would admit it, in words; `None` if
-    /// the arm meets the limit.
-    pub(super) fn broken_words(self, constraints: &Constraints, reached: f64) -> Option<String> {
-        let asked = self.asked(constraints)?;
-        let (is_broken, bound) =
-            if self.is_least() { (reached < asked, "at least") } else { (reached > asked, "at most") };
+    /// Whether an arm with the value `reached` breaks the limit on this quantity.
+    pub(super) fn is_broken(self, constraints: &Constraints, reached: f64) -> bool {
+        self.asked(constraints)
+            .is_some_and(|asked| if self.is_least() { reached < asked } else { reached > asked })
+    }
+
+    /// The value `reached` by an arm and the limit that it breaks, in words.
+    pub(super) fn broken_words(self, constraints: &Constraints, reached: f64) -> String {
         let (unit, scale) = self.unit();
-        let [reached_words, asked] = [reached, asked].map(|x| format!("{} {unit}", short(x * scale)));
-        let words = format!(
-            "{} {} where {bound} {} is asked (a change of {} admits it)",
-            self.name(),
-            reached_words.trim_end(),
-            asked.trim_end(),
-            self.enough_words(constraints, reached)
-        );
-        is_broken.then_some(words)
+        let words = |x: f64| format!("{} {unit}", short(x * scale)).trim_end().to_string();
+        let bound = if self.is_least() { "at least" } else { "at most" };
+        let asked = self.asked(constraints).unwrap_or_default();
+        format!("{} is {} and {bound} {} is asked", self.name(), words(reached), words(asked))
     }
 
     /// The keys of the study file that have to be changed to admit a design with the value `reached`, each with a value

@@ -146,23 +146,30 @@ impl Extended<'_> {
         weights: &Weights,
     ) -> Normal {
         let (factors, right) = weighted(forward, predicted, weights);
+        let (gradient, curvature) = self.products(&factors, &right);
+        Normal { gradient, curvature }.with_priors(calibrated, u)
+    }
+
+    /// The products `Xᵀr` and `XᵀX`. The rows of `X` are those of the derivatives, each times its entry of `factors`; `r` is
+    /// `right`.
+    fn products(&self, factors: &DVector<f64>, right: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>) {
         let (count, own) = (self.shared.slopes.ncols(), self.own.ncols());
         // the own columns and the residuals, so that each product with the shared columns is taken once
         let mut others = self.own.clone().insert_column(own, 0.0);
-        others.column_iter_mut().take(own).for_each(|mut column| column.component_mul_assign(&factors));
-        others.set_column(own, &right);
+        others.column_iter_mut().take(own).for_each(|mut column| column.component_mul_assign(factors));
+        others.set_column(own, right);
         let with_own = transposed_product(&others, &others);
-        others.column_iter_mut().for_each(|mut column| column.component_mul_assign(&factors));
+        others.column_iter_mut().for_each(|mut column| column.component_mul_assign(factors));
         let with_shared = self.shared.panels.times(others.as_view());
         let mut curvature = DMatrix::zeros(count + own, count + own);
-        curvature.view_mut((0, 0), (count, count)).copy_from(&self.shared.curvature_with(&factors));
+        curvature.view_mut((0, 0), (count, count)).copy_from(&self.shared.curvature_with(factors));
         curvature.view_mut((0, count), (count, own)).copy_from(&with_shared.columns(0, own));
         curvature.view_mut((count, 0), (own, count)).tr_copy_from(&with_shared.columns(0, own));
         curvature.view_mut((count, count), (own, own)).copy_from(&with_own.view((0, 0), (own, own)));
         let mut gradient = DVector::zeros(count + own);
         gradient.rows_mut(0, count).copy_from(&with_shared.column(own));
         gradient.rows_mut(count, own).copy_from(&with_own.view((0, own), (own, 1)));
-        Normal { gradient, curvature }.with_priors(calibrated, u)
+        (gradient, curvature)
     }
 }
 
@@ -170,22 +177,55 @@ impl Extended<'_> {
 mod tests {
     use super::*;
 
+    // whole numbers, so that the order of the sums does not matter
+    fn numbers(rows: usize, columns: usize, seed: usize) -> DMatrix<f64> {
+        DMatrix::from_fn(rows, columns, |i, j| ((7 * i + 3 * j + seed) % 11) as f64 - 5.0)
+    }
+
+    fn factors(rows: usize) -> DVector<f64> {
+        DVector::from_fn(rows, |i, _| (i % 4) as f64)
+    }
+
+    /// The derivatives `slopes`, prepared for rows with the factors of [`factors`].
+    fn shared(slopes: &DMatrix<f64>) -> Shared {
+        let factors = factors(slopes.nrows());
+        let panels = Panels::of_columns(slopes.as_view());
+        Shared { slopes: slopes.clone(), panels, curvature: square(slopes, &factors), factors }
+    }
+
+    fn square(slopes: &DMatrix<f64>, factors: &DVector<f64>) -> DMatrix<f64> {
+        let scaled = DMatrix::from_fn(slopes.nrows(), slopes.ncols(), |i, j| factors[i] * slopes[(i, j)]);
+        scaled.tr_mul(&scaled)
+    }
+
     #[test]
     fn a_curvature_that_is_corrected_in_some_rows_is_that_of_all_rows() {
         let rows = 2 * ROWS_PER_BLOCK + 11;
-        let slopes = DMatrix::from_fn(rows, 11, |i, j| ((7 * i + 3 * j) % 11) as f64 - 5.0);
-        let factors = DVector::from_fn(rows, |i, _| (i % 4) as f64);
-        let curvature = |factors: &DVector<f64>| {
-            let scaled = DMatrix::from_fn(rows, 11, |i, j| factors[i] * slopes[(i, j)]);
-            scaled.tr_mul(&scaled)
-        };
-        // whole numbers, so the order of the sums does not matter
-        assert_eq!(weighted_square(&slopes, &factors), curvature(&factors));
-        let panels = Panels::of_columns(slopes.as_view());
-        let shared = Shared { slopes: slopes.clone(), panels, curvature: curvature(&factors), factors };
+        let slopes = numbers(rows, 11, 0);
+        assert_eq!(weighted_square(&slopes, &factors(rows)), square(&slopes, &factors(rows)));
+        let shared = shared(&slopes);
+        assert_eq!(shared.curvature_with(&factors(rows)), shared.curvature);
+        // with every row changed, the curvature is computed anew
         for step in [1, 5, 50, rows] {
-            let other = DVector::from_fn(rows, |i, _| if i % step == 3 { 7.0 } else { (i % 4) as f64 });
-            assert_eq!(shared.curvature_with(&other), curvature(&other), "every row in {step}");
+            let other =
+                DVector::from_fn(rows, |i, _| if i % step == 3 % step { 7.0 } else { (i % 4) as f64 });
+            assert_eq!(shared.curvature_with(&other), square(&slopes, &other), "one row in {step}");
+        }
+    }
+
+    #[test]
+    fn derivatives_in_two_parts_are_one_matrix() {
+        for (rows, count, own) in [(2 * ROWS_PER_BLOCK + 11, 9, 2), (20, 3, 0), (20, 0, 2), (0, 3, 1)] {
+            let whole = numbers(rows, count + own, 0);
+            let shared = shared(&whole.columns(0, count).into_owned());
+            let parts = Extended { shared: &shared, own: whole.columns(count, own).into_owned() };
+            let step = DVector::from_fn(count + own, |j, _| j as f64 - 1.0);
+            assert_eq!(parts.times(&step), (&whole * &step).as_slice());
+            let other = DVector::from_fn(rows, |i, _| ((i + i / 9) % 4) as f64);
+            let right = DVector::from_fn(rows, |i, _| (i % 5) as f64 - 2.0);
+            let (gradient, curvature) = parts.products(&other, &right);
+            assert_eq!(gradient, whole.tr_mul(&right.component_mul(&other)), "{rows} rows, {own} own");
+            assert_eq!(curvature, square(&whole, &other), "{rows} rows, {own} own");
         }
     }
 }

@@ -4,6 +4,7 @@ use crate::reconcile::forward::prepared::Forward;
 
 /// Residual beyond which Huber's loss grows linearly \[standard deviations\].
 const HUBER_SIGMAS: f64 = 4.0;
+
 /// Weights of the data in a fit: which data are used, and how much their declared standard deviations are enlarged.
 #[derive(Debug, Clone)]
 pub struct Weights {

@@ -5,9 +5,10 @@
 //! prepared again until the zero no longer changes.
 
 use super::search::{Scored, Search};
-use super::unnamed::evidence_with;
+use super::unnamed::with_columns;
 use crate::reconcile::fit::descent::{Effort, Fit, change, fit};
 use crate::reconcile::fit::noise::Noise;
+use crate::reconcile::fit::normal::Shared;
 use crate::reconcile::fit::weights::Weights;
 use crate::reconcile::forward::prepared::Forward;
 use rayon::prelude::*;
@@ -143,11 +144,12 @@ fn promising_starts<'s>(
     laws: impl Iterator<Item = usize>,
 ) -> Vec<(usize, &'s Vec<f64>)> {
     let fit = about.fit(&from.effects, &from.u, NO_STEPS);
+    let shared = Shared::new(about.forward, &fit.point.predicted, fit.jacobian.clone(), about.weights);
     let starts = laws.flat_map(|law| about.candidates[law].starts.iter().map(move |start| (law, start)));
     let starts: Vec<(usize, &Vec<f64>)> = starts.collect();
     let evidence = |(law, start): &(usize, &Vec<f64>)| {
         let columns = columns(about, from, &fit, *law, start);
-        evidence_with(about.forward, &fit, &columns, about.weights)
+        with_columns(about.forward, &fit, &shared, &columns, about.weights).1
     };
     let evidences: Vec<f64> = starts.par_iter().map(evidence).collect();
     let mut order: Vec<usize> = (0..starts.len()).collect();

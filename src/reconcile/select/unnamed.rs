@@ -210,15 +210,10 @@ fn competitor(forward: &Forward, fit: &Fit, shared: &Shared, law: &Law, weights:
     }
 }
 
-/// The logarithm of the evidence of the model of `fit` together with a law. `columns` has, for each parameter of the law, the
-/// change of every reading per unit of the parameter. The predictions are linearized about `fit`.
-pub(super) fn evidence_with(forward: &Forward, fit: &Fit, columns: &[Vec<f64>], weights: &Weights) -> f64 {
-    let shared = Shared::new(forward, &fit.point.predicted, fit.jacobian.clone(), weights);
-    with_columns(forward, fit, &shared, columns, weights).1
-}
-
-/// The objective and the logarithm of the evidence of the model of `fit` together with a law that has these `columns`.
-fn with_columns(
+/// The objective and the logarithm of the evidence of the model of `fit` together with a law. `columns` has, for each parameter of
+/// the law, the change of every reading per unit of the parameter. The predictions are linearized about `fit`, whose
+/// derivatives are those of `shared`.
+pub(super) fn with_columns(
     forward: &Forward,
     fit: &Fit,
     shared: &Shared,
