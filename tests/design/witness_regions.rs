@@ -39,7 +39,7 @@ const SAME: f64 = 1e-6;
 #[test]
 fn of_the_light_arms_of_the_whole_catalog_none_is_missing_and_what_is_dropped_is_found() {
     let (catalogs, stop) = (Catalogs::builtin(), AtomicBool::new(false));
-    let study = full_catalog(&catalogs, 13.66);
+    let study = full_catalog(&catalogs, 13.70);
     let front = Exact::new(&study.space, &catalogs, &stop, None).with_ties_up_to(0).run(&[]).front;
     let rows: Vec<Objectives> = front.iter().map(|c| c.objectives).collect();
     assert!(rows.len() > 20, "{} rows", rows.len());

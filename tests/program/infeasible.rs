@@ -45,7 +45,8 @@ fn code_of(study: &Value) -> i32 {
 /// The value to which a message relaxes a key.
 fn enough(said: &str, key: &str) -> f64 {
     let after = said.split(&format!("\"{key}\" to ")).nth(1).unwrap_or_else(|| panic!("{key}: {said}"));
-    after.split_whitespace().next().and_then(|word| word.parse().ok()).expect("a number")
+    let word = after.split_whitespace().next().map(|word| word.trim_end_matches(','));
+    word.and_then(|word| word.parse().ok()).expect("a number")
 }
 
 #[test]
