@@ -14,7 +14,7 @@ use crate::sizing::fit::LinkRoom;
 use crate::sizing::select::DriveTable;
 use crate::sizing::sheet::render_rows;
 use crate::space::design_space::SpacePiece;
-use crate::space::problem::{ArmProblem, Partial};
+use crate::space::problem::ArmProblem;
 use crate::study::chosen::{Sizing, chosen_design, sizing_in, why_not_held};
 use crate::study::definition::Study;
 use clap::Args;
@@ -59,10 +59,12 @@ pub(super) fn run(args: &SizeArgs, catalogs: &Catalogs, log: Log) -> Result<Stri
     };
     let remarks = paragraphs(&study.remarks);
     if let Some(joint) = &args.explain {
-        return Ok(explain(&problem, &chosen, joint, catalogs)? + &remarks);
+        let (table, demand) = at_joint(&problem, &chosen, joint, catalogs)?;
+        return Ok(explain(joint, table, &demand) + &remarks);
     }
     if let Some(joint) = &args.all_fits {
-        return Ok(all_fits(&problem, &chosen, joint, catalogs)? + &remarks);
+        let (table, demand) = at_joint(&problem, &chosen, joint, catalogs)?;
+        return Ok(all_fits(joint, table, &demand) + &remarks);
     }
     let Sizing { rows, remarks: said } = sizing_in(&study, &problem, &chosen, catalogs)?;
     let remarks = paragraphs(&said);
@@ -111,93 +113,63 @@ fn heading(study: &Study, problem: &ArmProblem, chosen: &[u32], is_trial: bool) 
     out
 }
 
-/// A design that is built from the tip as far as one of its joints.
-struct AtJoint {
-    /// Place of the joint in the order in which the arm is built.
-    slot: usize,
-    /// Index of the joint's piece.
-    piece: usize,
-    /// The arm outboard of the joint.
-    outboard: Partial,
-}
-
-/// The design with the options `chosen`, built as far as the joint named `joint`. Fails if the study has no such joint,
-/// or if the arm outboard of it breaks a limit.
-fn before(
-    problem: &ArmProblem,
+/// The drives from which the joint named `joint` chooses, and what the design with the options `chosen` demands of them. The
+/// design is built from the tip as far as this joint.
+///
+/// # Errors
+/// The study has no such joint, the arm outboard of it breaks a limit, or its drive is given.
+fn at_joint<'p, 'c>(
+    problem: &'p ArmProblem<'c>,
     chosen: &[u32],
     joint: &str,
     catalogs: &Catalogs,
-) -> Result<AtJoint, Failure> {
+) -> Result<(&'p DriveTable<'c>, JointDemand), Failure> {
     let is_joint = |p: &&SpacePiece| matches!(p, SpacePiece::Joint(_) | SpacePiece::Prismatic(_));
     let pieces = &problem.space().pieces;
     let unknown = || {
         let names: Vec<&str> = pieces.iter().filter(is_joint).map(SpacePiece::name).collect();
         Failure::Usage(format!("the study has no joint \"{joint}\"; its joints are: {}", names.join(", ")))
     };
+    let given = || Failure::Usage(format!("joint {joint} has a given drive: there is nothing to choose"));
     let piece = pieces.iter().position(|p| is_joint(&p) && p.name() == joint).ok_or_else(unknown)?;
     let mut found = None;
-    let walked = problem.walk(chosen, |slot, partial| {
+    let walked = problem.walk(chosen, |slot, outboard| {
         if problem.piece_of_slot(slot) == piece {
-            found = Some(AtJoint { slot, piece, outboard: partial.clone() });
+            found = Some((slot, outboard.clone()));
         }
     });
-    match (found, walked) {
-        (Some(found), _) => Ok(found),
-        (None, Err(slot)) => Err(why_not_held(problem, chosen, slot, catalogs).into()),
-        (None, Ok(_)) => Err(Failure::Internal(format!("joint \"{joint}\" was not met on the way"))),
-    }
+    let (slot, outboard) = match (found, walked) {
+        (Some(found), _) => found,
+        (None, Err(slot)) => return Err(why_not_held(problem, chosen, slot, catalogs).into()),
+        (None, Ok(_)) => return Err(Failure::Internal(format!("joint \"{joint}\" was not met on the way"))),
+    };
+    let sized = problem.sized_joint(piece).ok_or_else(given)?;
+    Ok((&sized.table, problem.demand_at(&outboard, slot)))
 }
 
-fn sized<'p, 'c>(
-    problem: &'p ArmProblem<'c>,
-    piece: usize,
-    joint: &str,
-) -> Result<&'p crate::space::slot::SizedJoint<'c>, Failure> {
-    problem
-        .sized_joint(piece)
-        .ok_or_else(|| Failure::Usage(format!("joint {joint} has a given drive: there is nothing to choose")))
-}
-
-fn explain(
-    problem: &ArmProblem,
-    chosen: &[u32],
-    joint: &str,
-    catalogs: &Catalogs,
-) -> Result<String, Failure> {
-    let AtJoint { slot, piece, outboard: partial } = before(problem, chosen, joint, catalogs)?;
-    let table = &sized(problem, piece, joint)?.table;
-    let demand = problem.demand_at(&partial, slot);
-    let mut out = format!("{}\n{}", demand_line(joint, &demand, table), bearing_line(joint, &demand.bearing));
-    for rejection in table.explain(&demand) {
+fn explain(joint: &str, table: &DriveTable, demand: &JointDemand) -> String {
+    let mut out = format!("{}\n{}", demand_line(joint, demand, table), bearing_line(joint, &demand.bearing));
+    for rejection in table.explain(demand) {
         let _ = writeln!(out, "{rejection}");
     }
-    for words in table.explain_bearings(&demand) {
+    for words in table.explain_bearings(demand) {
         let _ = writeln!(out, "{words}");
     }
-    Ok(out)
+    out
 }
 
 /// Heading of the column with the mass of the joint with each drive. It includes the extras, because they depend on the
 /// drive.
 const MASS: &str = "mass kg (with extras)";
 
-fn all_fits(
-    problem: &ArmProblem,
-    chosen: &[u32],
-    joint: &str,
-    catalogs: &Catalogs,
-) -> Result<String, Failure> {
-    let AtJoint { slot, piece, outboard: partial } = before(problem, chosen, joint, catalogs)?;
-    let table = &sized(problem, piece, joint)?.table;
-    let demand = problem.demand_at(&partial, slot);
-    let mut out = format!("{}\n", demand_line(joint, &demand, table));
+fn all_fits(joint: &str, table: &DriveTable, demand: &JointDemand) -> String {
+    let mut out = format!("{}\n", demand_line(joint, demand, table));
     let slides = table.gears().iter().any(|gear| gear.kind.slides());
     let stiffness = if slides { "N/m" } else { "K2 Nm/rad" };
     // a gear of which only K1 is known has a straight torsion curve, and its K1 is marked as such
     let straight = if slides { "" } else { "K1 " };
     let _ = writeln!(out, "{MASS:>21}  {stiffness:>14}  drive");
-    for index in table.all_fits(&demand) {
+    for index in table.all_fits(demand) {
         let drive = table.drive(index);
         let k2 = match (drive.gear.k2_nm_per_rad, drive.gear.single_slope_nm_per_rad()) {
             (Some(k2), _) => format!("{k2:.0}"),
@@ -206,7 +178,7 @@ fn all_fits(
         };
         let _ = writeln!(out, "{:>21.3}  {k2:>14}  {}", table.mass_kg(index), drive.name());
     }
-    Ok(out)
+    out
 }
 
 fn demand_line(joint: &str, demand: &JointDemand, table: &DriveTable) -> String {

@@ -77,7 +77,7 @@ fn objectives(outcome: &ExactOutcome) -> Vec<Objectives> {
 #[test]
 fn the_gap_that_a_search_tells_never_rises_and_ends_at_what_was_asked_for_and_its_first_designs_change_no_front()
  {
-    const GAP: f64 = 0.1;
+    const GAP: f64 = 0.05;
     let catalogs = Catalogs::builtin();
     let study = light_arm(&catalogs);
     let (outcome, seen) = watched(&study, &catalogs, GAP, |_| false);
