@@ -5,13 +5,15 @@ the path from the world to the tip. What hangs on it beside the path (fingers, c
 of the path that they hang on, with their joints held at zero.
 
 At zero joint coordinates every frame of an arm file is parallel to the world. So positions, axes and inertias are read there, in
-world axes, and poses of the arm are the joint coordinates of MuJoCo in degrees.
+world axes, and poses of the arm are the joint coordinates of MuJoCo in degrees. A joint that follows another one by an equality
+constraint stands where the constraint puts it while the others are at zero; a joint that a constraint holds is part of its link.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Dict, List, Optional, Union
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Set, Union
 
 import numpy as np
 
@@ -22,6 +24,16 @@ if TYPE_CHECKING:
 
 #: A vector shorter than this is none [m].
 _NOTHING_M = 1e-12
+
+
+@dataclass
+class _Followed:
+    """What an equality constraint makes of a joint: its coordinate is ``at + slope * leader`` [rad, m]."""
+
+    at: float
+    slope: float
+    #: None for a joint that is held
+    leader: Optional[int]
 
 
 def from_mujoco(
@@ -35,7 +47,7 @@ def from_mujoco(
 
     Hinges become joints, slides prismatic joints, rigid bodies ``bodies`` of the links between them, and equality constraints of
     two hinges that are linear become ``coupled``. Gravity is the model's. ``provenance`` lists what was lumped, what stayed rigid and
-    what was left out (armature, damping, gravity compensation).
+    what was left out (armature, damping, friction, gravity compensation, other constraints, springs of tendons).
 
     :param model: compiled model, such as ``mujoco.MjModel.from_xml_path("arm.xml")``
     :param tip: name of the body or site at the arm's tip
@@ -56,9 +68,12 @@ class _Reader:
 
         self.mj, self.model, self.stiffness = mujoco, model, stiffness
         self.data = mujoco.MjData(model)
+        #: joints that follow another one, but not in proportion
+        self.curved: Set[int] = set()
+        self.followed = self._constrained()
         for joint in range(model.njnt):
             if self._kind(joint) in ("hinge", "slide"):
-                self.data.qpos[model.jnt_qposadr[joint]] = 0.0
+                self.data.qpos[model.jnt_qposadr[joint]] = self.followed[joint].at if joint in self.followed else 0.0
         mujoco.mj_kinematics(model, self.data)
         mujoco.mj_comPos(model, self.data)
         self.links = 0
@@ -72,6 +87,7 @@ class _Reader:
         carried = self._carried(path)
         joints = [joint for on_path in path for joint in self._joints(on_path)]
         couplings = self._couplings(joints)
+        self._leave_out(carried)
         chain: List[Dict[str, Any]] = []
         at_m, bodies = np.zeros(3), list(carried[0])
         for on_path in path:
@@ -118,9 +134,11 @@ class _Reader:
             body = int(self.model.body_parentid[body])
         return path
 
-    def _joints(self, body: int) -> range:
+    def _joints(self, body: int) -> List[int]:
+        """Its joints that move; those that a constraint holds are part of the link."""
         first = int(self.model.body_jntadr[body])
-        return range(first, first + int(self.model.body_jntnum[body])) if first >= 0 else range(0)
+        own = range(first, first + int(self.model.body_jntnum[body])) if first >= 0 else range(0)
+        return [joint for joint in own if joint not in self.followed or self.followed[joint].leader is not None]
 
     def _carried(self, path: List[int]) -> Dict[int, List[int]]:
         """The rigid bodies that each body of the path carries, itself among them; what stands on the world carries nothing."""
@@ -166,8 +184,9 @@ class _Reader:
         if kind in ("free", "ball"):
             raise UsageError(f"joint {name!r} on the way to the tip is a {kind} joint: an arm has hinges and slides")
         dof = int(self.model.jnt_dofadr[joint])
-        for what, amount in (("armature", self.model.dof_armature[dof]), ("damping", np.ravel(self.model.dof_damping[dof])[0])):
-            if amount:
+        amounts = {"armature": self.model.dof_armature, "damping": self.model.dof_damping, "friction": self.model.dof_frictionloss}
+        for what, of_dofs in amounts.items():
+            if np.any(of_dofs[dof]):
                 self.left_out.append(f"{what} of {name}")
         out: Dict[str, Any] = {"type": "joint", "name": name, "axis": self.data.xaxis[joint].tolist()}
         stiffness = self._stiffness(joint, name, kind)
@@ -193,22 +212,75 @@ class _Reader:
         own = float(np.ravel(self.model.jnt_stiffness[joint])[0])
         return own if own > 0 else None
 
-    def _couplings(self, joints: List[int]) -> Dict[int, Dict[str, float]]:
-        """The joints of the path that follow another one of it: the equality constraints of MuJoCo between two joints."""
+    def _constrained(self) -> Dict[int, _Followed]:
+        """The joints that an equality constraint ties to another joint, or holds.
+
+        MuJoCo counts both coordinates from the model's own configuration, ``qpos0``.
+        """
         model, out = self.model, {}
-        for equality in range(model.neq):
-            first, second = int(model.eq_obj1id[equality]), int(model.eq_obj2id[equality])
-            if model.eq_type[equality] != self.mj.mjtEq.mjEQ_JOINT or first not in joints:
+        for equality in self._equalities():
+            if model.eq_type[equality] != self.mj.mjtEq.mjEQ_JOINT:
                 continue
-            name = self._name("joint", first)
+            joint, leader = int(model.eq_obj1id[equality]), int(model.eq_obj2id[equality])
             offset, slope, *higher = [float(c) for c in model.eq_data[equality][:5]]
-            if second not in joints or offset != 0 or any(higher):
+            at = model.qpos0[model.jnt_qposadr[joint]] + offset
+            if leader < 0:
+                self.lumped.append(f"joint {self._name('joint', joint)} is held at {at:.6g}")
+                out[joint] = _Followed(at, 0.0, None)
+            elif any(higher):
+                self.curved.add(joint)
+            else:
+                out[joint] = _Followed(at - slope * model.qpos0[model.jnt_qposadr[leader]], slope, leader)
+        return {joint: self._resolved(joint, out) for joint in out}
+
+    def _resolved(self, joint: int, known: Dict[int, _Followed]) -> _Followed:
+        """What the joint follows in the end, where its leader follows another joint."""
+        own, seen = known[joint], {joint}
+        while own.leader is not None and own.leader in known:
+            if own.leader in seen:
+                raise UsageError(f"joint {self._name('joint', joint)!r} follows itself by equality constraints; remove one of them")
+            seen.add(own.leader)
+            leader = known[own.leader]
+            own = _Followed(own.at + own.slope * leader.at, own.slope * leader.slope, leader.leader)
+        return own
+
+    def _couplings(self, joints: List[int]) -> Dict[int, Dict[str, float]]:
+        """The joints of the path that follow another one of it, which an arm file can say in proportion only."""
+        out = {}
+        for joint in joints:
+            own = self.followed.get(joint)
+            if joint in self.curved or (own is not None and own.leader not in joints):
                 raise UsageError(
-                    f"joint {name!r} follows no other joint of the path in proportion, which an arm file cannot say; "
-                    "remove its equality constraint"
+                    f"joint {self._name('joint', joint)!r} follows no other joint of the path in proportion, which an arm file "
+                    "cannot say; remove its equality constraint"
                 )
-            out[first] = {self._name("joint", second): slope}
+            if own is not None:
+                out[joint] = {self._name("joint", own.leader): own.slope}
         return out
+
+    def _equalities(self) -> List[int]:
+        """The equality constraints that act from the start."""
+        return [equality for equality in range(self.model.neq) if self.model.eq_active0[equality]]
+
+    def _leave_out(self, carried: Dict[int, List[int]]) -> None:
+        """Lists constraints and springs of the arm's bodies that an arm file cannot say."""
+        model, kinds = self.model, self.mj.mjtEq
+        bodies = {body for some in carried.values() for body in some} | set(carried) - {0}
+        for equality in self._equalities():
+            kind = model.eq_type[equality]
+            if kind == kinds.mjEQ_JOINT:
+                continue
+            ends = [int(model.eq_obj1id[equality]), int(model.eq_obj2id[equality])]
+            if kind in (kinds.mjEQ_CONNECT, kinds.mjEQ_WELD):
+                if model.eq_objtype[equality] == self.mj.mjtObj.mjOBJ_SITE:
+                    ends = [int(model.site_bodyid[site]) for site in ends]
+                if bodies.isdisjoint(ends):
+                    continue
+            word = kinds(kind).name.replace("mjEQ_", "").lower()
+            self.left_out.append(f"{word} constraint {model.equality(equality).name or equality}")
+        for tendon in range(model.ntendon):
+            if np.any(model.tendon_stiffness[tendon]):
+                self.left_out.append(f"spring of tendon {model.tendon(tendon).name or tendon}")
 
     def _gravity(self) -> Union[float, List[float]]:
         off = self.model.opt.disableflags & self.mj.mjtDisableBit.mjDSBL_GRAVITY

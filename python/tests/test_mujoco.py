@@ -158,6 +158,31 @@ def test_a_mimicking_hinge_is_coupled():
     assert torque == pytest.approx(-data.qfrc_bias[0] + data.qfrc_bias[1], abs=TOLERANCE_NM)
 
 
+def test_constraints_count_from_the_models_own_configuration():
+    text = """<mujoco><worldbody><body name="a"><joint name="p" axis="0 1 0" ref="20"/><geom size="0.1" mass="1" pos="0.2 0 0"/>
+      <body name="b" pos="0.5 0 0"><joint name="q" axis="0 1 0.2" ref="-10"/><geom size="0.1" mass="2" pos="0.3 0 0"/>
+      <body name="c" pos="0.4 0 0"><joint name="r" axis="0 0.3 1"/><geom size="0.1" mass="3" pos="0.1 0.1 0"/>
+      <body name="d" pos="0.3 0 0"><joint name="s" axis="1 1 0"/><geom size="0.1" mass="1.5" pos="0.2 0 0.1"/>
+      </body></body></body></body></worldbody><equality>
+      <joint joint1="q" joint2="p" polycoef="0.3 -0.8 0 0 0"/><joint joint1="s" joint2="q" polycoef="-0.1 0.5 0 0 0"/>
+      <joint joint1="r" polycoef="0.7 0 0 0 0"/><joint joint1="r" joint2="p" active="false"/>
+      <connect body1="d" body2="a" anchor="0 0 0"/></equality></mujoco>"""
+    model = mujoco.MjModel.from_xml_string(text)
+    arm = armwright.from_mujoco(model, "d")
+    assert armwright.driven_joints(arm) == ["p"]
+    assert arm["provenance"]["lumped"] == ["joint r is held at 0.7"]
+    assert arm["provenance"]["left_out"] == ["connect constraint 4"]
+    coupled = {e["name"]: e.get("coupled") for e in arm["chain"] if e["type"] == "joint"}
+    assert coupled == {"p": None, "q": {"p": pytest.approx(-0.8)}, "s": {"p": pytest.approx(-0.4)}}
+    for p in (-0.9, 0.0, 0.4):
+        q = np.radians(-10) + 0.3 - 0.8 * (p - np.radians(20))
+        s = -0.1 + 0.5 * (q - np.radians(-10))
+        data = held(model, ["p", "q", "r", "s"], [p, q, 0.7, s])
+        torque = armwright.analyze(arm, [np.degrees(p)])["joint_torque_nm"]["p"]
+        of = {name: -data.qfrc_bias[model.joint(name).dofadr[0]] for name in "pqrs"}
+        assert torque == pytest.approx(of["p"] - 0.8 * of["q"] - 0.4 * of["s"], abs=TOLERANCE_NM)
+
+
 def test_what_no_arm_can_be_is_refused():
     free = mujoco.MjModel.from_xml_string(
         '<mujoco><worldbody><body name="a"><freejoint/><geom size="0.1" mass="1"/></body></worldbody></mujoco>'

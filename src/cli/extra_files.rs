@@ -62,12 +62,12 @@ pub(super) fn say_missing(missing: &[String], log: Log) {
 }
 
 /// Panics if a test asks for it: if the environment variable `ARMWRIGHT_FAULT` is `panic:` followed by `what`, such as
-/// `panic:summary.md`. Only builds with debug assertions do so.
-#[cfg(debug_assertions)]
+/// `panic:summary.md`. Only builds with the feature `faults` do so.
+#[cfg(feature = "faults")]
 fn fail_if_wanted(what: &str) {
     let wanted = std::env::var("ARMWRIGHT_FAULT").unwrap_or_default();
     assert!(wanted.strip_prefix("panic:") != Some(what), "a fault for a test");
 }
 
-#[cfg(not(debug_assertions))]
+#[cfg(not(feature = "faults"))]
 fn fail_if_wanted(_: &str) {}

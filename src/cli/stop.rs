@@ -111,8 +111,8 @@ fn nothing_written() -> Failure {
 }
 
 /// Sets the flag if a test asks for it at this moment: if the environment variable `ARMWRIGHT_FAULT` is `stop:`
-/// followed by `moment`, such as `stop:begin`. Only builds with debug assertions do so.
-#[cfg(debug_assertions)]
+/// followed by `moment`, such as `stop:begin`. Only builds with the feature `faults` do so.
+#[cfg(feature = "faults")]
 pub(super) fn stop_if_wanted(moment: &str) {
     let wanted = std::env::var("ARMWRIGHT_FAULT").unwrap_or_default();
     if wanted.strip_prefix("stop:") == Some(moment) {
@@ -120,5 +120,5 @@ pub(super) fn stop_if_wanted(moment: &str) {
     }
 }
 
-#[cfg(not(debug_assertions))]
+#[cfg(not(feature = "faults"))]
 pub(super) fn stop_if_wanted(_: &str) {}

@@ -7,9 +7,10 @@
 //! axis. One of these eigenvalues is then zero, and its mode is not returned.
 
 use super::chain::{ElasticElement, Item, Posed};
+use super::eigenpairs::Eigenpairs;
 use super::statics::Statics;
 use super::{Twist, displacement_at};
-use nalgebra::{DMatrix, DVector, Matrix6, Matrix6xX, SymmetricEigen, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix6, Matrix6xX, Vector3};
 use std::f64::consts::TAU;
 
 /// One natural mode.
@@ -30,7 +31,7 @@ pub struct Mode {
     pub coordinates: Vec<Vec<f64>>,
 }
 
-/// The modal solution of an arm in a pose: all modes of the model, lowest first.
+/// The modal solution of an arm in a pose: modes of the model, lowest first.
 #[derive(Debug, Clone)]
 pub struct Modes {
     /// `1/ω²` of each mode \[s²\], largest first. Modes without inertia are included, with the value zero.
@@ -52,14 +53,13 @@ impl Posed<'_> {
     /// The static torques decide at which slope of their torsion curves the joints vibrate. [`Chain`](super::Chain)
     /// has an example.
     pub fn modes(&self, statics: &Statics, count: usize) -> Vec<Mode> {
-        let modes = self.solve_modes(statics);
+        let modes = self.lowest_modes(statics, count);
         // The lowest frequency comes from the function that computes it alone, so that its last digits are the same as
         // in a front. No other mode may then have a lower frequency.
         let lowest_hz = self.lowest_frequency_hz(statics);
         let frequency = |k: usize, hz: f64| if k == 0 { lowest_hz } else { hz.max(lowest_hz) };
         modes
             .finite()
-            .take(count)
             .map(|(k, hz)| self.describe(statics, &modes.shapes.column(k).into_owned(), frequency(k, hz)))
             .collect()
     }
@@ -67,19 +67,18 @@ impl Posed<'_> {
     /// All modes of small vibrations about a static state, from the eigenvalue problem in flexibility form
     /// `C^½ M C^½ ψ = ψ/ω²`.
     pub fn solve_modes(&self, statics: &Statics) -> Modes {
+        self.lowest_modes(statics, usize::MAX)
+    }
+
+    /// The `count` lowest modes, or all if there are fewer.
+    fn lowest_modes(&self, statics: &Statics, count: usize) -> Modes {
         let (a, roots) = self.flexibility_form(statics);
-        if roots.is_empty() {
-            return Modes { inverse_squares: Vec::new(), shapes: a };
+        let Eigenpairs { values, vectors } = Eigenpairs::largest(a, count);
+        let mut shapes = DMatrix::zeros(roots.len(), vectors.len());
+        for (k, vector) in vectors.iter().enumerate() {
+            shapes.set_column(k, &vector.component_mul(&roots));
         }
-        let eigen = SymmetricEigen::new(a);
-        let mut order: Vec<usize> = (0..roots.len()).collect();
-        // Equal eigenvalues are put into a fixed order, so that equal inputs give equal files.
-        order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]).then(i.cmp(&j)));
-        let mut shapes = DMatrix::zeros(roots.len(), roots.len());
-        for (k, &i) in order.iter().enumerate() {
-            shapes.set_column(k, &eigen.eigenvectors.column(i).component_mul(&roots));
-        }
-        Modes { inverse_squares: order.iter().map(|&i| eigen.eigenvalues[i].max(0.0)).collect(), shapes }
+        Modes { inverse_squares: values.iter().map(|value| value.max(0.0)).collect(), shapes }
     }
 
     /// The matrix `C^½ M C^½`, and the diagonal of `C^½`. `C` has the tangent compliances of the static state, `M` is

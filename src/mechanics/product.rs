@@ -21,6 +21,20 @@ pub(crate) fn transposed_product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<
     out
 }
 
+/// The product `AᵀB` of matrices of which is known that it is symmetric, as where B is a symmetric matrix times A: half of it
+/// is computed.
+///
+/// # Panics
+/// If the factors differ in size.
+pub(crate) fn symmetric_product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<f64> {
+    assert_eq!(a.nrows(), b.nrows(), "as many terms on either side");
+    let columns: Vec<_> = b.column_iter().collect();
+    let columns: Vec<&[f64]> = columns.iter().map(|column| column.as_slice()).collect();
+    let mut out = Panels::of_columns(a.as_view()).lower_square(&columns);
+    out.fill_upper_triangle_with_lower_triangle();
+    out
+}
+
 /// Adds `AᵀB` to the matrix `out`. Tall matrices A and B may be divided into blocks of rows that are added one after
 /// the other; the sums are then the same to the last bit.
 ///
@@ -89,8 +103,8 @@ impl Panels {
         }
     }
 
-    /// The lower triangle of the product of this left factor with its own transpose, whose columns are `columns`. Above
-    /// the diagonal the result is incomplete: some entries of the product are there, the others are zero.
+    /// The lower triangle of the product of this left factor with the matrix of these `columns`, such as its own transpose.
+    /// Above the diagonal the result is incomplete: some entries of the product are there, the others are zero.
     ///
     /// # Panics
     /// If `columns` are not as many and as long as the left factor's rows.

@@ -1,7 +1,7 @@
 //! Files that are written completely or not at all. Each is written under a temporary name in the same folder,
 //! synced to the disk and then renamed.
 //!
-//! Every change of the disk by the program goes through the functions of this file. In builds with debug assertions
+//! Every change of the disk by the program goes through the functions of this file. In builds with the feature `faults`
 //! a test can stop the program, or simulate a full disk, at any of these changes. `ARMWRIGHT_FAULT=kill:7` ends the
 //! process at the seventh change. `ARMWRIGHT_FAULT=full:7` lets every write fail from the seventh change on.
 
@@ -153,7 +153,7 @@ enum Step {
 }
 
 /// Ends the process or reports a full disk, if a test asks for it at this change.
-#[cfg(debug_assertions)]
+#[cfg(feature = "faults")]
 fn fault(step: Step) -> io::Result<()> {
     use std::sync::atomic::{AtomicU64, Ordering};
     static STEPS: AtomicU64 = AtomicU64::new(0);
@@ -166,7 +166,7 @@ fn fault(step: Step) -> io::Result<()> {
     }
 }
 
-#[cfg(not(debug_assertions))]
+#[cfg(not(feature = "faults"))]
 fn fault(_: Step) -> io::Result<()> {
     Ok(())
 }

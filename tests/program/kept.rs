@@ -1,7 +1,7 @@
 //! Finished results are never lost: the terminal may be closed, a page may be impossible to make, and an output may
 //! have the path of an input.
 
-use crate::running::{command, said};
+use crate::running::{command, has_faults, said};
 use crate::whole_results::study;
 use std::fs::{self, File};
 use std::path::Path;
@@ -83,8 +83,7 @@ fn a_standard_output_that_was_closed_throws_away_and_no_text_gets_into_a_result(
 
 #[test]
 fn a_piece_that_cannot_be_made_costs_no_other_and_is_named() {
-    if !cfg!(debug_assertions) {
-        eprintln!("SKIPPED pieces that fail: needs a build with debug assertions");
+    if !has_faults() {
         return;
     }
     let here = folder_with_study();

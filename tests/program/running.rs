@@ -3,6 +3,15 @@
 use std::path::Path;
 use std::process::Command;
 
+/// Whether the program can stop or find a full disk at a chosen moment (`ARMWRIGHT_FAULT`). If not, the test that asks
+/// is skipped, and this is said.
+pub(crate) fn has_faults() -> bool {
+    if !cfg!(feature = "faults") {
+        eprintln!("SKIPPED faults at chosen moments: needs --features faults, which scripts/test gives");
+    }
+    cfg!(feature = "faults")
+}
+
 /// The program with these words, in a folder.
 pub(crate) fn command(folder: &Path, words: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_armwright"));

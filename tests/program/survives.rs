@@ -1,7 +1,7 @@
 //! A run that meets trouble keeps what it has and says what is missing. Symbolic links are not followed, files of
 //! others are not replaced, and after a signal no file is half-written.
 
-use crate::running::{armwright, command, said};
+use crate::running::{armwright, command, has_faults, said};
 use crate::whole_results::{copy, study};
 use serde_json::{Value, json};
 use std::fs;
@@ -97,13 +97,6 @@ fn a_check_completes_a_result_whose_writer_died() {
     assert!(half.path().join("run.json").is_file());
     let again = half_moved(here.path());
     succeeds(here.path(), &["check", "--same", out, again.path().to_str().expect("text")]);
-}
-
-fn has_faults() -> bool {
-    if !cfg!(debug_assertions) {
-        eprintln!("SKIPPED signals at chosen moments: needs a build with debug assertions");
-    }
-    cfg!(debug_assertions)
 }
 
 /// As if a signal came at this moment.

@@ -1,7 +1,7 @@
 //! A result is replaced as a whole: at whatever moment the program stops, a reader finds either the old result or the
 //! new one, complete. Files that do not belong to the result are neither replaced nor removed.
 
-use crate::running::{command, said};
+use crate::running::{command, has_faults, said};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::fs;
@@ -97,14 +97,6 @@ fn with_faults(
         }
     }
     found
-}
-
-/// Faults are built in with debug assertions only.
-fn has_faults() -> bool {
-    if !cfg!(debug_assertions) {
-        eprintln!("SKIPPED faults at steps to the disk: needs a build with debug assertions");
-    }
-    cfg!(debug_assertions)
 }
 
 #[test]

@@ -17,7 +17,8 @@ use crate::arm::effect::warming::Moment;
 use crate::arm::load::Payload;
 use crate::mechanics::chain::Chain;
 use crate::mechanics::chain::Posed;
-use crate::mechanics::product::{Panels, transposed_product};
+use crate::mechanics::eigenpairs::Eigenpairs;
+use crate::mechanics::product::{Panels, symmetric_product};
 use crate::mechanics::{Wrench, displacement_at};
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::rows::ModalRow;
@@ -188,16 +189,13 @@ impl ModalTest {
             column.component_mul_assign(&roots);
             column *= *root;
         }
-        let eigen = SymmetricEigen::new(a);
-        let mut order: Vec<usize> = (0..layout.n).collect();
-        order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]).then(i.cmp(&j)));
+        let eigen = Eigenpairs::largest(a, self.wanted());
         // smaller eigenvalues are rounding error and would give meaningless shapes
-        let floor = 1e-12 * eigen.eigenvalues[order[0]];
-        let columns: Vec<DVector<f64>> = order
-            .iter()
-            .filter(|&&i| eigen.eigenvalues[i] > floor)
-            .take(self.wanted())
-            .map(|&i| &mass * eigen.eigenvectors.column(i).component_mul(&roots) / eigen.eigenvalues[i])
+        let floor = 1e-12 * eigen.values.first().copied().unwrap_or(0.0);
+        let pairs = eigen.values.iter().zip(&eigen.vectors);
+        let columns: Vec<DVector<f64>> = pairs
+            .filter(|(value, _)| **value > floor)
+            .map(|(value, vector)| &mass * vector.component_mul(&roots) / *value)
             .collect();
         match columns.is_empty() {
             true => DMatrix::zeros(layout.n, 0), // without compliance there are no modes
@@ -307,19 +305,15 @@ impl ModalTest {
             column.iter_mut().zip(&compliances).for_each(|(f, c)| *f *= c);
         }
         let momenta = self.momenta(coefficients, &shapes);
-        let reduced_mass = transposed_product(&shapes, &momenta);
-        let strain = transposed_product(&self.forces, &shapes);
+        let reduced_mass = symmetric_product(&shapes, &momenta);
+        let strain = symmetric_product(&self.forces, &shapes);
         let Some((amounts, a)) = unit_strains(strain, &reduced_mass) else { return Vec::new() };
-        // symmetric up to rounding errors: the mean with the transpose makes it exactly symmetric
-        let eigen = SymmetricEigen::new((&a + a.transpose()) * 0.5);
-        let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
-        order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]).then(i.cmp(&j)));
-        order
-            .into_iter()
-            .take(count)
-            .filter_map(|i| {
-                let z = amounts.of(&eigen.eigenvectors.column(i).into_owned())?;
-                Some(Solved { mu: eigen.eigenvalues[i].max(1e-300), x: &shapes * &z, y: &momenta * &z })
+        let eigen = Eigenpairs::largest(a, count);
+        let pairs = eigen.values.iter().zip(&eigen.vectors);
+        pairs
+            .filter_map(|(mu, vector)| {
+                let z = amounts.of(vector)?;
+                Some(Solved { mu: mu.max(1e-300), x: &shapes * &z, y: &momenta * &z })
             })
             .collect()
     }

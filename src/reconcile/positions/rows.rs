@@ -48,7 +48,7 @@ fn slope_beyond_geometry(
         Number::Drift(c) => Some(Vector3::ith(c, sample.part)),
         _ => None,
     };
-    debug_assert_eq!(by.is_some(), number.acts_beyond_geometry(), "{number:?}");
+    assert_eq!(by.is_some(), number.acts_beyond_geometry(), "{number:?}");
     by
 }
 

@@ -24,7 +24,7 @@ pub(crate) fn located(
 ) -> Vec<Located> {
     let mut parts: Vec<(String, Vec<usize>)> = Vec::new();
     let mut known: HashMap<String, usize> = HashMap::new();
-    for (i, datum) in forward.data.iter().enumerate() {
+    for i in 0..forward.data.len() {
         if weights.inverse[i] > 0.0 {
             for name in names(campaign, forward, i) {
                 let part = *known.entry(name).or_insert_with_key(|name| {
@@ -34,7 +34,6 @@ pub(crate) fn located(
                 parts[part].1.push(i);
             }
         }
-        debug_assert!(datum.sigma > 0.0);
     }
     let residual =
         |fit: &Fit, i: usize| (forward.data[i].value - fit.point.predicted[i]) / forward.data[i].sigma;

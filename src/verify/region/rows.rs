@@ -386,7 +386,7 @@ impl<'a> Rows<'a> {
             Coordinate::Joint(joint) => Ok((self.columns.slope(joint, case), 1.0)),
             Coordinate::Tube(tube, shape) => {
                 let (which, integral_m) = shape.stiffness(self.skeleton.lengths_m[tube]);
-                debug_assert!(which < STIFFNESSES);
+                assert!(which < STIFFNESSES);
                 Ok((
                     self.columns.tubes[tube] + place::stiffness(self.skeleton.waters.len(), which),
                     integral_m,

@@ -17,10 +17,11 @@
 //! - a stiffness that depends on the occasion of a reading (the order of the tests, how long a pose is kept, the temperature,
 //!   the sense of loading), on the size of the load, or on the angle several times a turn.
 //!
-//! A law may also be an error of a reading as a function of the true value, of the direction, of the kind of load, or
-//! of the time in a pose. A law consists of a few columns: changes of the readings, linearized about a fit.
+//! A law may also be an error of a reading as a function of the true value, of the direction, of the kind of load, of
+//! the time in a pose, or of the order of the tests, like that of a base on ground that settles. A law consists of a few columns: changes of the readings, linearized about a fit.
 
 mod coupling;
+mod course;
 mod friction;
 mod guides;
 mod joints;
@@ -90,6 +91,7 @@ pub(crate) fn of_every_law<T: Send>(
     ask(builder.friction_laws());
     ask(builder.zero_laws());
     ask(builder.level_laws());
+    ask(builder.course_laws());
     ask(builder.length_laws());
     ask(builder.coupling_laws());
     ask(builder.guide_laws());

@@ -1,0 +1,98 @@
+//! Laws of displacements that grow in the course of the tests although no load does: ground that settles under the base, and a
+//! zero of the instrument that creeps.
+
+use super::{Builder, Law, placed};
+use crate::arm::effect::channel::Channel;
+use crate::reconcile::forward::datum::Datum;
+use nalgebra::Vector3;
+
+/// Fraction of the tests after which a part that creeps has moved as far as it moves in the next two such fractions together.
+/// Soil and polymers creep with the logarithm of the time.
+const EARLY: f64 = 0.05;
+
+impl Builder<'_> {
+    /// The laws of the static readings that follow the order of the tests.
+    pub(super) fn course_laws(&self) -> Vec<Law> {
+        let range = self.forward.range(Channel::Static);
+        let data = &self.forward.data[range];
+        let largest_mm = data.iter().map(|d| d.value.abs()).fold(0.0, f64::max);
+        let column = |of: &dyn Fn(usize, &Datum) -> f64| -> Vec<f64> {
+            let mut truth = vec![0.0; self.forward.data.len()];
+            truth.iter_mut().zip(data).enumerate().for_each(|(i, (out, d))| *out = largest_mm * of(i, d));
+            self.read(&truth)
+        };
+        let creeps = |i: usize| crept(self.occasions[i].part);
+        let tips_m = self.tips_m();
+        let reach_m = tips_m.iter().map(|tip| tip.norm()).fold(1e-9, f64::max);
+        // by how much the tip moves if the base turns about an axis
+        let moved = |axis: Vector3<f64>, d: &Datum| axis.cross(&tips_m[d.index])[d.component] / reach_m;
+        let turning = |when: &dyn Fn(usize) -> f64| {
+            [Vector3::x(), Vector3::y()].map(|axis| column(&|i, d| when(i) * moved(axis, d))).to_vec()
+        };
+        let base = vec![
+            Law::new(
+                "a base that turns steadily in the course of the tests",
+                turning(&|i| self.occasions[i].part),
+            ),
+            Law::new("a base that settles, fast at first", turning(&creeps)),
+        ];
+        let along = |c: usize| column(&|i, d| if d.component == c { creeps(i) } else { 0.0 });
+        let zero = Law::new("static readings whose zero creeps, fast at first", (0..3).map(along).collect());
+        [placed("base", base), placed(Channel::Static.word(), vec![zero])].concat()
+    }
+
+    /// Position of the tip in every row of the static readings \[m\].
+    fn tips_m(&self) -> Vec<Vector3<f64>> {
+        let mut tips_m = vec![Vector3::zeros(); self.campaign.statics.len()];
+        for pose in &self.forward.statics {
+            for (_, datum) in (0..pose.count()).flat_map(|load| pose.measured(load)) {
+                tips_m[self.forward.data[datum].index] = pose.geometry.tip_m;
+            }
+        }
+        tips_m
+    }
+}
+
+/// How far a part that creeps has moved after the fraction `part` of the tests, relative to all tests.
+fn crept(part: f64) -> f64 {
+    libm::log1p(part / EARLY) / libm::log1p(1.0 / EARLY)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::about_the_nominal_arm;
+    use super::*;
+
+    #[test]
+    fn what_creeps_moves_fast_at_first() {
+        assert_eq!([0.0, 1.0].map(crept), [0.0, 1.0]);
+        assert!((crept(3.0 * EARLY) - 2.0 * crept(EARLY)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_base_that_turns_moves_the_tip_across_its_radius_and_later_rows_more() {
+        about_the_nominal_arm(|builder, _| {
+            let laws = builder.course_laws();
+            assert_eq!(laws.iter().map(|law| law.columns.len()).collect::<Vec<_>>(), [2, 2, 3]);
+            let tips_m = builder.tips_m();
+            let modal = builder.forward.starts[1];
+            for law in &laws {
+                for column in &law.columns {
+                    assert!(column[modal..].iter().all(|change| *change == 0.0));
+                    assert!(column[..3].iter().all(|change| *change == 0.0), "the first row");
+                }
+            }
+            let turned = |law: &Law, row: usize| {
+                let of = |column: &[f64]| Vector3::from_fn(|c, _| column[3 * row + c]);
+                [of(&law.columns[0]), of(&law.columns[1])]
+            };
+            let last = builder.campaign.statics.len() - 1;
+            for moved in turned(&laws[0], last) {
+                assert!(moved.norm() > 0.0 && moved.dot(&tips_m[last]).abs() < 1e-9 * moved.norm());
+            }
+            // early rows have moved further where the ground settles
+            let share = |law: &Law| turned(law, 3)[0].norm() / tips_m[3].norm();
+            assert!(share(&laws[1]) > 1.5 * share(&laws[0]));
+        });
+    }
+}
