@@ -2,7 +2,7 @@
 
 MuJoCo reads MJCF and URDF with their defaults, includes and frames; the compiled model has every body and joint resolved. The arm is
 the path from the world to the tip. What hangs on it beside the path (fingers, cables) is lumped: its bodies are carried by the piece
-of the path that they hang on, with their joints held at zero.
+of the path that they hang on, with their joints held where they are when the joints of the path are at zero.
 
 At zero joint coordinates every frame of an arm file is parallel to the world. So positions, axes and inertias are read there, in
 world axes, and poses of the arm are the joint coordinates of MuJoCo in degrees. A joint that follows another one by an equality
@@ -12,8 +12,7 @@ constraint stands where the constraint puts it while the others are at zero; a j
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Dict, List, Optional, Set, Union
+from typing import TYPE_CHECKING, Any, Dict, List, Optional, Tuple, Union
 
 import numpy as np
 
@@ -26,14 +25,8 @@ if TYPE_CHECKING:
 _NOTHING_M = 1e-12
 
 
-@dataclass
-class _Followed:
-    """What an equality constraint makes of a joint: its coordinate is ``at + slope * leader`` [rad, m]."""
-
-    at: float
-    slope: float
-    #: None for a joint that is held
-    leader: Optional[int]
+#: Joint that another one follows (None: it is held), and by how much per unit [-].
+_Led = Tuple[Optional[int], float]
 
 
 def from_mujoco(
@@ -55,7 +48,8 @@ def from_mujoco(
         A joint without either is rigid.
     :param name: name of the arm; default: the tip's
     :returns: dict for :func:`armwright.analyze`; torques of a pose equal ``-qfrc_bias`` of MuJoCo at rest
-    :raises UsageError: there is no such tip, or the path has a ball or free joint
+    :raises UsageError: there is no such tip, the path has a ball or free joint, or a joint of the path follows another one in a way
+        that an arm file cannot say
     """
     return _Reader(model, stiffness_nm_per_rad).arm(tip, name or tip)
 
@@ -68,12 +62,14 @@ class _Reader:
 
         self.mj, self.model, self.stiffness = mujoco, model, stiffness
         self.data = mujoco.MjData(model)
-        #: joints that follow another one, but not in proportion
-        self.curved: Set[int] = set()
-        self.followed = self._constrained()
+        #: the equality constraints that tie each joint to another one, or hold it
+        self.tied: Dict[int, List[int]] = {}
+        for equality in self._equalities():
+            if model.eq_type[equality] == mujoco.mjtEq.mjEQ_JOINT:
+                self.tied.setdefault(int(model.eq_obj1id[equality]), []).append(equality)
         for joint in range(model.njnt):
             if self._kind(joint) in ("hinge", "slide"):
-                self.data.qpos[model.jnt_qposadr[joint]] = self.followed[joint].at if joint in self.followed else 0.0
+                self.data.qpos[model.jnt_qposadr[joint]] = self._standing(joint)
         mujoco.mj_kinematics(model, self.data)
         mujoco.mj_comPos(model, self.data)
         self.links = 0
@@ -85,13 +81,17 @@ class _Reader:
         body, tip_m = self._tip(tip)
         path = self._path(body)
         carried = self._carried(path)
-        joints = [joint for on_path in path for joint in self._joints(on_path)]
-        couplings = self._couplings(joints)
-        self._leave_out(carried)
+        of_path = [joint for on_path in path for joint in self._joints(on_path)]
+        led = {joint: self._led(joint) for joint in of_path}
+        couplings = self._couplings(led)
+        self._leave_out(path, of_path)
         chain: List[Dict[str, Any]] = []
         at_m, bodies = np.zeros(3), list(carried[0])
         for on_path in path:
             for joint in self._joints(on_path):
+                if led[joint] is not None and led[joint][0] is None:
+                    self._say_held(joint)
+                    continue
                 anchor_m = self.data.xanchor[joint].copy()
                 chain += self._link(at_m, anchor_m, bodies)
                 chain.append(self._joint(joint, couplings))
@@ -134,19 +134,21 @@ class _Reader:
             body = int(self.model.body_parentid[body])
         return path
 
-    def _joints(self, body: int) -> List[int]:
-        """Its joints that move; those that a constraint holds are part of the link."""
+    def _joints(self, body: int) -> range:
         first = int(self.model.body_jntadr[body])
-        own = range(first, first + int(self.model.body_jntnum[body])) if first >= 0 else range(0)
-        return [joint for joint in own if joint not in self.followed or self.followed[joint].leader is not None]
+        return range(first, first + int(self.model.body_jntnum[body])) if first >= 0 else range(0)
+
+    def _owner(self, body: int, path: List[int]) -> int:
+        """The body of the path that a body hangs on, or 0, the world."""
+        while body not in path and body:
+            body = int(self.model.body_parentid[body])
+        return body
 
     def _carried(self, path: List[int]) -> Dict[int, List[int]]:
         """The rigid bodies that each body of the path carries, itself among them; what stands on the world carries nothing."""
         carried: Dict[int, List[int]] = {body: [] for body in [0, *path]}
         for body in range(1, self.model.nbody):
-            owner = body
-            while owner not in carried:
-                owner = int(self.model.body_parentid[owner])
+            owner = self._owner(body, path)
             if owner == 0 or self.model.body_mass[body] == 0:
                 continue
             if owner != body:
@@ -212,75 +214,116 @@ class _Reader:
         own = float(np.ravel(self.model.jnt_stiffness[joint])[0])
         return own if own > 0 else None
 
-    def _constrained(self) -> Dict[int, _Followed]:
-        """The joints that an equality constraint ties to another joint, or holds.
-
-        MuJoCo counts both coordinates from the model's own configuration, ``qpos0``.
-        """
-        model, out = self.model, {}
-        for equality in self._equalities():
-            if model.eq_type[equality] != self.mj.mjtEq.mjEQ_JOINT:
-                continue
-            joint, leader = int(model.eq_obj1id[equality]), int(model.eq_obj2id[equality])
-            offset, slope, *higher = [float(c) for c in model.eq_data[equality][:5]]
-            at = model.qpos0[model.jnt_qposadr[joint]] + offset
-            if leader < 0:
-                self.lumped.append(f"joint {self._name('joint', joint)} is held at {at:.6g}")
-                out[joint] = _Followed(at, 0.0, None)
-            elif any(higher):
-                self.curved.add(joint)
-            else:
-                out[joint] = _Followed(at - slope * model.qpos0[model.jnt_qposadr[leader]], slope, leader)
-        return {joint: self._resolved(joint, out) for joint in out}
-
-    def _resolved(self, joint: int, known: Dict[int, _Followed]) -> _Followed:
-        """What the joint follows in the end, where its leader follows another joint."""
-        own, seen = known[joint], {joint}
-        while own.leader is not None and own.leader in known:
-            if own.leader in seen:
-                raise UsageError(f"joint {self._name('joint', joint)!r} follows itself by equality constraints; remove one of them")
-            seen.add(own.leader)
-            leader = known[own.leader]
-            own = _Followed(own.at + own.slope * leader.at, own.slope * leader.slope, leader.leader)
-        return own
-
-    def _couplings(self, joints: List[int]) -> Dict[int, Dict[str, float]]:
-        """The joints of the path that follow another one of it, which an arm file can say in proportion only."""
-        out = {}
-        for joint in joints:
-            own = self.followed.get(joint)
-            if joint in self.curved or (own is not None and own.leader not in joints):
-                raise UsageError(
-                    f"joint {self._name('joint', joint)!r} follows no other joint of the path in proportion, which an arm file "
-                    "cannot say; remove its equality constraint"
-                )
-            if own is not None:
-                out[joint] = {self._name("joint", own.leader): own.slope}
-        return out
-
     def _equalities(self) -> List[int]:
         """The equality constraints that act from the start."""
+        flags = self.mj.mjtDisableBit
+        if self.model.opt.disableflags & (flags.mjDSBL_CONSTRAINT | flags.mjDSBL_EQUALITY):
+            return []
         return [equality for equality in range(self.model.neq) if self.model.eq_active0[equality]]
 
-    def _leave_out(self, carried: Dict[int, List[int]]) -> None:
-        """Lists constraints and springs of the arm's bodies that an arm file cannot say."""
-        model, kinds = self.model, self.mj.mjtEq
-        bodies = {body for some in carried.values() for body in some} | set(carried) - {0}
-        for equality in self._equalities():
-            kind = model.eq_type[equality]
-            if kind == kinds.mjEQ_JOINT:
+    def _tie(self, equality: int) -> Tuple[int, List[float]]:
+        """The leader of a constraint between joints, negative if there is none, and the coefficients of its polynomial.
+
+        The coordinates of both joints are counted from the model's own configuration, ``qpos0``.
+        """
+        return int(self.model.eq_obj2id[equality]), [float(c) for c in self.model.eq_data[equality][:5]]
+
+    def _own(self, joint: int) -> float:
+        return float(self.model.qpos0[self.model.jnt_qposadr[joint]])
+
+    def _standing(self, joint: int, followers: Tuple[int, ...] = ()) -> float:
+        """The coordinate of a joint while all joints that follow no other one are at zero [rad, m]."""
+        if joint not in self.tied or joint in followers:
+            return 0.0
+        leader, coefficients = self._tie(self.tied[joint][0])
+        beyond = self._standing(leader, (*followers, joint)) - self._own(leader) if leader >= 0 else 0.0
+        return self._own(joint) + sum(c * beyond**power for power, c in enumerate(coefficients))
+
+    def _led(self, joint: int, followers: Tuple[int, ...] = ()) -> Optional[_Led]:
+        """What a joint follows in the end, where its leader follows another one; None for a joint that is driven."""
+        if joint not in self.tied:
+            return None
+        name = self._name("joint", joint)
+        if joint in followers:
+            raise UsageError(f"joint {name!r} follows itself by equality constraints; remove one of them")
+        if len(self.tied[joint]) > 1:
+            raise UsageError(f"joint {name!r} has {len(self.tied[joint])} equality constraints; remove all but one")
+        leader, (_, slope, *higher) = self._tie(self.tied[joint][0])
+        if leader < 0:
+            return None, 0.0
+        end, factor = self._led(leader, (*followers, joint)) or (leader, 1.0)
+        if end is None or not (slope or any(higher)):
+            return None, 0.0
+        if any(higher):
+            raise self._not_proportional(joint)
+        return end, slope * factor
+
+    def _not_proportional(self, joint: int) -> UsageError:
+        return UsageError(
+            f"joint {self._name('joint', joint)!r} follows no other hinge of the path in proportion, which an arm file cannot say; "
+            "remove its equality constraint"
+        )
+
+    def _say_held(self, joint: int) -> None:
+        unit = "m" if self._kind(joint) == "slide" else "rad"
+        self.lumped.append(f"joint {self._name('joint', joint)} is held at {self._standing(joint):.6g} {unit}")
+
+    def _couplings(self, led: Dict[int, Optional[_Led]]) -> Dict[int, Dict[str, float]]:
+        """The joints of the path that follow another one of it."""
+        out: Dict[int, Dict[str, float]] = {}
+        for joint, own in led.items():
+            if own is None or own[0] is None:
                 continue
+            leader, factor = own
+            if leader not in led or {self._kind(joint), self._kind(leader)} != {"hinge"}:
+                raise self._not_proportional(joint)
+            out[joint] = {self._name("joint", leader): factor}
+        return out
+
+    def _leave_out(self, path: List[int], joints: List[int]) -> None:
+        """Lists constraints and tendons of the arm that an arm file cannot say."""
+        model, kinds, objects = self.model, self.mj.mjtEq, self.mj.mjtObj
+        is_ours = [bool(self._owner(body, path)) for body in range(model.nbody)]
+        # sites are the ends of some constraints since MuJoCo 3.2.3
+        types = getattr(model, "eq_objtype", None)
+        for equality in self._equalities():
+            # an enumeration is compared with its own kind: `in` finds no number of NumPy
+            kind = kinds(int(model.eq_type[equality]))
             ends = [int(model.eq_obj1id[equality]), int(model.eq_obj2id[equality])]
+            if kind == kinds.mjEQ_JOINT:
+                if ends[0] not in joints and ends[1] in joints and is_ours[model.jnt_bodyid[ends[0]]]:
+                    self.left_out.append(f"motion of {self._name('joint', ends[0])} with {self._name('joint', ends[1])}")
+                continue
             if kind in (kinds.mjEQ_CONNECT, kinds.mjEQ_WELD):
-                if model.eq_objtype[equality] == self.mj.mjtObj.mjOBJ_SITE:
+                if types is not None and types[equality] == objects.mjOBJ_SITE:
                     ends = [int(model.site_bodyid[site]) for site in ends]
-                if bodies.isdisjoint(ends):
-                    continue
-            word = kinds(kind).name.replace("mjEQ_", "").lower()
-            self.left_out.append(f"{word} constraint {model.equality(equality).name or equality}")
+                bodies = [body for body in ends if body >= 0]
+            elif kind == kinds.mjEQ_TENDON:
+                bodies = [body for tendon in ends if tendon >= 0 for body in self._of_tendon(tendon)]
+            else:
+                continue
+            if any(is_ours[body] for body in bodies):
+                word = kind.name.replace("mjEQ_", "").lower()
+                self.left_out.append(f"{word} constraint {model.equality(equality).name or equality}")
         for tendon in range(model.ntendon):
-            if np.any(model.tendon_stiffness[tendon]):
-                self.left_out.append(f"spring of tendon {model.tendon(tendon).name or tendon}")
+            acts = (model.tendon_stiffness[tendon], model.tendon_damping[tendon], model.tendon_frictionloss[tendon])
+            if any(np.any(amount) for amount in acts) and any(is_ours[body] for body in self._of_tendon(tendon)):
+                self.left_out.append(f"spring, damping and friction of tendon {model.tendon(tendon).name or tendon}")
+
+    def _of_tendon(self, tendon: int) -> List[int]:
+        """The bodies that a tendon runs over or whose joints it couples."""
+        model, wraps = self.model, self.mj.mjtWrap
+        first = int(model.tendon_adr[tendon])
+        out = []
+        for wrap in range(first, first + int(model.tendon_num[tendon])):
+            kind, own = wraps(int(model.wrap_type[wrap])), int(model.wrap_objid[wrap])
+            if kind == wraps.mjWRAP_JOINT:
+                out.append(int(model.jnt_bodyid[own]))
+            elif kind == wraps.mjWRAP_SITE:
+                out.append(int(model.site_bodyid[own]))
+            elif kind in (wraps.mjWRAP_SPHERE, wraps.mjWRAP_CYLINDER):
+                out.append(int(model.geom_bodyid[own]))
+        return out
 
     def _gravity(self) -> Union[float, List[float]]:
         off = self.model.opt.disableflags & self.mj.mjtDisableBit.mjDSBL_GRAVITY

@@ -170,7 +170,7 @@ def test_constraints_count_from_the_models_own_configuration():
     model = mujoco.MjModel.from_xml_string(text)
     arm = armwright.from_mujoco(model, "d")
     assert armwright.driven_joints(arm) == ["p"]
-    assert arm["provenance"]["lumped"] == ["joint r is held at 0.7"]
+    assert arm["provenance"]["lumped"] == ["joint r is held at 0.7 rad"]
     assert arm["provenance"]["left_out"] == ["connect constraint 4"]
     coupled = {e["name"]: e.get("coupled") for e in arm["chain"] if e["type"] == "joint"}
     assert coupled == {"p": None, "q": {"p": pytest.approx(-0.8)}, "s": {"p": pytest.approx(-0.4)}}
@@ -183,6 +183,26 @@ def test_constraints_count_from_the_models_own_configuration():
         assert torque == pytest.approx(of["p"] - 0.8 * of["q"] - 0.4 * of["s"], abs=TOLERANCE_NM)
 
 
+def test_what_follows_a_joint_of_the_path_stands_where_it_is_put_and_constraints_can_be_off():
+    text = """<mujoco>{option}<worldbody><body name="a"><joint name="p" axis="0 1 0"/><geom size="0.1" mass="1" pos="0.2 0 0"/>
+      <body name="finger" pos="0.3 0 0"><joint name="f" type="slide" axis="1 0 0"/><geom size="0.1" mass="2"/></body>
+      <body name="b" pos="0.5 0 0"><joint name="q" axis="0 1 0"/><geom size="0.1" mass="3" pos="0.1 0 0"/></body></body></worldbody>
+      <tendon><fixed name="belt" stiffness="100"><joint joint="q" coef="1"/></fixed></tendon>
+      <equality><joint joint1="f" joint2="p" polycoef="0.05 0.1 0.3 0 0"/><joint joint1="q" joint2="p" polycoef="0.2 0 0 0 0"/>
+      </equality></mujoco>"""
+    model = mujoco.MjModel.from_xml_string(text.format(option=""))
+    arm = armwright.from_mujoco(model, "b")
+    assert armwright.driven_joints(arm) == ["p"]
+    said = arm["provenance"]
+    assert said["lumped"] == ["finger is carried by a", "joint q is held at 0.2 rad"]
+    assert said["left_out"] == ["motion of f with p", "spring, damping and friction of tendon belt"]
+    data = held(model, ["p", "f", "q"], [0.0, 0.05, 0.2])
+    torque = armwright.analyze(arm, [0.0])["joint_torque_nm"]["p"]
+    assert torque == pytest.approx(-data.qfrc_bias[0], abs=TOLERANCE_NM)
+    off = mujoco.MjModel.from_xml_string(text.format(option='<option><flag equality="disable"/></option>'))
+    assert armwright.driven_joints(armwright.from_mujoco(off, "b")) == ["p", "q"]
+
+
 def test_what_no_arm_can_be_is_refused():
     free = mujoco.MjModel.from_xml_string(
         '<mujoco><worldbody><body name="a"><freejoint/><geom size="0.1" mass="1"/></body></worldbody></mujoco>'
@@ -191,3 +211,12 @@ def test_what_no_arm_can_be_is_refused():
         armwright.from_mujoco(free, "a")
     with pytest.raises(armwright.UsageError, match="the bodies are a"):
         armwright.from_mujoco(free, "b")
+    pair = """<mujoco><worldbody><body name="a"><joint name="p" axis="0 1 0"/><geom size="0.1" mass="1"/><body name="b">
+      <joint name="q" axis="0 1 0"/><geom size="0.1" mass="1"/></body></body></worldbody><equality>{}</equality></mujoco>"""
+    for ties, words in (
+        ('<joint joint1="q" joint2="p" polycoef="0 1 1 0 0"/>', "in proportion"),
+        ('<joint joint1="q" joint2="p"/><joint joint1="p" joint2="q"/>', "follows itself"),
+        ('<joint joint1="q" joint2="p"/><joint joint1="q"/>', "2 equality constraints"),
+    ):
+        with pytest.raises(armwright.UsageError, match=words):
+            armwright.from_mujoco(mujoco.MjModel.from_xml_string(pair.format(ties)), "b")

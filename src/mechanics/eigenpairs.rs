@@ -7,8 +7,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// A number next to the diagonal that is smaller than this is zero, relative to the largest entry of the matrix. Its square does
-/// not underflow.
+/// Relative to the largest entry of the matrix, a number outside the diagonal that is smaller than this is zero. The square of this
+/// number does not underflow.
 const NOTHING: f64 = 1e-150;
 
 /// The largest eigenvalues of a symmetric matrix, largest first, each with its eigenvector of length 1.
@@ -96,7 +96,7 @@ fn make_tridiagonal(a: &mut DMatrix<f64>) -> Vec<f64> {
 fn make_reflection(x: &mut [f64]) -> f64 {
     let first = x[0];
     let further = dot(&x[1..], &x[1..]);
-    if further == 0.0 {
+    if further <= NOTHING * NOTHING {
         x.fill(0.0);
         return first;
     }
@@ -148,6 +148,9 @@ fn make_diagonal(diagonal: &mut [f64], next: &mut [f64]) -> Vec<Rotation> {
             continue;
         }
         let start = (0..end).rev().find(|k| !counts(k)).map_or(0, |k| k + 1);
+        if start > 0 {
+            next[start - 1] = 0.0;
+        }
         step(diagonal, next, start..end, &mut rotations);
     }
     rotations
@@ -165,7 +168,7 @@ fn step(
     let mut across = next[block.start];
     for at in block.clone() {
         let length = (along * along + across * across).sqrt();
-        let (cos, sin) = if length > 0.0 { (along / length, -across / length) } else { (1.0, 0.0) };
+        let (cos, sin) = if length > NOTHING { (along / length, -across / length) } else { (1.0, 0.0) };
         if at > block.start {
             next[at - 1] = length;
         }
@@ -264,6 +267,14 @@ mod tests {
         for factor in [libm::ldexp(1.0, 700), libm::ldexp(1.0, -900)] {
             let scaled = Eigenpairs::largest(&a * factor, 2).values;
             assert!(scaled.iter().zip(&whole).all(|(s, w)| (s / factor - w).abs() < 1e-14 * w), "{scaled:?}");
+        }
+    }
+
+    #[test]
+    fn an_entry_whose_square_underflows_turns_nothing() {
+        for tiny in [2e-162, 1e-170, 1e-320] {
+            let a = DMatrix::from_row_slice(3, 3, &[1.0, 0.0, tiny, 0.0, 0.5, 0.3, tiny, 0.3, 0.4]);
+            check(&a, 3);
         }
     }
 

@@ -11,8 +11,8 @@
 //!   the sum over all coordinates.
 //! - Modes (`modes`; Eqs 16-18 are the case of rigid links): the mass matrix `M` follows from the inertia of everything
 //!   outboard of a coordinate and from each pair of twists. The compliance matrix `C` is diagonal, and `C^½ M C^½ ψ =
-//!   ψ/ω²`. `eigenpairs` solves it for the modes that are asked for. The lowest mode alone (`lowest_mode`, `krylov`) needs products with `M` only. Each product takes two passes
-//!   over the chain.
+//!   ψ/ω²`. `eigenpairs` solves it for the modes that are asked for. The lowest mode alone (`lowest_mode`, `krylov`)
+//!   needs products with `M` only. Each product takes two passes over the chain.
 //! - Response (`response`; F(t) of Eq 16): the sum of the modes under a harmonic force at the tip.
 //!
 //! `hanging` repeats the statics in the deflected pose, for large displacements. `tip` computes the displacement of the tip

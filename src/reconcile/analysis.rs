@@ -9,10 +9,10 @@ use super::fit::noise::Noise;
 use super::fit::units;
 use super::fit::weights::Weights;
 use super::forward::prepared::Forward;
-use super::model::calibration::Nuisance;
-use super::model::candidates::candidates;
+use super::found::Found;
+use super::long::Part;
 use super::model::estimate::{Finding, Interval};
-use super::model::parameters::{Candidate, Model};
+use super::model::parameters::Model;
 use super::readings::campaign::Campaign;
 use super::readings::components::DISPLACEMENT;
 use super::select::empirical;
@@ -20,27 +20,34 @@ use super::select::few_rows;
 use super::select::lack_of_fit::{LackOfFit, lack_of_fit};
 use super::select::screening::Selection;
 use super::select::search::{Scored, Search};
-use super::select::seen::seen;
-use super::select::settle::Settled;
 use super::select::unnamed::{self, Better};
 use super::verdict::corrected_model::Choice;
 use super::verdict::in_series::InSeries;
 use super::verdict::judgement::{BEYOND_TOLERANCE, NOTHING_MISSING, WEAK_EVIDENCE, shows_in_few_poses};
 use super::verdict::next_test;
 use super::verdict::outcome::{Calibrated, Evidence, Law, Located, Outcome, ReadingResidual, Row, Verdict};
-use super::verdict::too_little::rows;
 use super::verdict::{caution, correct, corrected_model, fitted, locate, unit_words};
 use crate::arm::Arm;
 use serde_json::Value;
 use std::cell::OnceCell;
 
-/// Reconciles displacements, frequencies and bench readings with the arm; positions and records are not used.
+/// Reconciles displacements, frequencies and bench readings with the arm; positions and records are not used. In a long
+/// campaign the effects are sought in a part of its displacements.
 pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
-    let mut forward = Forward::new(campaign);
-    let nuisance = Nuisance::new(&campaign.arm, &campaign.statement.tolerance);
-    let few = rows(campaign) < few_rows::FEWEST_ROWS;
-    let candidates = sought(campaign, &forward, &nuisance, few);
-    let mut found = settled(campaign, &mut forward, &nuisance, &candidates, few);
+    let Some(part) = Part::of(campaign) else { return analysed(Found::of(campaign)) };
+    let in_part = Found::of(&part.campaign);
+    if !in_part.stands() {
+        return part.outcome(analysed(in_part));
+    }
+    match in_part.on_all_rows(campaign, &part) {
+        Some(found) => analysed(found),
+        None => analysed(Found::of(campaign)),
+    }
+}
+
+/// The outcome for a campaign whose effects were found.
+fn analysed(found: Found) -> Outcome {
+    let Found { campaign, few, mut forward, nuisance, candidates, settled: mut found, stands, .. } = found;
     let weights = found.noise.weights(&forward);
     let chosen = &found.selection.best;
     let coefficients = Model::of(&nuisance, &candidates, &chosen.effects).coefficients(&forward, &chosen.u);
@@ -60,7 +67,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let alternatives = search.alternatives(chosen, &found.selection.others);
     let explaining = few.then(|| found.selection.others.clone());
     let unnamed = match () {
-        () if few => None,
+        () if few || stands => None,
         () if fit_test.fails => unnamed::better_than_calibration(&search, &baseline),
         () if best.model.effects.is_empty() => None,
         () => unnamed::instead(&search, &search.scored(&chosen.effects, &best), &baseline, &found.noise),
@@ -107,58 +114,10 @@ fn best_model<'s>(search: &Search<'s>, selection: &mut Selection, few: bool) -> 
     (best, Some(found))
 }
 
-/// The candidates (effects at places) that the search tries: every effect that the campaign admits and the readings
-/// could show. If `few`, the campaign has only a handful of rows. Rare effects are then left out, and fits begin from
-/// more starting points.
-fn sought(campaign: &Campaign, forward: &Forward, nuisance: &Nuisance, few: bool) -> Vec<Candidate> {
-    let mut candidates = candidates(forward);
-    candidates.retain(|c| campaign.statement.considers(c.kind.name));
-    let mut candidates = seen(forward, nuisance, candidates);
-    if few {
-        // rare effects are left out, because a handful of readings cannot show them convincingly
-        candidates.retain(|c| c.kind.traits.odds >= 1.0);
-        candidates = candidates.into_iter().map(Candidate::from_corners).collect();
-    }
-    candidates
-}
-
 /// Whether the evidence for the best effects is weak: their score exceeds the score of the baseline by less than
 /// [`WEAK_EVIDENCE`]. `false` if there are no effects.
 fn is_weak(selection: &Selection) -> bool {
     !selection.best.effects.is_empty() && selection.best.score - selection.baseline.score < WEAK_EVIDENCE
-}
-
-/// Finds the effects and the noise. If a channel is so noisy that its readings may be in another unit than stated, the
-/// search is repeated with larger standard deviations of this channel. The repetition counts only if it finds the wrong
-/// unit as an effect. In that case `forward` gets the larger standard deviations too.
-fn settled(
-    campaign: &Campaign,
-    forward: &mut Forward,
-    nuisance: &Nuisance,
-    candidates: &[Candidate],
-    few: bool,
-) -> Settled {
-    if few {
-        return Settled::of_few(campaign, forward, nuisance, candidates);
-    }
-    let found = Settled::of_many(campaign, forward, nuisance, candidates);
-    let best = &found.selection.best;
-    let coefficients = Model::of(nuisance, candidates, &best.effects).coefficients(forward, &best.u);
-    let stretches = units::stretches(forward, &coefficients);
-    if stretches.is_empty() {
-        return found;
-    }
-    let mut stretched = Forward::new(campaign);
-    units::stretch(&mut stretched, &stretches);
-    let mut again = Settled::of_many(campaign, &mut stretched, nuisance, candidates);
-    let named: Vec<&Candidate> = again.selection.best.effects.iter().map(|&i| &candidates[i]).collect();
-    // unless the wrong unit is found as an effect, larger standard deviations would only hide other physics
-    if !stretches.iter().all(|stretch| stretch.is_among(&named)) {
-        return found;
-    }
-    *forward = stretched;
-    again.remarks.extend(stretches.iter().map(units::Stretch::sentence));
-    again
 }
 
 /// An analysis of the readings: the models that were fitted, and what is needed to judge them.

@@ -220,6 +220,10 @@ fn a_study_without_a_design_is_no_success_and_the_verdict_stands() {
 
 #[test]
 fn a_stop_in_the_first_search_ends_the_second_too_and_nothing_is_compared() {
+    if !cfg!(feature = "faults") {
+        eprintln!("SKIPPED a stop at a chosen moment: needs --features faults, which scripts/test gives");
+        return;
+    }
     let dir = tempfile::tempdir().expect("a folder");
     let study = format!("{}/study.json", example());
     let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_armwright"));

@@ -14,6 +14,7 @@ mod gauge;
 mod generated;
 mod generator;
 mod honest_verdicts;
+mod long_campaigns;
 #[path = "../../examples/measured/mod.rs"]
 mod measured;
 mod moved;

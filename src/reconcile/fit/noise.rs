@@ -358,9 +358,9 @@ fn largest_of_rows<'a>(sizes: impl Iterator<Item = (&'a Datum, f64)>) -> Vec<(us
     out
 }
 
-/// Number of rows of a channel's file, up to the last one that has a datum.
+/// Number of rows of a channel that have a datum. The data of a row follow each other.
 fn rows(forward: &Forward, channel: Channel) -> usize {
-    forward.data[forward.range(channel)].iter().map(|d| d.row).max().map_or(0, |r| r + 1)
+    forward.data[forward.range(channel)].chunk_by(|a, b| a.row == b.row).count()
 }
 
 /// Number of rows that make up the fraction `part` of a file with `rows` rows, at least one.

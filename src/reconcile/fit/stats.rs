@@ -79,6 +79,15 @@ fn ln_gamma(x: f64) -> f64 {
 /// The median of the magnitude of a standard normal deviate.
 pub(crate) const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_082;
 
+/// A pseudo-random number for each index, the same in each run (SplitMix64). Sorting by it breaks up regular orders of
+/// poses.
+pub(crate) fn scrambled(index: usize) -> u64 {
+    let mut z = (index as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^ (z >> 31)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

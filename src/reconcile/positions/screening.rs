@@ -18,6 +18,7 @@ use super::deflection::Deflection;
 use super::fitted::{Fitted, Sample, readings};
 use super::kinematics::number_groups;
 use super::transmission::EFFECT as TRANSMISSION;
+use crate::reconcile::fit::stats::scrambled;
 use crate::reconcile::readings::campaign::Campaign;
 use crate::reconcile::readings::rows::PositionRow;
 use nalgebra::Vector3;
@@ -41,15 +42,6 @@ type Stratum = (usize, usize, usize, [u64; 4]);
 fn stratum(sample: &Sample, row: &PositionRow) -> Stratum {
     let [x, y, z] = row.payload.cg_m.into();
     (sample.arm, sample.point, sample.station, [row.payload.mass_kg, x, y, z].map(f64::to_bits))
-}
-
-/// A pseudo-random number for each index, the same in each run (SplitMix64). Sorting by it breaks up regular orders of
-/// poses.
-fn scrambled(index: usize) -> u64 {
-    let mut z = (index as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-    z ^ (z >> 31)
 }
 
 /// Indices of the [`SCREENED`] rows that are kept. `strata` has the stratum of every row. Half of the kept rows are

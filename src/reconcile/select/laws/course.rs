@@ -2,6 +2,7 @@
 //! zero of the instrument that creeps.
 
 use super::{Builder, Law, placed};
+use crate::arm::BASE;
 use crate::arm::effect::channel::Channel;
 use crate::reconcile::forward::datum::Datum;
 use nalgebra::Vector3;
@@ -27,7 +28,10 @@ impl Builder<'_> {
         // by how much the tip moves if the base turns about an axis
         let moved = |axis: Vector3<f64>, d: &Datum| axis.cross(&tips_m[d.index])[d.component] / reach_m;
         let turning = |when: &dyn Fn(usize) -> f64| {
-            [Vector3::x(), Vector3::y()].map(|axis| column(&|i, d| when(i) * moved(axis, d))).to_vec()
+            seen(
+                [Vector3::x(), Vector3::y(), Vector3::z()]
+                    .map(|axis| column(&|i, d| when(i) * moved(axis, d))),
+            )
         };
         let base = vec![
             Law::new(
@@ -37,8 +41,8 @@ impl Builder<'_> {
             Law::new("a base that settles, fast at first", turning(&creeps)),
         ];
         let along = |c: usize| column(&|i, d| if d.component == c { creeps(i) } else { 0.0 });
-        let zero = Law::new("static readings whose zero creeps, fast at first", (0..3).map(along).collect());
-        [placed("base", base), placed(Channel::Static.word(), vec![zero])].concat()
+        let zero = Law::new("static readings whose zero creeps, fast at first", seen([0, 1, 2].map(along)));
+        [placed(BASE, base), placed(Channel::Static.word(), vec![zero])].concat()
     }
 
     /// Position of the tip in every row of the static readings \[m\].
@@ -53,6 +57,11 @@ impl Builder<'_> {
     }
 }
 
+/// The columns that change a reading. A gauge in one direction does not see every turn of the base.
+fn seen(columns: [Vec<f64>; 3]) -> Vec<Vec<f64>> {
+    columns.into_iter().filter(|column| column.iter().any(|change| *change != 0.0)).collect()
+}
+
 /// How far a part that creeps has moved after the fraction `part` of the tests, relative to all tests.
 fn crept(part: f64) -> f64 {
     libm::log1p(part / EARLY) / libm::log1p(1.0 / EARLY)
@@ -62,6 +71,10 @@ fn crept(part: f64) -> f64 {
 mod tests {
     use super::super::testing::about_the_nominal_arm;
     use super::*;
+    use crate::reconcile::fit::descent::{Effort, fit};
+    use crate::reconcile::fit::noise::Noise;
+    use crate::reconcile::forward::prepared::Forward;
+    use crate::reconcile::model::parameters::Model;
 
     #[test]
     fn what_creeps_moves_fast_at_first() {
@@ -73,7 +86,7 @@ mod tests {
     fn a_base_that_turns_moves_the_tip_across_its_radius_and_later_rows_more() {
         about_the_nominal_arm(|builder, _| {
             let laws = builder.course_laws();
-            assert_eq!(laws.iter().map(|law| law.columns.len()).collect::<Vec<_>>(), [2, 2, 3]);
+            assert_eq!(laws.iter().map(|law| law.columns.len()).collect::<Vec<_>>(), [3, 3, 3]);
             let tips_m = builder.tips_m();
             let modal = builder.forward.starts[1];
             for law in &laws {
@@ -84,7 +97,7 @@ mod tests {
             }
             let turned = |law: &Law, row: usize| {
                 let of = |column: &[f64]| Vector3::from_fn(|c, _| column[3 * row + c]);
-                [of(&law.columns[0]), of(&law.columns[1])]
+                [0, 1, 2].map(|axis| of(&law.columns[axis]))
             };
             let last = builder.campaign.statics.len() - 1;
             for moved in turned(&laws[0], last) {
@@ -93,6 +106,21 @@ mod tests {
             // early rows have moved further where the ground settles
             let share = |law: &Law| turned(law, 3)[0].norm() / tips_m[3].norm();
             assert!(share(&laws[1]) > 1.5 * share(&laws[0]));
+        });
+    }
+
+    #[test]
+    fn a_gauge_in_one_direction_sees_two_turns_of_the_base_and_one_creeping_zero() {
+        about_the_nominal_arm(|builder, nuisance| {
+            let mut campaign = builder.campaign.clone();
+            campaign.statics.iter_mut().for_each(|row| (row.measured[0], row.measured[1]) = (None, None));
+            let forward = Forward::new(&campaign);
+            let baseline = Model::baseline(nuisance);
+            let weights = Noise::default().weights(&forward);
+            let effort = Effort { steps: 0, tolerance: 0.0 };
+            let fit = fit(&forward, &baseline, &vec![0.0; baseline.len()], &weights, effort);
+            let laws = Builder::new(&campaign, &forward, &fit).course_laws();
+            assert_eq!(laws.iter().map(|law| law.columns.len()).collect::<Vec<_>>(), [2, 2, 1]);
         });
     }
 }

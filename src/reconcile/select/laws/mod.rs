@@ -18,7 +18,8 @@
 //!   the sense of loading), on the size of the load, or on the angle several times a turn.
 //!
 //! A law may also be an error of a reading as a function of the true value, of the direction, of the kind of load, of
-//! the time in a pose, or of the order of the tests, like that of a base on ground that settles. A law consists of a few columns: changes of the readings, linearized about a fit.
+//! the time in a pose, or of the order of the tests, like that of a base on ground that settles. A law consists of a few
+//! columns: changes of the readings, linearized about a fit.
 
 mod coupling;
 mod course;

@@ -1,0 +1,236 @@
+//! Long campaigns: effects are sought in a part of the displacements, and then fitted to all.
+//!
+//! The search for effects fits hundreds of models, each to every row. What some thousand rows show clearly, all rows show
+//! too. So the search goes through a part of the rows. If the effects that it finds leave no structure there and stand
+//! against the laws without a name, the models near the best one are fitted to all rows. There they are compared again and
+//! tested for lack of fit. If they fail, the search is made on all rows, as in a shorter campaign.
+//!
+//! The rows of the part are whole visits of poses (rows that follow each other in one pose), because the order of the loads in a
+//! pose matters. The visits are spread over the file in an irregular order that is the same in each run, and those with the
+//! smallest and the largest angle of each joint are among them.
+
+use super::fit::descent::{Effort, fit};
+use super::fit::noise::Noise;
+use super::fit::stats::scrambled;
+use super::forward::prepared::Forward;
+use super::found::Found;
+use super::model::parameters::Model;
+use super::readings::campaign::Campaign;
+use super::readings::rows::StaticRow;
+use super::select::lack_of_fit::lack_of_fit;
+use super::select::search::Search;
+use super::select::settle::Settled;
+use super::select::unnamed;
+use super::verdict::outcome::Outcome;
+use crate::arm::effect::channel::Channel;
+use std::ops::Range;
+
+/// A campaign with more displacements than this is long.
+const LONG: usize = 5_000;
+/// Number of displacements in which effects are sought, not counting those with extreme angles.
+const SOUGHT_IN: usize = 2_500;
+/// Rows of one pose that follow each other are one visit, up to this number.
+const LONGEST_VISIT: usize = 25;
+
+/// A part of a long campaign.
+pub(super) struct Part {
+    /// The campaign with a part of its displacements, and all other readings.
+    pub(super) campaign: Campaign,
+    /// The index of each displacement of the part among those of the long campaign.
+    kept: Vec<usize>,
+    /// Number of displacements of the long campaign.
+    of: usize,
+}
+
+impl Part {
+    /// The part of `campaign` in which effects are sought; `None` if the campaign is not long.
+    pub(super) fn of(campaign: &Campaign) -> Option<Self> {
+        let rows = &campaign.statics;
+        if rows.len() <= LONG {
+            return None;
+        }
+        let visits = visits(rows);
+        let mut order: Vec<usize> = (0..visits.len()).collect();
+        order.sort_by_key(|&visit| scrambled(visit));
+        let mut left = SOUGHT_IN;
+        let mut chosen = order;
+        chosen.retain(|&visit| {
+            let is_chosen = left > 0;
+            left = left.saturating_sub(visits[visit].len());
+            is_chosen
+        });
+        chosen.extend(ends(rows, &visits));
+        chosen.sort_unstable();
+        chosen.dedup();
+        let kept: Vec<usize> = chosen.into_iter().flat_map(|visit| visits[visit].clone()).collect();
+        let statics = kept.iter().map(|&row| rows[row].clone()).collect();
+        let campaign = Campaign { statics, ..campaign.clone() };
+        Some(Self { campaign, kept, of: rows.len() })
+    }
+
+    /// The outcome `found` for this part, as an outcome for the long campaign: it says that it is of a part of the rows.
+    pub(super) fn outcome(&self, mut found: Outcome) -> Outcome {
+        let own = found.residuals.iter_mut().filter(|residual| residual.channel == Channel::Static);
+        own.for_each(|residual| residual.index = self.kept[residual.index]);
+        found.reasons.push(format!("{}; the verdict and residuals.csv are of these rows", self.sentence()));
+        found
+    }
+
+    fn sentence(&self) -> String {
+        format!("effects were sought in {} of the {} displacements", self.kept.len(), self.of)
+    }
+}
+
+/// The visits of poses, each as a range of rows.
+fn visits(rows: &[StaticRow]) -> Vec<Range<usize>> {
+    let mut out: Vec<Range<usize>> = Vec::new();
+    for (row, own) in rows.iter().enumerate() {
+        match out.last_mut() {
+            Some(visit) if rows[visit.start].pose_deg == own.pose_deg && visit.len() < LONGEST_VISIT => {
+                visit.end = row + 1
+            }
+            _ => out.push(row..row + 1),
+        }
+    }
+    out
+}
+
+/// The visits with the smallest and the largest angle of each joint.
+fn ends(rows: &[StaticRow], visits: &[Range<usize>]) -> Vec<usize> {
+    let joints = rows.first().map_or(0, |row| row.pose_deg.len());
+    let end = |joint: usize, sign: f64| {
+        let angle = |visit: &usize| sign * rows[visits[*visit].start].pose_deg[joint];
+        (0..visits.len()).min_by(|a, b| angle(a).total_cmp(&angle(b)))
+    };
+    (0..joints).flat_map(|joint| [end(joint, 1.0), end(joint, -1.0)]).flatten().collect()
+}
+
+impl<'c> Found<'c> {
+    /// Whether the effects explain the readings in which they were found, and no law without a name explains them as well.
+    pub(super) fn stands(&self) -> bool {
+        let weights = self.settled.noise.weights(&self.forward);
+        let Self { campaign, forward, nuisance, candidates, settled, .. } = self;
+        let search = Search { campaign, forward, nuisance, candidates, weights: &weights };
+        let chosen = &settled.selection.best;
+        if settled.selection.given_up {
+            return false;
+        }
+        let best = search.polish(&chosen.effects, &chosen.u);
+        if lack_of_fit(campaign, forward, &best, &weights).fails {
+            return false;
+        }
+        let against_laws = || {
+            let baseline = search.fit(&[], &settled.selection.baseline.u, Effort::default());
+            unnamed::instead(&search, &search.scored(&chosen.effects, &best), &baseline, &settled.noise)
+                .is_none()
+        };
+        chosen.effects.is_empty() || against_laws()
+    }
+
+    /// The models that were found in a part of the rows of `campaign`, fitted to all rows and compared again. `None` if the best
+    /// one fails the test for lack of fit there, or if the readings of the part were found to be in another unit.
+    pub(super) fn on_all_rows<'l>(&self, campaign: &'l Campaign, part: &Part) -> Option<Found<'l>> {
+        if !self.as_declared {
+            return None;
+        }
+        let (nuisance, candidates) = (self.nuisance.clone(), self.candidates.clone());
+        let mut forward = Forward::new(campaign);
+        self.number_modes_of(&mut forward);
+        let best = &self.settled.selection.best;
+        let model = Model::of(&nuisance, &candidates, &best.effects);
+        let coefficients = model.coefficients(&forward, &best.u);
+        forward.refresh(&coefficients);
+        let judged = |noise: &Noise| {
+            let weights = noise.weights(&forward);
+            Noise::from_fit(&forward, &fit(&forward, &model, &best.u, &weights, Effort::default()), &weights)
+        };
+        let noise = judged(&judged(&Noise { outliers: Vec::new(), ..self.settled.noise.clone() }));
+        let weights = noise.weights(&forward);
+        let search = Search {
+            campaign,
+            forward: &forward,
+            nuisance: &nuisance,
+            candidates: &candidates,
+            weights: &weights,
+        };
+        let selection = search.weigh_again(&self.settled.selection);
+        let best = search.polish(&selection.best.effects, &selection.best.u);
+        if lack_of_fit(campaign, &forward, &best, &weights).fails {
+            return None;
+        }
+        let mut remarks = self.settled.remarks.clone();
+        remarks.push(format!("{} and then fitted to all of them", part.sentence()));
+        let settled = Settled { selection, noise, remarks };
+        Some(Found {
+            campaign,
+            few: false,
+            forward,
+            nuisance,
+            candidates,
+            settled,
+            as_declared: true,
+            stands: true,
+        })
+    }
+
+    /// Numbers the modes of `forward`, which has the same frequencies, as they are numbered here.
+    fn number_modes_of(&self, forward: &mut Forward) {
+        for (own, test) in self.forward.modal.iter().zip(&mut forward.modal) {
+            own.modes.iter().zip(&mut test.modes).for_each(|((_, number), (_, mode))| *mode = *number);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::catalog::Catalogs;
+    use std::path::Path;
+
+    /// A test campaign whose displacements are repeated until there are `count`, each pose at other angles.
+    fn campaign(count: usize) -> Campaign {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/campaigns/plain-0251e");
+        let mut campaign = Campaign::read(&folder, &Catalogs::default()).expect("sound");
+        let rows = campaign.statics.clone();
+        let row = |i: usize| {
+            let mut row = rows[i % rows.len()].clone();
+            row.row = i;
+            row.pose_deg.iter_mut().for_each(|angle| *angle += 0.001 * (i / rows.len()) as f64);
+            row
+        };
+        campaign.statics = (0..count).map(row).collect();
+        campaign
+    }
+
+    #[test]
+    fn a_part_has_whole_visits_in_their_order_and_the_ends_of_every_angle() {
+        assert!(Part::of(&campaign(LONG)).is_none());
+        let whole = campaign(LONG + 1);
+        let part = Part::of(&whole).expect("long");
+        assert!(part.kept.is_sorted() && part.kept.len() >= SOUGHT_IN);
+        let most = SOUGHT_IN + LONGEST_VISIT * (2 * whole.statics[0].pose_deg.len() + 1);
+        assert!(part.kept.len() <= most, "{}", part.kept.len());
+        for (index, row) in part.kept.iter().zip(&part.campaign.statics) {
+            assert_eq!(&whole.statics[*index], row);
+        }
+        for visit in visits(&whole.statics) {
+            let own = part.kept.iter().filter(|row| visit.contains(row)).count();
+            assert!(own == 0 || own == visit.len(), "{visit:?}");
+        }
+        for joint in 0..whole.statics[0].pose_deg.len() {
+            let largest =
+                |rows: &[StaticRow]| rows.iter().map(|row| row.pose_deg[joint]).fold(f64::MIN, f64::max);
+            assert_eq!(largest(&whole.statics), largest(&part.campaign.statics));
+        }
+    }
+
+    #[test]
+    fn a_pose_that_is_held_for_long_is_divided_into_visits() {
+        let mut whole = campaign(LONG + 1);
+        let pose_deg = whole.statics[0].pose_deg.clone();
+        whole.statics.iter_mut().for_each(|row| row.pose_deg.clone_from(&pose_deg));
+        let part = Part::of(&whole).expect("long");
+        assert!(part.kept.len() < SOUGHT_IN + 3 * LONGEST_VISIT, "{}", part.kept.len());
+        assert!(part.kept.first() < Some(&200) && part.kept.last() > Some(&(LONG - 200)));
+    }
+}
