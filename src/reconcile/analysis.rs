@@ -47,7 +47,7 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
 
 /// The outcome for a campaign whose effects were found.
 fn analysed(found: Found) -> Outcome {
-    let Found { campaign, few, mut forward, nuisance, candidates, settled: mut found, stands, .. } = found;
+    let Found { campaign, few, mut forward, nuisance, candidates, settled: mut found, stood, .. } = found;
     let weights = found.noise.weights(&forward);
     let chosen = &found.selection.best;
     let coefficients = Model::of(&nuisance, &candidates, &chosen.effects).coefficients(&forward, &chosen.u);
@@ -67,7 +67,7 @@ fn analysed(found: Found) -> Outcome {
     let alternatives = search.alternatives(chosen, &found.selection.others);
     let explaining = few.then(|| found.selection.others.clone());
     let unnamed = match () {
-        () if few || stands => None,
+        () if few || stood => None,
         () if fit_test.fails => unnamed::better_than_calibration(&search, &baseline),
         () if best.model.effects.is_empty() => None,
         () => unnamed::instead(&search, &search.scored(&chosen.effects, &best), &baseline, &found.noise),

@@ -25,8 +25,8 @@ pub(super) struct Found<'c> {
     pub(super) settled: Settled,
     /// Whether the readings have the standard deviations that the campaign states.
     pub(super) as_declared: bool,
-    /// Whether the effects are known to stand against laws without a name.
-    pub(super) stands: bool,
+    /// Whether the effects already stood against the laws without a name, in a part of the rows.
+    pub(super) stood: bool,
 }
 
 impl<'c> Found<'c> {
@@ -39,7 +39,7 @@ impl<'c> Found<'c> {
         let declared: Vec<f64> = forward.data.iter().map(|datum| datum.sigma).collect();
         let settled = settled(campaign, &mut forward, &nuisance, &candidates, few);
         let as_declared = forward.data.iter().map(|datum| datum.sigma).eq(declared);
-        Self { campaign, few, forward, nuisance, candidates, settled, as_declared, stands: false }
+        Self { campaign, few, forward, nuisance, candidates, settled, as_declared, stood: false }
     }
 }
 
