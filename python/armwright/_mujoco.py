@@ -89,7 +89,8 @@ class _Reader:
         at_m, bodies = np.zeros(3), list(carried[0])
         for on_path in path:
             for joint in self._joints(on_path):
-                if led[joint] is not None and led[joint][0] is None:
+                own = led[joint]
+                if own is not None and own[0] is None:
                     self._say_held(joint)
                     continue
                 anchor_m = self.data.xanchor[joint].copy()
