@@ -40,7 +40,7 @@ def from_mujoco(
 
     Hinges become joints, slides prismatic joints, rigid bodies ``bodies`` of the links between them, and equality constraints of
     two hinges that are linear become ``coupled``. Gravity is the model's. ``provenance`` lists what was lumped, what stayed rigid and
-    what was left out (armature, damping, friction, gravity compensation, other constraints, springs of tendons).
+    what was left out (armature, damping, friction, gravity compensation, other constraints, tendons, fingers that move with the arm).
 
     :param model: compiled model, such as ``mujoco.MjModel.from_xml_path("arm.xml")``
     :param tip: name of the body or site at the arm's tip
@@ -292,8 +292,6 @@ class _Reader:
             kind = kinds(int(model.eq_type[equality]))
             ends = [int(model.eq_obj1id[equality]), int(model.eq_obj2id[equality])]
             if kind == kinds.mjEQ_JOINT:
-                if ends[0] not in joints and ends[1] in joints and is_ours[model.jnt_bodyid[ends[0]]]:
-                    self.left_out.append(f"motion of {self._name('joint', ends[0])} with {self._name('joint', ends[1])}")
                 continue
             if kind in (kinds.mjEQ_CONNECT, kinds.mjEQ_WELD):
                 if types is not None and types[equality] == objects.mjOBJ_SITE:
@@ -302,14 +300,33 @@ class _Reader:
             elif kind == kinds.mjEQ_TENDON:
                 bodies = [body for tendon in ends if tendon >= 0 for body in self._of_tendon(tendon)]
             else:
-                continue
+                # of a kind that this package does not know: it may be the arm's
+                bodies = path
             if any(is_ours[body] for body in bodies):
                 word = kind.name.replace("mjEQ_", "").lower()
                 self.left_out.append(f"{word} constraint {model.equality(equality).name or equality}")
+        for joint in self.tied:
+            leader = self._leader_on(joint, joints)
+            if joint not in joints and leader is not None and is_ours[model.jnt_bodyid[joint]]:
+                self.left_out.append(f"motion of {self._name('joint', joint)} with {self._name('joint', leader)}")
+        amounts = {"spring": model.tendon_stiffness, "damping": model.tendon_damping, "friction": model.tendon_frictionloss}
         for tendon in range(model.ntendon):
-            acts = (model.tendon_stiffness[tendon], model.tendon_damping[tendon], model.tendon_frictionloss[tendon])
-            if any(np.any(amount) for amount in acts) and any(is_ours[body] for body in self._of_tendon(tendon)):
-                self.left_out.append(f"spring, damping and friction of tendon {model.tendon(tendon).name or tendon}")
+            acts = [what for what, of_tendons in amounts.items() if np.any(of_tendons[tendon])]
+            if acts and any(is_ours[body] for body in self._of_tendon(tendon)):
+                self.left_out.append(f"{', '.join(acts)} of tendon {model.tendon(tendon).name or tendon}")
+
+    def _leader_on(self, joint: int, joints: List[int]) -> Optional[int]:
+        """The joint of ``joints`` with which a joint moves, if need be by way of others; None if there is none."""
+        seen: List[int] = []
+        while joint in self.tied and joint not in seen:
+            seen.append(joint)
+            leader, coefficients = self._tie(self.tied[joint][0])
+            if leader < 0 or not any(coefficients[1:]):
+                return None
+            if leader in joints:
+                return leader
+            joint = leader
+        return None
 
     def _of_tendon(self, tendon: int) -> List[int]:
         """The bodies that a tendon runs over or whose joints it couples."""

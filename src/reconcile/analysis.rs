@@ -35,14 +35,8 @@ use std::cell::OnceCell;
 /// campaign the effects are sought in a part of its displacements.
 pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
     let Some(part) = Part::of(campaign) else { return analysed(Found::of(campaign)) };
-    let in_part = Found::of(&part.campaign);
-    if !in_part.stands() {
-        return part.outcome(analysed(in_part));
-    }
-    match in_part.on_all_rows(campaign, &part) {
-        Some(found) => analysed(found),
-        None => analysed(Found::of(campaign)),
-    }
+    let found = Found::of(&part.campaign).on_all_rows(campaign, &part);
+    analysed(found.unwrap_or_else(|| Found::of(campaign)))
 }
 
 /// The outcome for a campaign whose effects were found.
@@ -67,9 +61,9 @@ fn analysed(found: Found) -> Outcome {
     let alternatives = search.alternatives(chosen, &found.selection.others);
     let explaining = few.then(|| found.selection.others.clone());
     let unnamed = match () {
-        () if few || stood => None,
+        () if few => None,
         () if fit_test.fails => unnamed::better_than_calibration(&search, &baseline),
-        () if best.model.effects.is_empty() => None,
+        () if best.model.effects.is_empty() || (stood && in_series.is_none()) => None,
         () => unnamed::instead(&search, &search.scored(&chosen.effects, &best), &baseline, &found.noise),
     };
     let without = is_weak(&found.selection).then(|| lack_of_fit(campaign, &forward, &baseline, &weights));

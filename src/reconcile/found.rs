@@ -25,7 +25,7 @@ pub(super) struct Found<'c> {
     pub(super) settled: Settled,
     /// Whether the readings have the standard deviations that the campaign states.
     pub(super) as_declared: bool,
-    /// Whether the effects already stood against the laws without a name, in a part of the rows.
+    /// Whether these effects already stood against the laws without a name, in a part of the rows.
     pub(super) stood: bool,
 }
 

@@ -1,13 +1,16 @@
 //! Long campaigns: effects are sought in a part of the displacements, and then fitted to all.
 //!
 //! The search for effects fits hundreds of models, each to every row. What some thousand rows show clearly, all rows show
-//! too. So the search goes through a part of the rows. If the effects that it finds leave no structure there and stand
-//! against the laws without a name, the models near the best one are fitted to all rows. There they are compared again and
-//! tested for lack of fit. If they fail, the search is made on all rows, as in a shorter campaign.
+//! too. So the search goes through a part of the rows. The models near the best one are then fitted to all rows, and compared
+//! again. The result of the part counts only if all of this holds; otherwise all rows are searched, as in a shorter campaign:
+//!
+//! - in the part, the best model leaves no structure, and no law without a name explains the rows as well;
+//! - on all rows, the same effects are the best, they leave no structure, and no more rows are gross errors than in the part.
 //!
 //! The rows of the part are whole visits of poses (rows that follow each other in one pose), because the order of the loads in a
-//! pose matters. The visits are spread over the file in an irregular order that is the same in each run, and those with the
-//! smallest and the largest angle of each joint are among them.
+//! pose matters. The visits are spread over the file in an irregular order that is the same in each run. Those with the smallest
+//! and the largest angle of each joint and with the smallest and the largest loads are among them, and so is the first visit of
+//! each file and each branch of loading.
 
 use super::fit::descent::{Effort, fit};
 use super::fit::noise::Noise;
@@ -21,8 +24,8 @@ use super::select::lack_of_fit::lack_of_fit;
 use super::select::search::Search;
 use super::select::settle::Settled;
 use super::select::unnamed;
-use super::verdict::outcome::Outcome;
 use crate::arm::effect::channel::Channel;
+use std::collections::HashSet;
 use std::ops::Range;
 
 /// A campaign with more displacements than this is long.
@@ -69,14 +72,6 @@ impl Part {
         Some(Self { campaign, kept, of: rows.len() })
     }
 
-    /// The outcome `found` for this part, as an outcome for the long campaign: it says that it is of a part of the rows.
-    pub(super) fn outcome(&self, mut found: Outcome) -> Outcome {
-        let own = found.residuals.iter_mut().filter(|residual| residual.channel == Channel::Static);
-        own.for_each(|residual| residual.index = self.kept[residual.index]);
-        found.reasons.push(format!("{}; the verdict and residuals.csv are of these rows", self.sentence()));
-        found
-    }
-
     fn sentence(&self) -> String {
         format!("effects were sought in {} of the {} displacements", self.kept.len(), self.of)
     }
@@ -96,19 +91,26 @@ fn visits(rows: &[StaticRow]) -> Vec<Range<usize>> {
     out
 }
 
-/// The visits with the smallest and the largest angle of each joint.
+/// The visits with the smallest and the largest angle of each joint, payload and force, and the first visit of each file and
+/// branch of loading.
 fn ends(rows: &[StaticRow], visits: &[Range<usize>]) -> Vec<usize> {
+    let visit_of = |row: usize| visits.partition_point(|visit| visit.end <= row);
     let joints = rows.first().map_or(0, |row| row.pose_deg.len());
-    let end = |joint: usize, sign: f64| {
-        let angle = |visit: &usize| sign * rows[visits[*visit].start].pose_deg[joint];
-        (0..visits.len()).min_by(|a, b| angle(a).total_cmp(&angle(b)))
+    let end = |size: &dyn Fn(&StaticRow) -> f64| {
+        (0..rows.len()).min_by(|a, b| size(&rows[*a]).total_cmp(&size(&rows[*b])))
     };
-    (0..joints).flat_map(|joint| [end(joint, 1.0), end(joint, -1.0)]).flatten().collect()
+    let both = |size: &dyn Fn(&StaticRow) -> f64| [end(size), end(&|row| -size(row))];
+    let angles = (0..joints).flat_map(|joint| both(&|row| row.pose_deg[joint]));
+    let loads = both(&|row| row.payload.mass_kg).into_iter().chain(both(&|row| row.force_n.norm()));
+    let mut known = HashSet::new();
+    let firsts = (0..rows.len()).filter(|&row| known.insert((rows[row].file, rows[row].branch.as_str())));
+    let firsts: Vec<usize> = firsts.collect();
+    angles.chain(loads).flatten().chain(firsts).map(visit_of).collect()
 }
 
 impl<'c> Found<'c> {
     /// Whether the effects explain the readings in which they were found, and no law without a name explains them as well.
-    pub(super) fn stands(&self) -> bool {
+    fn stands(&self) -> bool {
         let weights = self.settled.noise.weights(&self.forward);
         let Self { campaign, forward, nuisance, candidates, settled, .. } = self;
         let search = Search { campaign, forward, nuisance, candidates, weights: &weights };
@@ -128,10 +130,10 @@ impl<'c> Found<'c> {
         chosen.effects.is_empty() || against_laws()
     }
 
-    /// The models that were found in a part of the rows of `campaign`, fitted to all rows and compared again. `None` if the best
-    /// one fails the test for lack of fit there, or if the readings of the part were found to be in another unit.
+    /// The models that were found in a part of the rows of `campaign`, fitted to all rows and compared again. `None` if the result
+    /// of the part does not hold there, or if its readings were found to be in another unit.
     pub(super) fn on_all_rows<'l>(&self, campaign: &'l Campaign, part: &Part) -> Option<Found<'l>> {
-        if !self.as_declared {
+        if !self.as_declared || !self.stands() {
             return None;
         }
         let (nuisance, candidates) = (self.nuisance.clone(), self.candidates.clone());
@@ -146,6 +148,11 @@ impl<'c> Found<'c> {
             Noise::from_fit(&forward, &fit(&forward, &model, &best.u, &weights, Effort::default()), &weights)
         };
         let noise = judged(&judged(&Noise { outliers: Vec::new(), ..self.settled.noise.clone() }));
+        let slips = |noise: &Noise| noise.outliers.iter().filter(|o| o.channel == Channel::Static).count();
+        let expected = (slips(&self.settled.noise) * part.of) as f64 / part.kept.len() as f64;
+        if slips(&noise) as f64 > 2.0 * expected + 0.001 * part.of as f64 {
+            return None;
+        }
         let weights = noise.weights(&forward);
         let search = Search {
             campaign,
@@ -155,8 +162,11 @@ impl<'c> Found<'c> {
             weights: &weights,
         };
         let selection = search.weigh_again(&self.settled.selection);
-        let best = search.polish(&selection.best.effects, &selection.best.u);
-        if lack_of_fit(campaign, &forward, &best, &weights).fails {
+        if selection.best.effects != best.effects {
+            return None;
+        }
+        let fitted = search.polish(&selection.best.effects, &selection.best.u);
+        if lack_of_fit(campaign, &forward, &fitted, &weights).fails {
             return None;
         }
         let mut remarks = self.settled.remarks.clone();
@@ -176,8 +186,9 @@ impl<'c> Found<'c> {
 
     /// Numbers the modes of `forward`, which has the same frequencies, as they are numbered here.
     fn number_modes_of(&self, forward: &mut Forward) {
-        for (own, test) in self.forward.modal.iter().zip(&mut forward.modal) {
-            own.modes.iter().zip(&mut test.modes).for_each(|((_, number), (_, mode))| *mode = *number);
+        let (own, there) = (self.forward.starts[1], forward.starts[1]);
+        for (list, other) in self.forward.modal.iter().zip(&mut forward.modal) {
+            other.modes = list.modes.iter().map(|(datum, mode)| (datum - own + there, *mode)).collect();
         }
     }
 }
@@ -210,7 +221,8 @@ mod tests {
         let part = Part::of(&whole).expect("long");
         assert!(part.kept.is_sorted() && part.kept.len() >= SOUGHT_IN);
         let longest = visits(&whole.statics).iter().map(|visit| visit.len()).max().expect("visits");
-        let most = SOUGHT_IN + longest * (2 * whole.statics[0].pose_deg.len() + 1);
+        // the ends of angles and loads, the branches, and the last visit
+        let most = SOUGHT_IN + longest * (2 * whole.statics[0].pose_deg.len() + 4 + 3 + 1);
         assert!(part.kept.len() <= most, "{}", part.kept.len());
         for (index, row) in part.kept.iter().zip(&part.campaign.statics) {
             assert_eq!(&whole.statics[*index], row);
@@ -232,7 +244,7 @@ mod tests {
         let pose_deg = whole.statics[0].pose_deg.clone();
         whole.statics.iter_mut().for_each(|row| row.pose_deg.clone_from(&pose_deg));
         let part = Part::of(&whole).expect("long");
-        assert!(part.kept.len() < SOUGHT_IN + 3 * LONGEST_VISIT, "{}", part.kept.len());
+        assert!(part.kept.len() < SOUGHT_IN + 9 * LONGEST_VISIT, "{}", part.kept.len());
         assert!(part.kept.first() == Some(&0) && part.kept.last() > Some(&(LONG / 2)));
     }
 }

@@ -10,7 +10,8 @@
 //! - `select` finds the effects that are missing, and laws without a name that explain the readings better.
 //! - [`verdict`] defines the outcome, writes its files and its page, and proposes what to measure next.
 //! - `positions` does all of this for absolute positions, and [`records`] for records against time.
-//! - `found` finds the effects of a campaign, and `long` those of a long one. `analysis` reaches the verdict from displacements, frequencies and bench readings. `together` reaches it from all
+//! - `found` finds the effects of a campaign, and `long` those of a long one.
+//! - `analysis` reaches the verdict from displacements, frequencies and bench readings. `together` reaches it from all
 //!   kinds of readings of a campaign.
 //! - [`predict`] writes the model's predictions next to readings, and [`predict_files`] reads the files for it.
 //!   `starter` writes the files of a new campaign.

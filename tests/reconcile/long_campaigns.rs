@@ -98,16 +98,9 @@ fn an_effect_that_a_part_of_the_rows_shows_is_measured_by_all_of_them() {
 }
 
 #[test]
-fn what_a_part_of_the_rows_does_not_explain_is_judged_by_this_part_and_said_so() {
-    let bent = campaign(&|d| d + 0.4 * d * d.abs());
-    let outcome = reconcile(&bent);
+fn where_a_part_of_the_rows_is_not_explained_all_of_them_are_searched() {
+    let outcome = reconcile(&campaign(&|d| d + 0.4 * d * d.abs()));
     assert_eq!(outcome.verdict, Verdict::Unexplained, "{}", outcome.to_text());
-    assert!(says(&outcome, "the verdict and residuals.csv are of these rows"), "{:?}", outcome.reasons);
-    assert!(outcome.residuals.len() < 3 * 2700);
-    // each residual stands beside its own row
-    for residual in &outcome.residuals {
-        let row = &bent.statics[residual.index];
-        assert_eq!(row.row + 1, residual.row);
-        assert_eq!(row.measured[residual.component].expect("measured").value_mm, residual.measured);
-    }
+    assert!(!says(&outcome, ""), "{:?}", outcome.reasons);
+    assert_eq!(outcome.residuals.len(), 3 * ROWS);
 }

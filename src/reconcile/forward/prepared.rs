@@ -177,9 +177,12 @@ impl Forward {
         }
     }
 
-    /// Number of static rows, which is the number of loads over all poses.
+    /// Number of rows of the static readings: of the loads over all poses or, where some rows of the file are not used, of
+    /// the rows up to the last one that is.
     pub fn static_rows(&self) -> usize {
-        self.statics.iter().map(StaticPose::count).sum()
+        let own = &self.data[self.range(Channel::Static)];
+        let last = own.iter().map(|datum| datum.row + 1).max().unwrap_or(0);
+        self.statics.iter().map(StaticPose::count).sum::<usize>().max(last)
     }
 
     /// Magnitudes of the torques that a joint bears on the bench \[N m\]; none if the joint is not on the bench.
