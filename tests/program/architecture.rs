@@ -31,6 +31,8 @@ const STOREYS_OF_RECONCILE: &[&[&str]] = &[
     &["select"],
     &["verdict"],
     &["positions", "records"],
+    &["found"],
+    &["long"],
     &["analysis", "predict", "starter"],
     &["ruling"],
     &["together", "predict_files"],
