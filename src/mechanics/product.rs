@@ -21,8 +21,7 @@ pub(crate) fn transposed_product(a: &DMatrix<f64>, b: &DMatrix<f64>) -> DMatrix<
     out
 }
 
-/// The product `AᵀB` of matrices of which is known that it is symmetric, as where B is a symmetric matrix times A: half of it
-/// is computed.
+/// The product `AᵀB` where it is symmetric, as it is if B is a symmetric matrix times A. Only half of it is computed.
 ///
 /// # Panics
 /// If the factors differ in size.

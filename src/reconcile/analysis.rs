@@ -41,23 +41,16 @@ pub(crate) fn reconcile(campaign: &Campaign) -> Outcome {
 
 /// The outcome for a campaign whose effects were found.
 fn analysed(found: Found) -> Outcome {
-    let Found { campaign, few, mut forward, nuisance, candidates, settled: mut found, stood, .. } = found;
-    let weights = found.noise.weights(&forward);
-    let chosen = &found.selection.best;
-    let coefficients = Model::of(&nuisance, &candidates, &chosen.effects).coefficients(&forward, &chosen.u);
-    forward.refresh(&coefficients);
-    let search = Search {
-        campaign,
-        forward: &forward,
-        nuisance: &nuisance,
-        candidates: &candidates,
-        weights: &weights,
-    };
+    let Found { mut sought, few, settled: mut found, stood, .. } = found;
+    sought.refresh(&found.selection.best);
+    let (campaign, forward, candidates) = (sought.campaign, &sought.forward, &sought.candidates);
+    let weights = found.noise.weights(forward);
+    let search = sought.search(&weights);
     let (best, in_series) = best_model(&search, &mut found.selection, few);
     let chosen = &found.selection.best;
     let baseline = search.fit(&[], &found.selection.baseline.u, Effort::default());
-    let with_laws = [candidates.as_slice(), &empirical::laws(&forward, &baseline, &weights)].concat();
-    let fit_test = lack_of_fit(campaign, &forward, &best, &weights);
+    let with_laws = [candidates.as_slice(), &empirical::laws(forward, &baseline, &weights)].concat();
+    let fit_test = lack_of_fit(campaign, forward, &best, &weights);
     let alternatives = search.alternatives(chosen, &found.selection.others);
     let explaining = few.then(|| found.selection.others.clone());
     let unnamed = match () {
@@ -66,12 +59,12 @@ fn analysed(found: Found) -> Outcome {
         () if best.model.effects.is_empty() || (stood && in_series.is_none()) => None,
         () => unnamed::instead(&search, &search.scored(&chosen.effects, &best), &baseline, &found.noise),
     };
-    let without = is_weak(&found.selection).then(|| lack_of_fit(campaign, &forward, &baseline, &weights));
-    let left_out = [&baseline, &best].map(|f| held_out::residuals(&forward, &f.model, &f.point.u, &weights));
-    let expected_rms = held_out::expected_rms(&forward, &best, &weights);
+    let without = is_weak(&found.selection).then(|| lack_of_fit(campaign, forward, &baseline, &weights));
+    let left_out = [&baseline, &best].map(|f| held_out::residuals(forward, &f.model, &f.point.u, &weights));
+    let expected_rms = held_out::expected_rms(forward, &best, &weights);
     let analysis = Analysis {
         campaign,
-        forward: &forward,
+        forward,
         search: &search,
         with_laws: &Search { candidates: &with_laws, ..search },
         selection: &found.selection,

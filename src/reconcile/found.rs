@@ -1,27 +1,49 @@
 //! Finds the effects of a campaign: prepares it for fitting, lists the candidates, and settles effects and noise.
 
 use super::fit::units;
+use super::fit::weights::Weights;
 use super::forward::prepared::Forward;
 use super::model::calibration::Nuisance;
 use super::model::candidates::candidates;
 use super::model::parameters::{Candidate, Model};
 use super::readings::campaign::Campaign;
 use super::select::few_rows;
+use super::select::search::{Scored, Search};
 use super::select::seen::seen;
 use super::select::settle::Settled;
 use super::verdict::too_little::rows;
 
-/// A campaign with the effects that were found in its readings.
-pub(super) struct Found<'c> {
+/// A campaign, prepared for fitting, and what is sought in it.
+pub(super) struct Sought<'c> {
     pub(super) campaign: &'c Campaign,
-    /// Whether the campaign has only a handful of rows.
-    pub(super) few: bool,
     /// The campaign, prepared for fitting.
     pub(super) forward: Forward,
     /// The calibrated parameters.
     pub(super) nuisance: Nuisance,
-    /// The effects at places that were tried.
+    /// The effects at places that are tried.
     pub(super) candidates: Vec<Candidate>,
+}
+
+impl Sought<'_> {
+    /// The search with these weights of the data.
+    pub(super) fn search<'s>(&'s self, weights: &'s Weights) -> Search<'s> {
+        let Self { campaign, forward, nuisance, candidates } = self;
+        Search { campaign, forward, nuisance, candidates, weights }
+    }
+
+    /// Computes the trial shapes of the modes for the model `scored`.
+    pub(super) fn refresh(&mut self, scored: &Scored) {
+        let model = Model::of(&self.nuisance, &self.candidates, &scored.effects);
+        let coefficients = model.coefficients(&self.forward, &scored.u);
+        self.forward.refresh(&coefficients);
+    }
+}
+
+/// A campaign with the effects that were found in its readings.
+pub(super) struct Found<'c> {
+    pub(super) sought: Sought<'c>,
+    /// Whether the campaign has only a handful of rows.
+    pub(super) few: bool,
     pub(super) settled: Settled,
     /// Whether the readings have the standard deviations that the campaign states.
     pub(super) as_declared: bool,
@@ -39,7 +61,8 @@ impl<'c> Found<'c> {
         let declared: Vec<f64> = forward.data.iter().map(|datum| datum.sigma).collect();
         let settled = settled(campaign, &mut forward, &nuisance, &candidates, few);
         let as_declared = forward.data.iter().map(|datum| datum.sigma).eq(declared);
-        Self { campaign, few, forward, nuisance, candidates, settled, as_declared, stood: false }
+        let sought = Sought { campaign, forward, nuisance, candidates };
+        Self { sought, few, settled, as_declared, stood: false }
     }
 }
 

@@ -12,16 +12,15 @@
 //! and the largest angle of each joint and with the smallest and the largest loads are among them, and so is the first visit of
 //! each file and each branch of loading.
 
-use super::fit::descent::{Effort, fit};
+use super::fit::descent::{Effort, Fit};
 use super::fit::noise::Noise;
 use super::fit::stats::scrambled;
 use super::forward::prepared::Forward;
-use super::found::Found;
-use super::model::parameters::Model;
+use super::found::{Found, Sought};
 use super::readings::campaign::Campaign;
 use super::readings::rows::StaticRow;
 use super::select::lack_of_fit::lack_of_fit;
-use super::select::search::Search;
+use super::select::search::{Scored, Search};
 use super::select::settle::Settled;
 use super::select::unnamed;
 use crate::arm::effect::channel::Channel;
@@ -35,6 +34,10 @@ const SOUGHT_IN: usize = 2_500;
 /// Rows of one pose that follow each other are one visit, up to this number. What friction keeps of earlier loads is lost where
 /// a visit is divided.
 const LONGEST_VISIT: usize = 250;
+/// For each gross error that the part lets one expect among all rows, this many may be there.
+const MOST_SLIPS: f64 = 2.0;
+/// This fraction of all rows may be gross errors although the part has none, by chance.
+const FEW_SLIPS: f64 = 0.001;
 
 /// A part of a long campaign.
 pub(super) struct Part {
@@ -73,7 +76,17 @@ impl Part {
     }
 
     fn sentence(&self) -> String {
-        format!("effects were sought in {} of the {} displacements", self.kept.len(), self.of)
+        let (kept, of) = (self.kept.len(), self.of);
+        format!("effects were sought in {kept} of the {of} displacements and then fitted to all of them")
+    }
+
+    /// Whether more displacements are gross errors by `in_all`, the judgement of all rows, than `in_part`, that of the part, lets
+    /// one expect.
+    fn has_fewer_slips(&self, in_part: &Noise, in_all: &Noise) -> bool {
+        let slips =
+            |noise: &Noise| noise.outliers.iter().filter(|o| o.channel == Channel::Static).count() as f64;
+        let of = self.of as f64;
+        slips(in_all) > MOST_SLIPS * slips(in_part) * of / self.kept.len() as f64 + FEW_SLIPS * of
     }
 }
 
@@ -108,88 +121,75 @@ fn ends(rows: &[StaticRow], visits: &[Range<usize>]) -> Vec<usize> {
     angles.chain(loads).flatten().chain(firsts).map(visit_of).collect()
 }
 
-impl<'c> Found<'c> {
-    /// Whether the effects explain the readings in which they were found, and no law without a name explains them as well.
-    fn stands(&self) -> bool {
-        let weights = self.settled.noise.weights(&self.forward);
-        let Self { campaign, forward, nuisance, candidates, settled, .. } = self;
-        let search = Search { campaign, forward, nuisance, candidates, weights: &weights };
-        let chosen = &settled.selection.best;
-        if settled.selection.given_up {
-            return false;
-        }
-        let best = search.polish(&chosen.effects, &chosen.u);
-        if lack_of_fit(campaign, forward, &best, &weights).fails {
-            return false;
-        }
-        let against_laws = || {
-            let baseline = search.fit(&[], &settled.selection.baseline.u, Effort::default());
-            unnamed::instead(&search, &search.scored(&chosen.effects, &best), &baseline, &settled.noise)
-                .is_none()
-        };
-        chosen.effects.is_empty() || against_laws()
-    }
-
-    /// The models that were found in a part of the rows of `campaign`, fitted to all rows and compared again. `None` if the result
-    /// of the part does not hold there, or if its readings were found to be in another unit.
-    pub(super) fn on_all_rows<'l>(&self, campaign: &'l Campaign, part: &Part) -> Option<Found<'l>> {
+impl Found<'_> {
+    /// The models that were found in the part `part` of the rows of `campaign`, fitted to all rows and compared again. `None` if
+    /// the result of the part does not hold there, or if its readings were found to be in another unit.
+    pub(super) fn on_all_rows<'l>(self, campaign: &'l Campaign, part: &Part) -> Option<Found<'l>> {
         if !self.as_declared || !self.stands() {
             return None;
         }
-        let (nuisance, candidates) = (self.nuisance.clone(), self.candidates.clone());
-        let mut forward = Forward::new(campaign);
-        self.number_modes_of(&mut forward);
-        let best = &self.settled.selection.best;
-        let model = Model::of(&nuisance, &candidates, &best.effects);
-        let coefficients = model.coefficients(&forward, &best.u);
-        forward.refresh(&coefficients);
-        let judged = |noise: &Noise| {
-            let weights = noise.weights(&forward);
-            Noise::from_fit(&forward, &fit(&forward, &model, &best.u, &weights, Effort::default()), &weights)
-        };
-        let noise = judged(&judged(&Noise { outliers: Vec::new(), ..self.settled.noise.clone() }));
-        let slips = |noise: &Noise| noise.outliers.iter().filter(|o| o.channel == Channel::Static).count();
-        let expected = (slips(&self.settled.noise) * part.of) as f64 / part.kept.len() as f64;
-        if slips(&noise) as f64 > 2.0 * expected + 0.001 * part.of as f64 {
+        let Found { sought: Sought { forward: of_part, nuisance, candidates, .. }, settled: found, .. } =
+            self;
+        let mut sought = Sought { campaign, forward: Forward::new(campaign), nuisance, candidates };
+        number_modes(&of_part, &mut sought.forward);
+        let best = &found.selection.best;
+        sought.refresh(best);
+        let noise = noise_of_all(&sought, best, &found.noise);
+        if part.has_fewer_slips(&found.noise, &noise) {
             return None;
         }
-        let weights = noise.weights(&forward);
-        let search = Search {
-            campaign,
-            forward: &forward,
-            nuisance: &nuisance,
-            candidates: &candidates,
-            weights: &weights,
-        };
-        let selection = search.weigh_again(&self.settled.selection);
-        if selection.best.effects != best.effects {
+        let weights = noise.weights(&sought.forward);
+        let search = sought.search(&weights);
+        let selection = search.weigh_again(&found.selection);
+        if selection.best.effects != best.effects || explaining(&search, &selection.best).is_none() {
             return None;
         }
-        let fitted = search.polish(&selection.best.effects, &selection.best.u);
-        if lack_of_fit(campaign, &forward, &fitted, &weights).fails {
-            return None;
-        }
-        let mut remarks = self.settled.remarks.clone();
-        remarks.push(format!("{} and then fitted to all of them", part.sentence()));
+        let mut remarks = found.remarks;
+        remarks.push(part.sentence());
         let settled = Settled { selection, noise, remarks };
-        Some(Found {
-            campaign,
-            few: false,
-            forward,
-            nuisance,
-            candidates,
-            settled,
-            as_declared: true,
-            stood: true,
-        })
+        Some(Found { sought, few: false, settled, as_declared: true, stood: true })
     }
 
-    /// Numbers the modes of `forward`, which has the same frequencies, as they are numbered here.
-    fn number_modes_of(&self, forward: &mut Forward) {
-        let (own, there) = (self.forward.starts[1], forward.starts[1]);
-        for (list, other) in self.forward.modal.iter().zip(&mut forward.modal) {
-            other.modes = list.modes.iter().map(|(datum, mode)| (datum - own + there, *mode)).collect();
+    /// Whether the effects explain the readings in which they were found, and no law without a name explains them as well.
+    fn stands(&self) -> bool {
+        let Settled { selection, noise, .. } = &self.settled;
+        let weights = noise.weights(&self.sought.forward);
+        let search = self.sought.search(&weights);
+        if selection.given_up {
+            return false;
         }
+        let Some(best) = explaining(&search, &selection.best) else { return false };
+        let effects = &selection.best.effects;
+        let stands_against_laws = || {
+            let baseline = search.fit(&[], &selection.baseline.u, Effort::default());
+            unnamed::instead(&search, &search.scored(effects, &best), &baseline, noise).is_none()
+        };
+        effects.is_empty() || stands_against_laws()
+    }
+}
+
+/// The model `scored`, fitted until it has converged; `None` if it leaves structure.
+fn explaining<'s>(search: &Search<'s>, scored: &Scored) -> Option<Fit<'s>> {
+    let best = search.polish(&scored.effects, &scored.u);
+    (!lack_of_fit(search.campaign, search.forward, &best, search.weights).fails).then_some(best)
+}
+
+/// The gross errors and the scatter of all rows, judged by the model `best` that was found in a part of them. `in_part` is the
+/// scatter there.
+fn noise_of_all(sought: &Sought, best: &Scored, in_part: &Noise) -> Noise {
+    let judged = |noise: &Noise| {
+        let weights = noise.weights(&sought.forward);
+        let best = sought.search(&weights).fit(&best.effects, &best.u, Effort::default());
+        Noise::from_fit(&sought.forward, &best, &weights)
+    };
+    judged(&judged(&Noise { scale: in_part.scale, outliers: Vec::new() }))
+}
+
+/// Numbers the modes of `to` as they are numbered in `from`, which has the same frequencies.
+fn number_modes(from: &Forward, to: &mut Forward) {
+    let (own, there) = (from.starts[1], to.starts[1]);
+    for (list, other) in from.modal.iter().zip(&mut to.modal) {
+        other.modes = list.modes.iter().map(|(datum, mode)| (datum - own + there, *mode)).collect();
     }
 }
 
@@ -197,6 +197,7 @@ impl<'c> Found<'c> {
 mod tests {
     use super::*;
     use crate::catalog::Catalogs;
+    use crate::reconcile::fit::noise::Outlier;
     use std::path::Path;
 
     /// A test campaign whose displacements are repeated until there are `count`, each pose at other angles.
@@ -246,5 +247,34 @@ mod tests {
         let part = Part::of(&whole).expect("long");
         assert!(part.kept.len() < SOUGHT_IN + 9 * LONGEST_VISIT, "{}", part.kept.len());
         assert!(part.kept.first() == Some(&0) && part.kept.last() > Some(&(LONG / 2)));
+    }
+
+    #[test]
+    fn modes_that_were_put_in_order_keep_their_readings_among_more_rows() {
+        let (short, whole) = (campaign(20), campaign(60));
+        let [mut from, mut to] = [&short, &whole].map(Forward::new);
+        from.modal[0].modes.reverse();
+        from.modal[0].modes[0].1 += 1;
+        number_modes(&from, &mut to);
+        for (list, other) in from.modal.iter().zip(&to.modal) {
+            let of = |forward: &Forward, modes: &[(usize, usize)]| -> Vec<(usize, usize)> {
+                modes.iter().map(|(datum, mode)| (forward.data[*datum].row, *mode)).collect()
+            };
+            assert_eq!(of(&from, &list.modes), of(&to, &other.modes));
+        }
+    }
+
+    #[test]
+    fn as_many_gross_errors_for_each_row_are_no_more_and_a_rare_load_that_is_off_is() {
+        let part = Part { campaign: campaign(1), kept: (0..2500).collect(), of: 100_000 };
+        let slips = |count: usize| {
+            let outlier = |row| Outlier { channel: Channel::Static, row, sigmas: 9.0 };
+            Noise { outliers: (0..count).map(outlier).collect(), ..Noise::default() }
+        };
+        for (in_part, in_all, is_more) in
+            [(0, 0, false), (0, 90, false), (0, 110, true), (5, 250, false), (5, 600, true)]
+        {
+            assert_eq!(part.has_fewer_slips(&slips(in_part), &slips(in_all)), is_more, "{in_part}, {in_all}");
+        }
     }
 }

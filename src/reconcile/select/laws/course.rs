@@ -7,8 +7,8 @@ use crate::arm::effect::channel::Channel;
 use crate::reconcile::forward::datum::Datum;
 use nalgebra::Vector3;
 
-/// Fraction of the tests after which a part that creeps has moved as far as it moves in the next two such fractions together.
-/// Soil and polymers creep with the logarithm of the time.
+/// In the first such fraction of the tests, a part that creeps moves as far as in the next two together. Soil and polymers creep
+/// with the logarithm of the time.
 const EARLY: f64 = 0.05;
 
 impl Builder<'_> {
